@@ -1,0 +1,80 @@
+#include "engine/core/error.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+
+namespace pkm {
+namespace {
+
+std::string prefix(const SourcePlace& place) {
+  std::string text;
+  if (!place.file.empty()) {
+    text += place.file;
+    if (place.line > 0) text += ":" + std::to_string(place.line);
+    text += ": ";
+  }
+  if (!place.key.empty()) text += place.key + ": ";
+  return text;
+}
+
+std::string message(const SourcePlace& place, std::string_view found, std::string_view expected,
+                    std::string_view nearest) {
+  std::string text = prefix(place);
+  text += "found " + std::string(found) + "; expected " + std::string(expected);
+  if (!nearest.empty()) text += "; did you mean '" + std::string(nearest) + "'?";
+  return text;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+ConfigError::ConfigError(SourcePlace place, std::string_view found, std::string_view expected, std::string_view nearest)
+    : std::runtime_error(message(place, found, expected, nearest)), place_(std::move(place)) {}
+
+ConfigError::ConfigError(SourcePlace place, std::string_view sentence)
+    : std::runtime_error(prefix(place) + std::string(sentence)), place_(std::move(place)) {}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);  // further away is another word
+  for (const auto& candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string join(const std::vector<std::string>& words, std::string_view separator) {
+  std::string text;
+  for (const auto& word : words) {
+    if (!text.empty()) text += separator;
+    text += word;
+  }
+  return text;
+}
+
+void contract_broken(const char* condition, const char* file, int line) {
+  std::fprintf(stderr, "pkmopt: broken contract %s at %s:%d\n", condition, file, line);
+  std::abort();
+}
+
+}  // namespace pkm

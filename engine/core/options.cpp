@@ -1,0 +1,36 @@
+#include "engine/core/options.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace pkm {
+
+Options default_options(const std::vector<OptionSpec>& specs) {
+  Options options;
+  for (const auto& spec : specs)
+    if (spec.initial) options.set(spec.name, *spec.initial);
+  return options;
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string to_text(const OptionValue& value) {
+  struct Writer {
+    std::string operator()(double number) const { return shortest(number); }
+    std::string operator()(std::int64_t number) const { return std::to_string(number); }
+    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+    std::string operator()(const std::string& word) const { return '"' + word + '"'; }
+    std::string operator()(const NamedNumbers& numbers) const {
+      std::string text;
+      for (const auto& [name, number] : numbers) text += (text.empty() ? " " : ", ") + name + " = " + shortest(number);
+      return "{" + text + " }";
+    }
+  };
+  return std::visit(Writer{}, value);
+}
+
+}  // namespace pkm

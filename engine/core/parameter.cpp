@@ -1,0 +1,35 @@
+#include "engine/core/parameter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pkm {
+
+double DesignSpace::nearest(std::size_t i, double value) const {
+  const Variable& v = variables_[i];
+  if (v.step > 0) {
+    // The small allowance keeps upper on the lattice when (upper - lower) / step is a whole number but for rounding.
+    const double last = std::floor((v.upper - v.lower) / v.step + 1e-9);
+    const double k = std::clamp(std::nearbyint((value - v.lower) / v.step), 0.0, last);
+    value = v.lower + k * v.step;
+  }
+  return std::clamp(value, v.lower, v.upper);
+}
+
+double DesignSpace::from_unit(std::size_t i, double u) const {
+  const Variable& v = variables_[i];
+  return nearest(i, v.lower + u * (v.upper - v.lower));
+}
+
+double DesignSpace::to_unit(std::size_t i, double value) const {
+  const Variable& v = variables_[i];
+  return v.upper > v.lower ? (value - v.lower) / (v.upper - v.lower) : 0.0;
+}
+
+bool DesignSpace::contains(std::span<const double> design) const {
+  for (std::size_t i = 0; i < variables_.size(); ++i)
+    if (!(design[i] >= variables_[i].lower && design[i] <= variables_[i].upper)) return false;
+  return true;
+}
+
+}  // namespace pkm

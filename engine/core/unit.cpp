@@ -1,0 +1,174 @@
+#include "engine/core/unit.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "engine/core/options.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr double kHalfTurn = 3.141592653589793238462643383279502884;  // [rad]
+
+using Dimension = std::array<int, 4>;  // powers of m, kg, s, rad
+
+/// In SI, a number of this unit is number * multiply / divide.
+struct Unit {
+  Dimension dimension{};
+  double multiply = 1;
+  double divide = 1;
+};
+
+struct Symbol {
+  std::string_view name;
+  Unit unit;
+};
+
+constexpr Dimension kNone{0, 0, 0, 0}, kLength{1, 0, 0, 0}, kMass{0, 1, 0, 0}, kTime{0, 0, 1, 0}, kAngle{0, 0, 0, 1},
+    kForce{1, 1, -2, 0}, kEnergy{2, 1, -2, 0}, kPower{2, 1, -3, 0}, kAngularSpeed{0, 0, -1, 1};
+
+constexpr Symbol kSymbols[] = {
+    {"%", {kNone, 1, 100}},
+    {"um", {kLength, 1, 1e6}},
+    {"mm", {kLength, 1, 1e3}},
+    {"cm", {kLength, 1, 100}},
+    {"dm", {kLength, 1, 10}},
+    {"m", {kLength, 1, 1}},
+    {"km", {kLength, 1e3, 1}},
+    {"in", {kLength, 254, 1e4}},
+    {"mrad", {kAngle, 1, 1e3}},
+    {"rad", {kAngle, 1, 1}},
+    {"deg", {kAngle, kHalfTurn, 180}},
+    {"us", {kTime, 1, 1e6}},
+    {"ms", {kTime, 1, 1e3}},
+    {"s", {kTime, 1, 1}},
+    {"min", {kTime, 60, 1}},
+    {"h", {kTime, 3600, 1}},
+    {"g", {kMass, 1, 1e3}},
+    {"kg", {kMass, 1, 1}},
+    {"t", {kMass, 1e3, 1}},
+    {"mN", {kForce, 1, 1e3}},
+    {"N", {kForce, 1, 1}},
+    {"kN", {kForce, 1e3, 1}},
+    {"J", {kEnergy, 1, 1}},
+    {"W", {kPower, 1, 1}},
+    {"kW", {kPower, 1e3, 1}},
+    {"rpm", {kAngularSpeed, kHalfTurn, 30}},
+};
+
+const Symbol* find_symbol(std::string_view name) {
+  for (const auto& symbol : kSymbols)
+    if (symbol.name == name) return &symbol;
+  return nullptr;
+}
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t";
+  const auto first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// Reads "kg m^2/s" symbol by symbol; `use` sees each with its power. False when the text is no product of known units.
+template <class Use>
+bool read_unit(std::string_view text, Use use) {
+  int sign = 1;
+  bool need_factor = true;
+  while (true) {
+    text = trimmed(text);
+    if (text.empty()) return !need_factor;
+    if (!need_factor && (text[0] == '/' || text[0] == '*')) {
+      sign = text[0] == '/' ? -1 : 1;
+      need_factor = true;
+      text.remove_prefix(1);
+      continue;
+    }
+    if (text[0] == '1') {  // "1", "1/s"
+      text.remove_prefix(1);
+    } else {
+      std::size_t length = 0;
+      while (length < text.size() && is_letter(text[length])) ++length;
+      const Symbol* symbol = find_symbol(text.substr(0, length));
+      if (!symbol) return false;
+      text.remove_prefix(length);
+      int power = 1;
+      if (!text.empty() && text[0] == '^') {
+        const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), power);
+        if (error != std::errc{} || power == 0 || std::abs(power) > 9) return false;
+        text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+      }
+      use(*symbol, sign * power);
+    }
+    sign = 1;
+    need_factor = false;
+  }
+}
+
+std::optional<Unit> unit_of(std::string_view text) {
+  Unit product;
+  const bool known = read_unit(text, [&product](const Symbol& symbol, int power) {
+    for (std::size_t i = 0; i < product.dimension.size(); ++i) product.dimension[i] += power * symbol.unit.dimension[i];
+    for (int k = 0; k < std::abs(power); ++k) {
+      (power > 0 ? product.multiply : product.divide) *= symbol.unit.multiply;
+      (power > 0 ? product.divide : product.multiply) *= symbol.unit.divide;
+    }
+  });
+  return known ? std::optional(product) : std::nullopt;
+}
+
+/// The names of the units that have the dimension of each symbol in `unit`: for "m^2 rad" those of m, then those of
+/// rad.
+std::vector<std::string> related_units(std::string_view unit) {
+  std::vector<std::string> names;
+  std::vector<Dimension> listed;
+  const auto list = [&](const Dimension& dimension) {
+    for (const auto& seen : listed)
+      if (seen == dimension) return;
+    listed.push_back(dimension);
+    for (const auto& symbol : kSymbols)
+      if (symbol.unit.dimension == dimension) names.emplace_back(symbol.name);
+  };
+  if (const auto whole = unit_of(unit)) list(whole->dimension);
+  read_unit(unit, [&](const Symbol& symbol, int) { list(symbol.unit.dimension); });
+  return names;
+}
+
+}  // namespace
+
+std::string quantity_hint(std::string_view unit) {
+  if (unit == "1") return "a number, or text such as \"5 %\"";
+  return "a number in " + std::string(unit) + ", or text with a unit made of " + join(related_units(unit));
+}
+
+std::string with_unit(double value, std::string_view unit) {
+  return unit == "1" || unit.empty() ? shortest(value) : shortest(value) + " " + std::string(unit);
+}
+
+double parse_quantity(std::string_view text, std::string_view unit) {
+  const auto refuse = [&]() {
+    return std::invalid_argument('"' + std::string(text) + "\" is not " + quantity_hint(unit));
+  };
+  std::string_view rest = trimmed(text);
+  if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
+  double number = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (error != std::errc{} || !std::isfinite(number)) throw refuse();
+  rest = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
+  if (rest.empty()) return number;
+  const auto written = unit_of(rest), wanted = unit_of(unit);
+  PKM_EXPECTS(wanted.has_value());
+  if (!written || rest[0] == '1' || !wanted || written->dimension != wanted->dimension) throw refuse();
+  const double value = number * written->multiply / written->divide;
+  if (!std::isfinite(value)) throw refuse();
+  return value;
+}
+
+}  // namespace pkm

@@ -1,0 +1,26 @@
+// Quantities with units, as users write them: "200 mm", "30deg", "0.5", "1e-3 m^2 rad".
+//
+// The program computes in SI and radians; other units exist only where text comes in. A unit is a product of symbols
+// with whole powers ("kg m^2", "m/s", "N m"). The conversion is one multiplication and one division of the number
+// written, so that "35 mm" has the same bits as 0.035. Angles count as a dimension of their own: "m^2" is not "m^2
+// rad".
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace pkm {
+
+/// The value of `text` in the SI unit `unit` ("m", "rad", "s", "kg", "N", "kg m^2", ... or "1"). Text without a unit is
+/// taken to be in `unit`. Does not depend on the locale. Throws std::invalid_argument with one sentence that lists the
+/// units known when `text` is no finite number, has another dimension, an unknown unit or anything behind it.
+double parse_quantity(std::string_view text, std::string_view unit);
+
+/// What may be written where a quantity in `unit` is expected, for messages: "a number in m, or text with a unit made
+/// of um, mm, cm, dm, m, km, in".
+std::string quantity_hint(std::string_view unit);
+
+/// "0.2 m", "0.5" for unit "1": a number with its unit, for messages and listings.
+std::string with_unit(double value, std::string_view unit);
+
+}  // namespace pkm

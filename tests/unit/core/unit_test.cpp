@@ -1,0 +1,106 @@
+#include "engine/core/unit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <stdexcept>
+
+#include "engine/math/portable.hpp"
+
+namespace pkm {
+namespace {
+
+TEST(Unit, ConvertsToTheBitsOfTheNumberInSi) {
+  struct Case {
+    const char* text;
+    const char* unit;
+    double value;
+  };
+  const Case cases[] = {
+      {"0.5", "1", 0.5},
+      {"5 %", "1", 0.05},
+      {"  7 ", "m", 7},
+      {"+3", "m", 3},
+      {"200 mm", "m", 0.2},
+      {"35mm", "m", 0.035},
+      {"1e-3 m", "m", 0.001},
+      {"2.5e1 cm", "m", 0.25},
+      {"3 dm", "m", 0.3},
+      {"7 um", "m", 7e-6},
+      {"2 km", "m", 2000},
+      {"1 in", "m", 0.0254},
+      {"30deg", "rad", kPi / 6},
+      {"-90 deg", "rad", -kPi / 2},
+      {"180 deg", "rad", kPi},
+      {"4 mrad", "rad", 0.004},
+      {"2 s", "s", 2},
+      {"10 min", "s", 600},
+      {"1.5 h", "s", 5400},
+      {"20 ms", "s", 0.02},
+      {"9 us", "s", 9e-6},
+      {"5 kg", "kg", 5},
+      {"300 g", "kg", 0.3},
+      {"2 t", "kg", 2000},
+      {"3 kN", "N", 3000},
+      {"4 kg m/s^2", "N", 4},
+      {"2 N m", "J", 2},
+      {"2 J", "N m", 2},
+      {"2 kW", "W", 2000},
+      {"5 kg mm^2", "kg m^2", 5e-6},
+      {"7 g*m^2", "kg m^2", 0.007},
+      {"36 m/min", "m/s", 0.6},
+      {"8 mm^2 rad", "m^2 rad", 8e-6},
+      {"6 s^-1", "1/s", 6},
+      {"0.25 m^3 rad", "m^3 rad", 0.25},
+  };
+  for (const auto& c : cases) EXPECT_EQ(parse_quantity(c.text, c.unit), c.value) << c.text << " in " << c.unit;
+  EXPECT_DOUBLE_EQ(parse_quantity("60 rpm", "rad/s"), 2 * kPi);
+}
+
+TEST(Unit, RefusesWhatIsNoQuantityOfTheDimension) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "m"},      {"mm", "m"},          {"abc", "1"},      {"1 kg", "m"},  {"1 rad", "1"},
+      {"1 m", "m^2"}, {"1 m^2", "m^2 rad"}, {"inf", "m"},      {"nan", "m"},   {"-inf m", "m"},
+      {"1e999", "m"}, {"1 m x", "m"},       {"1 m/", "m"},     {"1 /s", "s"},  {"1,5 m", "m"},
+      {"1 mmm", "m"}, {"0x10 m", "m"},      {"1 m^", "m"},     {"1 m^0", "1"}, {"1 2 m", "m"},
+      {"++1", "m"},   {"+-1", "m"},         {"1e308 km", "m"}, {"5 %", "m"},   {"1 m^99", "m"},
+      {"1 MM", "m"},  {"1 1 m", "m"},       {"1__0", "1"},
+  };
+  for (const auto& [text, unit] : cases)
+    EXPECT_THROW(parse_quantity(text, unit), std::invalid_argument) << text << " in " << unit;
+}
+
+TEST(Unit, MessagesListTheUnitsOfTheDimension) {
+  const auto message = [](const char* text, const char* unit) -> std::string {
+    try {
+      parse_quantity(text, unit);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message("2 kg", "m"),
+            "\"2 kg\" is not a number in m, or text with a unit made of um, mm, cm, dm, m, km, in");
+  EXPECT_EQ(message("2 m", "rad"), "\"2 m\" is not a number in rad, or text with a unit made of mrad, rad, deg");
+  EXPECT_EQ(message("1 mm", "1"), "\"1 mm\" is not a number, or text such as \"5 %\"");
+  EXPECT_EQ(message("1 m", "rad/s"),
+            "\"1 m\" is not a number in rad/s, or text with a unit made of rpm, mrad, rad, deg, us, ms, s, min, h");
+  EXPECT_EQ(message("1", "s"), "accepted");
+}
+
+TEST(Unit, DoesNotDependOnTheLocale) {
+  const std::string before = std::setlocale(LC_NUMERIC, nullptr);
+  for (const char* name : {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8"}) std::setlocale(LC_NUMERIC, name);
+  EXPECT_EQ(parse_quantity("1.5 mm", "m"), 0.0015);
+  EXPECT_THROW(parse_quantity("1,5 mm", "m"), std::invalid_argument);
+  std::setlocale(LC_NUMERIC, before.c_str());
+}
+
+TEST(Unit, WritesNumbersWithTheirUnit) {
+  EXPECT_EQ(with_unit(0.1, "m"), "0.1 m");
+  EXPECT_EQ(with_unit(0.1, "1"), "0.1");
+  EXPECT_EQ(with_unit(3, ""), "3");
+}
+
+}  // namespace
+}  // namespace pkm
