@@ -1,0 +1,59 @@
+#include "engine/math/quadrature.hpp"
+
+namespace pkm {
+
+GaussRule gauss_legendre(int n) {
+  GaussRule rule;
+  rule.node.resize(static_cast<std::size_t>(n));
+  rule.weight.resize(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    double x = -portable::cos(kPi * (i + 0.75) / (n + 0.5));  // good to 1/n^2, Newton does the rest
+    double slope = 1;
+    for (int step = 0; step < 12; ++step) {
+      double previous = 1, value = x;  // P_0, P_1
+      for (int k = 2; k <= n; ++k) {
+        const double next = ((2 * k - 1) * x * value - (k - 1) * previous) / k;
+        previous = value;
+        value = next;
+      }
+      if (n == 1) previous = 1;
+      slope = n * (x * value - previous) / (x * x - 1);
+      const double change = value / slope;
+      x -= change;
+      if (std::fabs(change) < 1e-16) break;
+    }
+    rule.node[static_cast<std::size_t>(i)] = 0.5 * (1 + x);
+    rule.weight[static_cast<std::size_t>(i)] = 1 / ((1 - x * x) * slope * slope);
+  }
+  return rule;
+}
+
+const KronrodRule& kronrod_15() {
+  // Nodes and weights on [-1, 1], non-negative half, computed from the Stieltjes polynomial with 50 digits.
+  static constexpr std::array<double, 8> x = {0.0,
+                                              0.2077849550078984676,
+                                              0.4058451513773971669,
+                                              0.5860872354676911303,
+                                              0.7415311855993944399,
+                                              0.8648644233597690728,
+                                              0.9491079123427585245,
+                                              0.9914553711208126392};
+  static constexpr std::array<double, 8> w = {0.209482141084727828,   0.2044329400752988924, 0.1903505780647854099,
+                                              0.1690047266392679028,  0.1406532597155259187, 0.1047900103222501838,
+                                              0.06309209262997855329, 0.02293532201052922496};
+  static constexpr std::array<double, 8> g = {0.4179591836734693878, 0, 0.381830050505118945,  0,
+                                              0.2797053914892766679, 0, 0.1294849661688696933, 0};
+  static const KronrodRule rule = [] {
+    KronrodRule r{};
+    for (std::size_t i = 0; i < 8; ++i) {
+      r.node[7 + i] = 0.5 + 0.5 * x[i];
+      r.node[7 - i] = 0.5 - 0.5 * x[i];
+      r.weight[7 + i] = r.weight[7 - i] = 0.5 * w[i];
+      r.gauss_weight[7 + i] = r.gauss_weight[7 - i] = 0.5 * g[i];
+    }
+    return r;
+  }();
+  return rule;
+}
+
+}  // namespace pkm

@@ -1,0 +1,14 @@
+#include "engine/mechanisms/all.hpp"
+
+#include "engine/mechanisms/list.hpp"
+
+namespace pkm {
+
+const MechanismList& all_mechanisms() {
+  static const MechanismList list = {
+      make_four_ppa_two_par(),
+  };
+  return list;
+}
+
+}  // namespace pkm

@@ -1,0 +1,147 @@
+// 4PPa-2PaR: exact volume, and weighted samples, by quadrature over theta of closed-form sections.
+#pragma once
+
+#include <vector>
+
+#include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
+#include "engine/mechanisms/four_ppa_two_par_pieces.hpp"
+#include "engine/workspace/survey.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+/// Storage that surveys reuse.
+template <class S>
+struct ColumnScratch {
+  std::vector<Break<S>> breaks;
+  std::vector<Piece<S>> pieces;
+  std::vector<Integral<S>> integrals;
+};
+
+/// Volume of the workspace on one plane y [m^2 rad].
+template <class S>
+Integral<S> plane_volume(const Frame<S>& f, double tolerance, ColumnScratch<S>& scratch) {
+  find_pieces(f, scratch.breaks, scratch.pieces);
+  const auto section_area = [&](const S& theta) {
+    const auto [s, c] = sincos(theta);
+    return area(f, section(f, s, c));
+  };
+  Integral<S> result = integrate<S>(section_area, scratch.pieces, tolerance, scratch.integrals);
+  result.value *= S(2.0);  // even in theta
+  result.error *= 2;
+  return result;
+}
+
+/// Section areas at one theta >= 0, integrated over y in [0, L0/2] [m^3]. The area depends on y through the two depths
+/// alone, so its kinks in y are known: where a limb's stroke begins to cut, where its depth overtakes an end of delta,
+/// and where the nearer end of the rail changes.
+template <class S>
+S area_over_y(const Frame<S>& f, Section<S> t, const GaussRule& rule) {
+  const Geometry<S>& g = f.g;
+  const S middle = g.L0 * 0.5, shift = g.a * t.sin_theta * 0.5, from = f.l.h_min + shift;
+  std::array<S, 16> y;
+  std::size_t n = 0;
+  const auto add = [&](const S& value) {
+    if (value_of(value) > value_of(from) && value_of(value) < value_of(middle)) y[n++] = value;
+  };
+  const auto add_stroke = [&](const S& H) {  // H_1 = y - shift, H_2 = min(y + shift, L0 - y - shift)
+    add(H + shift);
+    add(H - shift);
+    add(g.L0 - H - shift);
+  };
+  add_stroke(f.stroke_free);
+  for (const S& end : {t.delta_end, t.delta_low}) {
+    const S rest = f.z_low - end;
+    if (value_of(end) > 0 && value_of(rest) > value_of(f.z_high))
+      add_stroke(root_or_zero(S((g.l_u - rest) * (g.l_u + rest))));
+  }
+  add(middle - shift);
+  if (!(value_of(middle) > value_of(from))) return S(0.0);
+  std::sort(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n),
+            [](const S& p, const S& q) { return value_of(p) < value_of(q); });
+  y[n++] = middle;
+  S sum(0.0), lower = from;
+  for (std::size_t i = 0; i < n; lower = y[i++]) {
+    const S length = y[i] - lower;
+    if (!(value_of(length) > 0)) continue;
+    set_depths(f, S(lower + length * 0.5), t);
+    const double full = value_of(f.z_low - f.z_high);
+    if (value_of(t.depth[0]) == full && value_of(t.depth[1]) == full) {  // the stroke does not cut here
+      sum += area(f, t) * length;
+      continue;
+    }
+    const Piece<S> piece{lower, y[i], true, true};
+    for (std::size_t k = 0; k < rule.node.size(); ++k) {
+      const auto [at, jacobian] = map_node(piece, rule.node[k]);
+      set_depths(f, at, t);
+      sum += area(f, t) * jacobian * rule.weight[k];
+    }
+  }
+  return sum;
+}
+
+/// Volume integrated over y [m^3 rad]; theta and y each in the half that symmetry leaves.
+template <class S>
+Integral<S> volume_over_y(const Geometry<S>& g, const Limits<S>& l, double tolerance, ColumnScratch<S>& scratch) {
+  static const GaussRule rule = gauss_legendre(20);
+  const Frame<S> f = frame(g, l, S(g.L0 * 0.5));
+  find_pieces(f, scratch.breaks, scratch.pieces);
+  const auto areas = [&](const S& theta) {
+    const auto [s, c] = sincos(theta);
+    const Section<S> t = section_range(f, s, c);
+    return t.empty ? S(0.0) : area_over_y(f, t, rule);
+  };
+  Integral<S> result = integrate<S>(areas, scratch.pieces, tolerance, scratch.integrals);
+  result.value *= S(4.0);
+  result.error *= 4;
+  return result;
+}
+
+/// Weighted samples of conditioning over one plane: Gauss nodes in theta, delta and z on every smooth piece. Their
+/// weights, times `weight`, add up to the plane's volume within the rule's accuracy.
+/// @param gamma  a / (2 L_c)
+template <class S>
+void sample_conditioning(const Frame<S>& f, const S& gamma, const S& weight, const GaussRule& theta_rule,
+                         const GaussRule& inner_rule, ColumnScratch<S>& scratch, Survey<S>& survey) {
+  find_pieces(f, scratch.breaks, scratch.pieces);
+  const Geometry<S>& g = f.g;
+  for (const Piece<S>& piece : scratch.pieces)
+    for (std::size_t i = 0; i < theta_rule.node.size(); ++i) {
+      const auto [theta, theta_jacobian] = map_node(piece, theta_rule.node[i]);
+      const auto [s, c] = sincos(theta);
+      const Section<S> t = section(f, s, c);
+      if (t.empty) continue;
+      const bool symmetric = value_of(t.depth[0]) == value_of(t.depth[1]);
+      for (std::size_t leaning = 0; leaning < (symmetric ? 1u : 2u); ++leaning) {
+        const Half<S> h = half_section(t, leaning);
+        if (h.empty) continue;
+        const S outer = weight * theta_jacobian * (theta_rule.weight[i] * (symmetric ? 4.0 : 2.0));
+        for (const Piece<S>& range : {Piece<S>{h.low, h.knee}, Piece<S>{h.knee, h.end}}) {
+          if (!(value_of(range.upper) > value_of(range.lower))) continue;
+          for (std::size_t k = 0; k < inner_rule.node.size(); ++k) {
+            const auto [delta, delta_jacobian] = map_node(range, inner_rule.node[k]);
+            const Chord<S> ch = chord(f, t, delta);
+            const S q = t.w * t.w + delta * delta;
+            const S ratio = g.l_d * t.w / q;
+            const S slope = (ratio * ratio - 0.25) * 2.0 * ch.sin_p / ch.cos_p;  // du / d(delta)
+            const S length = min(h.flat, S(h.slope - delta));
+            std::array<S, 2> x, sigma;
+            x[leaning] = t.w * 0.5 + ch.u;
+            x[1 - leaning] = t.w * 0.5 - ch.u;
+            for (std::size_t j = 0; j < 2; ++j) sigma[j] = root_or_zero(S((g.l_d - x[j]) * (g.l_d + x[j])));
+            // z_c of the leaning limb starts at -Z_low, that of the other limb delta above
+            for (std::size_t n = 0; n < inner_rule.node.size(); ++n) {
+              const auto [rise, rise_jacobian] = map_node(Piece<S>{S(0.0), length, true, true}, inner_rule.node[n]);
+              std::array<S, 2> z_c;
+              z_c[leaning] = rise - f.z_low;
+              z_c[1 - leaning] = z_c[leaning] + (sigma[1 - leaning] - sigma[leaning]);
+              survey.weight.push_back(outer * slope * delta_jacobian * rise_jacobian *
+                                      (inner_rule.weight[k] * inner_rule.weight[n]));
+              survey.conditioning.push_back(conditioning(g, s, c, x, sigma, z_c, gamma));
+            }
+          }
+        }
+      }
+    }
+}
+
+}  // namespace pkm::four_ppa_two_par

@@ -1,0 +1,118 @@
+// 4PPa-2PaR as a mechanism of the catalogue.
+#include <stdexcept>
+
+#include "engine/core/options.hpp"
+#include "engine/mechanisms/four_ppa_two_par_survey.hpp"
+#include "engine/mechanisms/list.hpp"
+
+namespace pkm {
+namespace {
+
+using namespace four_ppa_two_par;
+
+const char* const kModes[4] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
+
+MechanismInfo make_info() {
+  MechanismInfo i;
+  i.name = "4ppa-2par";
+  i.title = "two limbs of two sliders each on two parallel rails, parallelograms down to a common platform";
+  i.source = "Kinematics analysis and optimal design of a 3T1R parallel mechanism (4PPa-2PaR)";
+  i.parameters = {
+      {"a", "m", 0.2, 1e-3, 100, "distance of the platform's two revolute joints"},
+      {"b", "m", 0.8, 1e-3, 100, "distance of the rails"},
+      {"l_u", "m", 0.6, 1e-3, 100, "bar length of the upper parallelograms"},
+      {"l_d", "m", 0.55, 1e-3, 100, "bar length of the lower parallelograms"},
+      {"d", "m", 0.15, 0, 100, "height of the lower joints above the platform"},
+      {"L0", "m", 2.5, 0, 100, "rail length"},
+      {"R_u", "m", 0.010, 0, 1, "radius of the upper bars"},
+      {"R_d", "m", 0.010, 0, 1, "radius of the lower bars"},
+      {"d_u", "m", 0.080, 1e-3, 10, "distance of an upper parallelogram's two bars"},
+      {"d_d", "m", 0.080, 1e-3, 10, "distance of the lower parallelogram's two bars"},
+      {"d_0", "m", 0.030, 0, 10, "half length of a slider"},
+  };
+  i.coordinates = {"x", "y", "z", "theta"};
+  i.joints = {"q1", "q2", "q3", "q4"};
+  i.modes.assign(std::begin(kModes), std::end(kModes));
+  i.swept = {0, 2, 3};
+  i.held = 1;
+  i.held_can_integrate = true;
+  constexpr double quarter = kPi / 2;
+  i.limits = {
+      {"alpha_min", "rad", 0, 0, quarter, "interference", "asin(2 R_u / d_u), eq 17",
+       "least angle of the upper bars with the rail"},
+      {"beta_min", "rad", 0, 0, quarter, "interference", "asin(2 R_d / d_d), eq 17",
+       "least angle of the lower bars from the vertical"},
+      {"beta_max", "rad", quarter, 0, quarter, "singularity-margin", "",
+       "greatest angle of the lower bars from the vertical, eq 20"},
+      {"h_min", "m", 0, 0, 100, "singularity-margin", "d_0 + d_u / 2, eq 19", "least half spacing of a limb's sliders"},
+      {"sin_par_min", "1", 0, 0, 1, "singularity-margin", "", "least sin(beta_1 + beta_2), eq 15"},
+      {"cos_theta_min", "1", 0, 0, 1, "singularity-margin", "", "least cos(theta), eq 15"},
+  };
+  i.design_margins = {
+      {"workspace-shape", "m",
+       "l_d - sqrt(l_u^2 + (b - a cos_theta_min)^2) / 2, eq 21 at the least cos(theta) allowed"},
+      {"rail-length", "m", "L0 - 2 l_u cos(alpha_min), eq 18"},
+  };
+  i.volume_unit = "m^2 rad";
+  i.integrated_unit = "m^3 rad";
+  i.size_unit = "m^2";
+  i.size_meaning = "pi b (l_u + l_d)";
+  i.characteristic_length = "a / 2";
+  return i;
+}
+
+class FourPpaTwoPar final : public Mechanism {
+ public:
+  const MechanismInfo& info() const override { return info_; }
+
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
+    return make_surveyor(plan, demand);
+  }
+  VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
+    return four_ppa_two_par::voxel_map(geometry(p), plan);
+  }
+  void design_margins(std::span<const double> p, const LimitSpec& spec, std::span<double> margins) const override {
+    const auto g = geometry(p);
+    const auto l = limits(g, spec);
+    const double w = g.b - g.a * l.cos_theta_min;
+    margins[0] = g.l_d - std::sqrt(g.l_u * g.l_u + w * w) / 2;
+    margins[1] = g.L0 - 2 * g.l_u * l.cos_alpha_min;
+  }
+  double size(std::span<const double> p) const override { return kPi * p[kB] * (p[kLu] + p[kLd]); }
+  NamedValues facts(std::span<const double> p, const LimitSpec& spec) const override {
+    const auto g = geometry(p);
+    return {{"shape_type_at_theta_0", section_type(g, 1)},
+            {"shape_type_at_greatest_theta", section_type(g, limits(g, spec).cos_theta_min)}};
+  }
+  std::string refuse(std::span<const double> p) const override {
+    for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+      const Parameter& parameter = info_.parameters[i];
+      if (!(p[i] >= parameter.lower && p[i] <= parameter.upper))
+        return parameter.name + " = " + shortest(p[i]) + " is outside the model's range " + shortest(parameter.lower) +
+               " to " + shortest(parameter.upper) + " " + parameter.unit;
+    }
+    return {};
+  }
+  PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
+                     const LimitSpec& spec) const override {
+    for (int i = 0; i < 4; ++i)
+      if (mode == kModes[i]) {
+        const auto g = geometry(p);
+        return four_ppa_two_par::inspect(
+            g, limits(g, spec), pose, {i & 2 ? Branch::upper : Branch::lower, i & 1 ? Branch::upper : Branch::lower});
+      }
+    throw std::invalid_argument("unknown working mode " + mode);
+  }
+  std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& q) const override {
+    return four_ppa_two_par::forward(geometry(p), q);
+  }
+
+ private:
+  MechanismInfo info_ = make_info();
+};
+
+}  // namespace
+
+std::shared_ptr<const Mechanism> make_four_ppa_two_par() { return std::make_shared<FourPpaTwoPar>(); }
+
+}  // namespace pkm

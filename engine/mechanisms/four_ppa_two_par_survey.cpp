@@ -1,0 +1,232 @@
+#include "engine/mechanisms/four_ppa_two_par_survey.hpp"
+
+#include <stdexcept>
+
+#include <Eigen/LU>
+
+#include "engine/mechanisms/four_ppa_two_par_columns.hpp"
+#include "engine/mechanisms/four_ppa_two_par_voxels.hpp"
+
+namespace pkm::four_ppa_two_par {
+namespace {
+
+double plane(const Geometry<double>& g, const HeldCoordinate& held) {
+  return held.kind == HeldCoordinate::Kind::value ? held.value : g.L0 / 2;
+}
+
+double gamma(const Geometry<double>& g, const Demand& demand) {
+  return demand.characteristic_length ? g.a / (2 * *demand.characteristic_length) : 1.0;  // default L_c = a/2
+}
+
+class ColumnSurveyor final : public Surveyor {
+ public:
+  ColumnSurveyor(const SurveyPlan& plan, const Demand& demand)
+      : plan_(plan),
+        demand_(demand),
+        inner_rule_(gauss_legendre(plan.nodes[0] > 0 ? plan.nodes[0] : kSampleNodes)),
+        theta_rule_(gauss_legendre(plan.nodes[1] > 0 ? plan.nodes[1] : kSampleNodes)) {}
+
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    thread_local ColumnScratch<double> scratch;
+    survey.clear();
+    const Geometry<double> g = geometry(parameters);
+    const Limits<double> l = limits(g, plan_.limits);
+    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
+    const Frame<double> f = frame(g, l, plane(g, plan_.held));
+    const Integral<double> volume = over_y               ? volume_over_y(g, l, plan_.tolerance, scratch)
+                                    : plan_.nodes[1] > 0 ? fixed_rule(f, scratch)
+                                                         : plane_volume(f, plan_.tolerance, scratch);
+    survey.volume = volume.value;
+    survey.error = volume.value > 0 ? volume.error / volume.value : 0;
+    survey.columns = volume.evaluations;
+    if (!demand_.conditioning) return;
+    if (!over_y) {
+      sample_conditioning(f, gamma(g, demand_), 1.0, theta_rule_, inner_rule_, scratch, survey);
+      return;
+    }
+    const Piece<double> half{l.h_min, g.L0 / 2, true, false};
+    if (!(half.upper > half.lower)) return;
+    for (std::size_t i = 0; i < inner_rule_.node.size(); ++i) {
+      const auto [y, jacobian] = map_node(half, inner_rule_.node[i]);
+      sample_conditioning(frame(g, l, y), gamma(g, demand_), 2 * jacobian * inner_rule_.weight[i], theta_rule_,
+                          inner_rule_, scratch, survey);
+    }
+  }
+
+ private:
+  static constexpr int kSampleNodes = 12;
+
+  /// The volume by the study's own number of theta nodes per piece; no error is estimated.
+  Integral<double> fixed_rule(const Frame<double>& f, ColumnScratch<double>& scratch) const {
+    find_pieces(f, scratch.breaks, scratch.pieces);
+    Integral<double> result;
+    for (const auto& piece : scratch.pieces)
+      for (std::size_t i = 0; i < theta_rule_.node.size(); ++i) {
+        const auto [theta, jacobian] = map_node(piece, theta_rule_.node[i]);
+        const auto [s, c] = sincos(theta);
+        result.value += 2 * theta_rule_.weight[i] * jacobian * area(f, section(f, s, c));
+        ++result.evaluations;
+      }
+    return result;
+  }
+
+  SurveyPlan plan_;
+  Demand demand_;
+  GaussRule inner_rule_, theta_rule_;
+};
+
+class VoxelSurveyor final : public Surveyor {
+ public:
+  VoxelSurveyor(const SurveyPlan& plan, const Demand& demand)
+      : plan_(plan), demand_(demand), counter_(plan.cells, plan.box ? (*plan.box)[2] : kTheta) {}
+
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    survey.clear();
+    const Geometry<double> g = geometry(parameters);
+    const Limits<double> l = limits(g, plan_.limits);
+    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
+    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
+    const std::int64_t planes = over_y ? plan_.held_cells : 1;
+    const double y_step = over_y ? g.L0 / static_cast<double>(planes) : 1;
+    survey.cells = grid.count() * planes;
+    survey.cell_volume = grid.cell_volume() * y_step;
+    for (std::int64_t p = 0; p < planes; ++p) {
+      const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, plan_.held);
+      bool touches = false;
+      survey.feasible_cells += counter_.count(g, l, y, grid, touches);
+      survey.touches_box = survey.touches_box || touches;
+      if (demand_.conditioning) sample(g, l, y, grid, survey);
+    }
+    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+  }
+
+  VoxelMap map(const Geometry<double>& g) const {
+    const Limits<double> l = limits(g, plan_.limits);
+    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
+    VoxelMap m = grid.map();
+    counter_.visit_columns(g, l, plane(g, plan_.held), grid,
+                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+                             for (std::int64_t j = first; j < end; ++j)
+                               m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
+                           });
+    return m;
+  }
+
+ private:
+  static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
+
+  void sample(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
+              Survey<double>& survey) const {
+    const double scale = gamma(g, demand_);
+    counter_.visit_columns(g, l, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+      const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
+      const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
+      const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
+                                           root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
+      for (std::int64_t j = first; j < end; ++j) {
+        const double z = grid.centre(1, j) + g.d;
+        survey.weight.push_back(survey.cell_volume);
+        survey.conditioning.push_back(conditioning(g, s, c, x_j, sigma, {z + sigma[0], z + sigma[1]}, scale));
+      }
+    });
+  }
+
+  SurveyPlan plan_;
+  Demand demand_;
+  VoxelCounter counter_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Demand& demand) {
+  if (plan.method == Method::columns) return std::make_unique<ColumnSurveyor>(plan, demand);
+  if (plan.held.kind == HeldCoordinate::Kind::integrated && plan.held_cells < 1)
+    throw std::invalid_argument("voxels integrated over y need a number of cells for y");
+  return std::make_unique<VoxelSurveyor>(plan, demand);
+}
+
+VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan) { return VoxelSurveyor(plan, {}).map(g); }
+
+PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
+  PoseReport report;
+  const Limbs<double> limb = inverse(g, pose, mode);
+  report.assembles = limb.assembles;
+  const double c = sincos(pose.angle).cos;
+  report.angles.emplace_back("section_type", section_type(g, c));
+  if (!limb.assembles) {
+    for (std::size_t j = 0; j < 2 && report.reason.empty(); ++j) {
+      const std::string name = j == 0 ? "limb 1" : "limb 2";
+      if (limb.x[j] < 0)
+        report.reason =
+            name + ": x_" + std::to_string(j + 1) + " < 0, the platform is beyond the rail's vertical plane";
+      else if (limb.reach_x[j] < 0)
+        report.reason = name + ": out of reach of the lower bars (x_" + std::to_string(j + 1) + " > l_d)";
+      else if (limb.z_c[j] > 0)
+        report.reason = name + ": C_" + std::to_string(j + 1) + " would lie above the rail";
+      else if (limb.reach_z[j] < 0)
+        report.reason = name + ": out of reach of the upper bars (z_c < -l_u)";
+    }
+    for (std::size_t j = 0; j < 2; ++j) {
+      report.margins.emplace_back("reach_x_" + std::to_string(j + 1), limb.reach_x[j]);
+      report.margins.emplace_back("reach_z_" + std::to_string(j + 1), limb.reach_z[j]);
+    }
+    return report;
+  }
+  report.joints = limb.q;
+  const Velocity<double> v = velocity(g, pose, limb, mode);
+  report.G = v.G;
+  report.det_G = v.G.determinant();
+  std::array<double, 2> alpha, beta, folded;
+  for (std::size_t j = 0; j < 2; ++j) {
+    alpha[j] = atan2(-limb.z_c[j], limb.h[j]);
+    folded[j] = atan2(limb.x[j], limb.sigma[j]);  // from the nearer vertical
+    beta[j] = mode[j] == Branch::lower ? folded[j] : kPi - folded[j];
+  }
+  if (v.finite) {
+    report.Jq = v.Jq;
+    report.det_Jq = v.k[0] * v.k[1] / 4;
+    if (*report.det_Jq != 0) {
+      const Eigen::Matrix4d J = v.Jq.inverse() * v.G;
+      report.J = J;
+      double columns[4][4];
+      for (int col = 0; col < 4; ++col)
+        for (int row = 0; row < 4; ++row) columns[col][row] = J(row, col) * (col == 3 ? 2 / g.a : 1);  // L_c = a/2
+      report.conditioning = inverse_condition(columns);
+    } else {
+      report.conditioning = 0;
+    }
+  } else {
+    report.conditioning = 0;
+  }
+  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha[j]);
+  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("beta_" + std::to_string(j + 1), beta[j]);
+  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
+
+  const auto least = [](const std::array<double, 2>& p) { return std::fmin(p[0], p[1]); };
+  double stroke = limb.q[0];
+  for (const double q : limb.q) stroke = std::fmin(stroke, std::fmin(q, g.L0 - q));
+  const double sin_1 = sincos(beta[0] + beta[1]).sin;
+  report.margins = {
+      {"reach_x_1", limb.reach_x[0]},
+      {"reach_x_2", limb.reach_x[1]},
+      {"reach_z_1", limb.reach_z[0]},
+      {"reach_z_2", limb.reach_z[1]},
+      {"stroke", stroke},
+      {"alpha_min", least(alpha) - asin(l.sin_alpha_min)},
+      {"beta_min", least(folded) - asin(l.sin_beta_min)},
+      {"beta_max", atan2(l.sin_beta_max, l.cos_beta_max) - std::fmax(folded[0], folded[1])},
+      {"h_min", least(limb.h) - l.h_min},
+      {"sin_par_min", std::fabs(sin_1) - l.sin_par_min},
+      {"cos_theta_min", c - l.cos_theta_min},
+  };
+  report.feasible = true;
+  const auto* worst = &report.margins.front();
+  for (const auto& margin : report.margins) {
+    report.feasible = report.feasible && margin.second >= 0;
+    if (margin.second < worst->second) worst = &margin;
+  }
+  if (!report.feasible) report.reason = "limit " + worst->first + " is broken";
+  return report;
+}
+
+}  // namespace pkm::four_ppa_two_par

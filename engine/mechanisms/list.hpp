@@ -1,0 +1,12 @@
+// The makers of the mechanisms of the catalogue: one line per mechanism here and one in all.cpp.
+#pragma once
+
+#include <memory>
+
+#include "engine/workspace/mechanism.hpp"
+
+namespace pkm {
+
+std::shared_ptr<const Mechanism> make_four_ppa_two_par();
+
+}  // namespace pkm

@@ -1,0 +1,45 @@
+// A pose of a Schoenflies platform, and what a mechanism can say of one pose.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace pkm {
+
+/// Platform pose in the world frame: position [m] and rotation [rad] about the mechanism's one axis of rotation. What
+/// the rotation is called (theta, phi, beta) is in MechanismInfo::coordinates.
+template <class S>
+struct Pose {
+  S x{}, y{}, z{}, angle{};
+};
+
+/// Named numbers in the order in which they are shown.
+using NamedValues = std::vector<std::pair<std::string, double>>;
+
+/// Everything about one pose of one design. What does not exist is absent (printed as null).
+struct PoseReport {
+  bool assembles = false;  ///< the inverse kinematics has a solution in the working mode asked for
+  bool feasible = false;   ///< assembles and every margin >= 0
+  std::string reason;      ///< why it does not assemble, or which margin is least; "" when feasible
+  std::optional<std::array<double, 4>> joints;  ///< [m], order of MechanismInfo::joints
+  std::optional<Eigen::Matrix4d> Jq, G, J;      ///< Jq qdot = G V, J = Jq^-1 G (absent when Jq is singular)
+  std::optional<double> det_Jq, det_G;
+  std::optional<double> conditioning;  ///< inverse condition number in [0, 1]
+  NamedValues angles;                  ///< mechanism's own angles [rad] and lengths [m]
+  NamedValues margins;                 ///< named pose-level margins, >= 0 holds
+};
+
+/// One solution of the forward kinematics.
+struct AssemblyMode {
+  Pose<double> pose;
+  std::string mode;   ///< how the mechanism calls this assembly
+  bool usual = true;  ///< listed by default; the others only on request
+};
+
+}  // namespace pkm

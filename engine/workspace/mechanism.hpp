@@ -1,0 +1,104 @@
+// A mechanism as the rest of the program sees it: one virtual call per design, never per pose.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/parameter.hpp"
+#include "engine/model/pose.hpp"
+#include "engine/workspace/plan.hpp"
+#include "engine/workspace/survey.hpp"
+
+namespace pkm {
+
+/// A threshold of a pose-level constraint.
+struct LimitInfo {
+  std::string name;  ///< "beta_max"
+  std::string unit;
+  double inactive = 0;  ///< value that cuts nothing; the default
+  double lower = 0;     ///< allowed range of a given threshold
+  double upper = 0;
+  std::string group;       ///< the constraint that owns it: "interference" or "singularity-margin"
+  std::string derivation;  ///< formula from the parameters, "" when there is none
+  std::string meaning;
+};
+
+/// A test of the design alone.
+struct DesignMarginInfo {
+  std::string name;  ///< the constraint's name: "rail-length"
+  std::string unit;
+  std::string meaning;
+};
+
+struct MechanismInfo {
+  std::string name;    ///< "4ppa-2par"
+  std::string title;   ///< one line
+  std::string source;  ///< the paper
+  std::vector<Parameter> parameters;
+  std::array<std::string, 4> coordinates;  ///< names of x, y, z, rotation
+  std::array<std::string, 4> joints;       ///< names of the four actuated joints
+  std::vector<std::string> modes;          ///< working modes; the first is the default
+  std::array<int, 3> swept{};              ///< coordinates a survey sweeps over, outermost of a voxel map first
+  int held = 1;                            ///< the remaining coordinate
+  bool held_can_integrate = false;         ///< HeldCoordinate::Kind::integrated is available
+  std::vector<LimitInfo> limits;
+  std::vector<DesignMarginInfo> design_margins;
+  std::string volume_unit;      ///< of the swept set: "m^2 rad"
+  std::string integrated_unit;  ///< when integrated over the held coordinate: "m^3 rad"
+  std::string size_unit;        ///< unit of size(); "" when the mechanism has no size
+  std::string size_meaning;
+  std::string characteristic_length;  ///< formula of the default characteristic length
+  int column = 2;  ///< the swept coordinate that columns run along; the other two, in the order of `swept`, have nodes
+};
+
+/// A survey whose plan is fixed: what does not depend on the design is computed here once. Immutable, shared by
+/// threads.
+class Surveyor {
+ public:
+  virtual ~Surveyor() = default;
+  /// @param parameters  all parameters of the design, order of MechanismInfo::parameters
+  /// @param survey      overwritten; reuse one per thread, so that nothing is allocated per design
+  virtual void survey(std::span<const double> parameters, Survey<double>& survey) const = 0;
+};
+
+class Mechanism {
+ public:
+  virtual ~Mechanism() = default;
+  virtual const MechanismInfo& info() const = 0;
+
+  /// Prepares surveys of one plan. Throws std::invalid_argument with a sentence when the mechanism cannot serve it.
+  virtual std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const = 0;
+  /// The cells of a voxel plan for one design (the plan's cells; box as in a survey).
+  virtual VoxelMap voxel_map(std::span<const double> parameters, const SurveyPlan& plan) const = 0;
+  /// Margins of the design-level tests, order of MechanismInfo::design_margins. Limits enter some of them.
+  virtual void design_margins(std::span<const double> parameters, const LimitSpec& limits,
+                              std::span<double> margins) const = 0;
+  /// The mechanism's size, to which workspace-ratio refers, in MechanismInfo::size_unit.
+  virtual double size(std::span<const double> parameters) const = 0;
+  /// Numbers worth knowing of a design, for `pkmopt evaluate`.
+  virtual NamedValues facts(std::span<const double> parameters, const LimitSpec& limits) const = 0;
+  /// "" or a sentence saying why the parameters describe no mechanism (a length <= 0, ...).
+  virtual std::string refuse(std::span<const double> parameters) const = 0;
+
+  /// @param mode  one of MechanismInfo::modes
+  virtual PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
+                             const LimitSpec& limits) const = 0;
+  /// Every assembly mode for joint values [m]; empty when the joints cannot be reached.
+  virtual std::vector<AssemblyMode> forward(std::span<const double> parameters,
+                                            const std::array<double, 4>& joints) const = 0;
+};
+
+/// Unit of the volume that a plan measures.
+inline std::string volume_unit(const MechanismInfo& info, const SurveyPlan& plan) {
+  return plan.held.kind == HeldCoordinate::Kind::integrated ? info.integrated_unit : info.volume_unit;
+}
+
+/// No limit given or derived.
+inline LimitSpec no_limits(const MechanismInfo& info) {
+  return {std::vector<std::optional<double>>(info.limits.size()), std::vector<bool>(info.limits.size(), false)};
+}
+
+}  // namespace pkm

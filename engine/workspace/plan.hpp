@@ -1,0 +1,44 @@
+// How a workspace is to be surveyed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace pkm {
+
+/// Thresholds of the pose-level constraints, in the order of MechanismInfo::limits. A limit that is neither given nor
+/// derived keeps its inactive value.
+struct LimitSpec {
+  std::vector<std::optional<double>> given;  ///< threshold set by the study
+  std::vector<bool> derived;                 ///< computed from the design's parameters by the mechanism's formula
+};
+
+enum class Method { voxels, columns };
+
+/// The one coordinate that is not swept over: held at a value, at the design's own middle, or integrated over.
+struct HeldCoordinate {
+  enum class Kind { middle, value, integrated };
+  Kind kind = Kind::middle;
+  double value = 0;
+};
+
+struct SurveyPlan {
+  Method method = Method::columns;
+  HeldCoordinate held;
+  LimitSpec limits;
+  std::array<std::int64_t, 3> cells{};  ///< voxels, in the order of MechanismInfo::swept
+  std::int64_t held_cells = 0;          ///< voxels integrated over the held coordinate: its number of cells
+  std::optional<std::array<std::array<double, 2>, 3>> box;  ///< voxels; none: derived from each design
+  double tolerance = 1e-8;                                  ///< columns: relative
+  std::array<int, 2> nodes{};  ///< columns: fixed nodes per piece and coordinate; 0: chosen from the tolerance
+};
+
+/// What objectives and constraints need beyond the volume. The union over all of them is computed in one pass.
+struct Demand {
+  bool conditioning = false;
+  std::optional<double> characteristic_length;  ///< [m]; none: the mechanism's own
+};
+
+}  // namespace pkm

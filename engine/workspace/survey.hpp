@@ -1,0 +1,45 @@
+// What a survey of a design's workspace found: voxels and exact columns fill the same structure.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pkm {
+
+/// Weighted samples of the feasible set. A mean is a weighted sum of a field over the sum of the weights.
+/// S is double or the derivative scalar.
+template <class S>
+struct Survey {
+  S volume{};  ///< measure of the feasible set, in MechanismInfo::volume_unit
+  // voxels
+  std::int64_t cells = 0;
+  std::int64_t feasible_cells = 0;
+  double cell_volume = 0;
+  bool touches_box = false;  ///< a feasible cell lies on the box's outer layer
+  // columns
+  std::int64_t columns = 0;  ///< nodes used
+  double error = 0;          ///< estimated relative error of the volume
+  // per feasible sample, only what was demanded (empty otherwise), all of one length
+  std::vector<S> weight;
+  std::vector<S> conditioning;  ///< inverse condition number in [0, 1]
+
+  void clear() {
+    volume = S{};
+    cells = feasible_cells = columns = 0;
+    cell_volume = error = 0;
+    touches_box = false;
+    weight.clear();
+    conditioning.clear();
+  }
+};
+
+/// Which cells of a voxel box are feasible, for pictures and the study file. Order of axes: MechanismInfo::swept, the
+/// last one fastest.
+struct VoxelMap {
+  std::vector<std::uint8_t> feasible;
+  std::int64_t cells[3] = {0, 0, 0};
+  double lower[3] = {0, 0, 0};
+  double upper[3] = {0, 0, 0};
+};
+
+}  // namespace pkm

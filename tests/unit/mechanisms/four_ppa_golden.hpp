@@ -1,0 +1,79 @@
+// The golden data of 4PPa-2PaR, read once, and designs and plans made from it.
+#pragma once
+
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/mechanisms/all.hpp"
+
+namespace pkm::testing {
+
+inline const Mechanism& four_ppa() { return *all_mechanisms().front(); }
+
+inline const nlohmann::json& golden() {
+  static const nlohmann::json data = nlohmann::json::parse(std::ifstream(PKM_TEST_DATA "/4ppa-2par.json"));
+  return data;
+}
+
+/// Uniform random numbers, the same on every platform.
+class Uniform {
+ public:
+  explicit Uniform(unsigned seed) : engine_(seed) {}
+  double operator()(double lower, double upper) {
+    return lower + (upper - lower) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+inline std::vector<double> nominal() {
+  std::vector<double> p;
+  for (const auto& parameter : four_ppa().info().parameters) p.push_back(parameter.nominal);
+  return p;
+}
+
+/// All parameters of a golden case.
+inline std::vector<double> design_of(const nlohmann::json& entry) {
+  std::vector<double> p = nominal();
+  const char* const keys[6] = {"a", "b", "lu", "ld", "d", "L0"};
+  for (std::size_t i = 0; i < 6; ++i) p[i] = entry["design"][keys[i]];
+  return p;
+}
+
+inline LimitSpec limits_of(const nlohmann::json& entry) {
+  LimitSpec spec = no_limits(four_ppa().info());
+  const auto& limits = four_ppa().info().limits;
+  for (std::size_t i = 0; i < limits.size(); ++i) spec.given[i] = entry["limits"][limits[i].name].get<double>();
+  return spec;
+}
+
+inline SurveyPlan columns(const LimitSpec& limits, HeldCoordinate held = {}, double tolerance = 1e-10) {
+  SurveyPlan plan;
+  plan.method = Method::columns;
+  plan.limits = limits;
+  plan.held = held;
+  plan.tolerance = tolerance;
+  return plan;
+}
+
+inline SurveyPlan voxels(const LimitSpec& limits, std::array<std::int64_t, 3> cells, HeldCoordinate held = {}) {
+  SurveyPlan plan;
+  plan.method = Method::voxels;
+  plan.limits = limits;
+  plan.held = held;
+  plan.cells = cells;
+  return plan;
+}
+
+inline Survey<double> survey(const std::vector<double>& p, const SurveyPlan& plan, const Demand& demand = {}) {
+  Survey<double> result;
+  four_ppa().prepare(plan, demand)->survey(p, result);
+  return result;
+}
+
+}  // namespace pkm::testing
