@@ -1,0 +1,14 @@
+#include "constraints/all.hpp"
+
+#include "constraints/list.hpp"
+
+namespace pkm {
+
+const std::vector<ConstraintEntry>& all_constraints() {
+  static const std::vector<ConstraintEntry> list = {
+      interference(), singularity_margin(), workspace_shape(), rail_length(), linear(),
+  };
+  return list;
+}
+
+}  // namespace pkm

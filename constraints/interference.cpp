@@ -1,0 +1,27 @@
+// The two bars of a parallelogram stay clear of each other (4PPa-2PaR: eq 17). The thresholds follow from the bars'
+// radii and spacing, so they move with the design when those vary.
+#include "constraints/list.hpp"
+#include "constraints/pose_level.hpp"
+
+namespace pkm {
+
+ConstraintEntry interference() {
+  return {
+      .name = "interference",
+      .meaning = "links of one limb stay clear of each other; thresholds from the links' sizes",
+      .pose_level = true,
+      .options = [](const MechanismInfo&) { return std::vector<OptionSpec>(); },
+      .unit = nullptr,
+      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_limits(mechanism, "interference"); },
+      .limits =
+          [](const MechanismInfo& mechanism, const Options&) {
+            LimitSpec spec = no_limits(mechanism);
+            for (std::size_t i = 0; i < mechanism.limits.size(); ++i)
+              spec.derived[i] = mechanism.limits[i].group == "interference" && !mechanism.limits[i].derivation.empty();
+            return spec;
+          },
+      .make = nullptr,
+  };
+}
+
+}  // namespace pkm

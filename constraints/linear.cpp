@@ -1,0 +1,68 @@
+// A linear relation between parameters: sum of coefficient * parameter <= bound. The margin is bound minus sum, in the
+// unit of the parameters.
+#include <stdexcept>
+
+#include "constraints/list.hpp"
+
+namespace pkm {
+namespace {
+
+std::unique_ptr<const Quantity> make(const EntryContext& context) {
+  const auto& parameters = context.mechanism.info().parameters;
+  std::vector<double> coefficients(parameters.size(), 0.0);
+  for (const auto& [name, coefficient] : context.options.numbers("coefficients")) {
+    std::size_t i = 0;
+    while (i < parameters.size() && parameters[i].name != name) ++i;
+    if (i == parameters.size()) {
+      std::vector<std::string> known;
+      for (const auto& parameter : parameters) known.push_back(parameter.name);
+      const std::string nearest = nearest_name(name, known);
+      throw std::invalid_argument("coefficient of '" + name + "', which is no parameter of mechanism " +
+                                  context.mechanism.info().name + "; expected one of " + join(known) +
+                                  (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    }
+    coefficients[i] = coefficient;
+  }
+  return make_quantity([coefficients, bound = context.options.number("bound")](const auto& design) {
+    auto margin = design.parameters[0] * 0.0 + bound;
+    for (std::size_t i = 0; i < coefficients.size(); ++i) margin = margin - design.parameters[i] * coefficients[i];
+    return margin;
+  });
+}
+
+/// The unit that all parameters with a coefficient share; "1" when they differ.
+std::string unit(const EntryContext& context) {
+  std::string shared;
+  for (const auto& parameter : context.mechanism.info().parameters) {
+    if (!context.options.numbers("coefficients").contains(parameter.name)) continue;
+    if (!shared.empty() && shared != parameter.unit) return "1";
+    shared = parameter.unit;
+  }
+  return shared.empty() ? "1" : shared;
+}
+
+}  // namespace
+
+ConstraintEntry linear() {
+  return {
+      .name = "linear",
+      .meaning = "sum of coefficient * parameter <= bound",
+      .pose_level = false,
+      .options =
+          [](const MechanismInfo&) {
+            return std::vector<OptionSpec>{
+                {.name = "coefficients",
+                 .kind = OptionKind::named_numbers,
+                 .required = true,
+                 .meaning = "one number per parameter that takes part, such as { a = 1, b = -1 }"},
+                {.name = "bound", .kind = OptionKind::number, .initial = 0.0, .meaning = "greatest value of the sum"},
+            };
+          },
+      .unit = unit,
+      .refusal = [](const MechanismInfo&) { return std::string(); },
+      .limits = nullptr,
+      .make = make,
+  };
+}
+
+}  // namespace pkm

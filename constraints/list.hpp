@@ -1,0 +1,14 @@
+// The entries of the catalogue of constraints: one line per entry here and one in all.cpp.
+#pragma once
+
+#include "engine/problem/quantity.hpp"
+
+namespace pkm {
+
+ConstraintEntry interference();
+ConstraintEntry singularity_margin();
+ConstraintEntry workspace_shape();
+ConstraintEntry rail_length();
+ConstraintEntry linear();
+
+}  // namespace pkm

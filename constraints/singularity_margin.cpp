@@ -1,0 +1,62 @@
+// Distance from serial and parallel singularities at every pose: one option per limit that the mechanism names.
+#include <stdexcept>
+
+#include "constraints/list.hpp"
+#include "constraints/pose_level.hpp"
+
+namespace pkm {
+namespace {
+
+std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
+  std::vector<OptionSpec> specs;
+  for (const auto& limit : mechanism.limits) {
+    if (limit.group != "singularity-margin") continue;
+    specs.push_back({.name = limit.name,
+                     .kind = OptionKind::number,
+                     .unit = limit.unit,
+                     .lower = limit.lower,
+                     .upper = limit.upper,
+                     .meaning = limit.meaning});
+    if (!limit.derivation.empty())
+      specs.push_back({.name = limit.name + "_derived",
+                       .kind = OptionKind::flag,
+                       .initial = false,
+                       .meaning = limit.name + " = " + limit.derivation + ", from the design's parameters"});
+  }
+  return specs;
+}
+
+LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
+  LimitSpec spec = no_limits(mechanism);
+  std::vector<std::string> names;
+  bool any = false;
+  for (std::size_t i = 0; i < mechanism.limits.size(); ++i) {
+    const LimitInfo& limit = mechanism.limits[i];
+    if (limit.group != "singularity-margin") continue;
+    names.push_back(limit.name);
+    if (options.has(limit.name)) spec.given[i] = options.number(limit.name);
+    spec.derived[i] = !limit.derivation.empty() && options.flag(limit.name + "_derived");
+    if (spec.given[i] && spec.derived[i])
+      throw std::invalid_argument("both " + limit.name + " and " + limit.name + "_derived; expected one of them");
+    any = any || spec.given[i] || spec.derived[i];
+  }
+  if (!any) throw std::invalid_argument("no threshold; expected at least one of " + join(names));
+  return spec;
+}
+
+}  // namespace
+
+ConstraintEntry singularity_margin() {
+  return {
+      .name = "singularity-margin",
+      .meaning = "every pose keeps its distance from singularities",
+      .pose_level = true,
+      .options = options,
+      .unit = nullptr,
+      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_limits(mechanism, "singularity-margin"); },
+      .limits = limits,
+      .make = nullptr,
+  };
+}
+
+}  // namespace pkm

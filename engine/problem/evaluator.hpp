@@ -1,0 +1,34 @@
+// Batch evaluation: an optimiser hands over a list of designs and gets a list of evaluations.
+#pragma once
+
+#include "engine/problem/problem.hpp"
+
+namespace pkm {
+
+class Evaluator {
+ public:
+  virtual ~Evaluator() = default;
+
+  /// Evaluates rows [first, table.size()) of `table`, whose designs are set. The result does not depend on how the rows
+  /// are shared out. An exception in one design marks that row failed and leaves the others intact.
+  virtual void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) = 0;
+};
+
+/// One design after the other, on the calling thread.
+class SerialEvaluator final : public Evaluator {
+ public:
+  void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
+};
+
+/// On `threads` OpenMP threads (0: as many as the machine has cores).
+class ParallelEvaluator final : public Evaluator {
+ public:
+  explicit ParallelEvaluator(int threads = 0);
+  void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
+  int threads() const { return threads_; }
+
+ private:
+  int threads_;
+};
+
+}  // namespace pkm

@@ -1,0 +1,77 @@
+// Everything an optimiser may ask about a problem.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/parameter.hpp"
+#include "engine/problem/evaluation.hpp"
+
+namespace pkm {
+
+enum class Direction { minimise, maximise };
+
+struct ObjectiveInfo {
+  std::string name;
+  std::string unit;
+  std::string meaning;
+  Direction direction = Direction::minimise;
+};
+
+/// A number that must be >= 0.
+struct MarginInfo {
+  std::string name;
+  std::string unit;
+  std::string meaning;
+};
+
+/// A number that is computed and stored, but not optimised.
+struct ReportInfo {
+  std::string name;
+  std::string unit;
+  std::string meaning;
+};
+
+/// A design problem. Immutable after construction, so threads share one.
+class Problem {
+ public:
+  virtual ~Problem() = default;
+
+  virtual const DesignSpace& space() const = 0;
+  virtual const std::vector<ObjectiveInfo>& objectives() const = 0;
+  virtual const std::vector<MarginInfo>& margins() const = 0;
+  virtual const std::vector<ReportInfo>& reports() const = 0;
+
+  /// Evaluates one design (dimension() values in the space's units). Thread-safe. Neither an exception nor a NaN
+  /// leaves it unmarked: whatever cannot be used has status `failed`.
+  virtual void evaluate(std::span<const double> design, EvaluationSlot result) const = 0;
+
+  EvaluationShape shape() const {
+    return {space().dimension(), objectives().size(), margins().size(), reports().size()};
+  }
+};
+
+/// Sum of max(0, -margin); a margin that was not computed (NaN) counts nothing, because the status says so already.
+inline double violation(std::span<const double> margins) {
+  double sum = 0;
+  for (const double margin : margins)
+    if (margin < 0) sum -= margin;
+  return sum;
+}
+
+/// Feasibility rules for one objective (Deb 2000): status first, then the objective among feasible designs, the
+/// violation among the others. A failed evaluation is worse than everything. Strict weak order; equal rows keep their
+/// order of evaluation where a sort is stable.
+inline bool better(const EvaluationTable& table, Direction direction, std::size_t a, std::size_t b) {
+  const Status sa = table.status[a], sb = table.status[b];
+  if (sa != sb) return sa < sb;
+  if (sa == Status::failed) return false;
+  if (sa == Status::feasible) {
+    const double fa = table.objective_row(a)[0], fb = table.objective_row(b)[0];
+    return direction == Direction::maximise ? fa > fb : fa < fb;
+  }
+  return violation(table.margin_row(a)) < violation(table.margin_row(b));
+}
+
+}  // namespace pkm

@@ -1,0 +1,16 @@
+#include "objectives/all.hpp"
+
+#include "objectives/list.hpp"
+
+namespace pkm {
+
+const std::vector<ObjectiveEntry>& all_objectives() {
+  static const std::vector<ObjectiveEntry> list = {
+      workspace_volume(),
+      workspace_ratio(),
+      conditioning(),
+  };
+  return list;
+}
+
+}  // namespace pkm

@@ -1,0 +1,12 @@
+// The entries of the catalogue of objectives: one line per entry here and one in all.cpp.
+#pragma once
+
+#include "engine/problem/quantity.hpp"
+
+namespace pkm {
+
+ObjectiveEntry workspace_volume();
+ObjectiveEntry workspace_ratio();
+ObjectiveEntry conditioning();
+
+}  // namespace pkm

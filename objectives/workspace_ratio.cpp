@@ -1,0 +1,39 @@
+// Workspace volume over the mechanism's own size (4PPa-2PaR: V_mech = pi b (l_u + l_d), table 8 of its paper).
+#include "objectives/list.hpp"
+
+namespace pkm {
+namespace {
+
+/// "m^2 rad" over "m^2" is "rad"; other pairs are written out.
+std::string quotient(const std::string& volume, const std::string& size) {
+  return volume.starts_with(size + " ") ? volume.substr(size.size() + 1) : volume + "/" + size;
+}
+
+}  // namespace
+
+ObjectiveEntry workspace_ratio() {
+  return {
+      .name = "workspace-ratio",
+      .meaning = "workspace volume divided by the mechanism's size",
+      .direction = Direction::maximise,
+      .options = {},
+      .unit =
+          [](const EntryContext& context) {
+            return quotient(volume_unit(context.mechanism.info(), context.plan), context.mechanism.info().size_unit);
+          },
+      .refusal =
+          [](const MechanismInfo& mechanism) {
+            return mechanism.size_unit.empty()
+                       ? "objective workspace-ratio needs a size, and mechanism " + mechanism.name + " defines none"
+                       : std::string();
+          },
+      .demand = [](const EntryContext&, Demand&) {},
+      .make =
+          [](const EntryContext&) {
+            return make_quantity(
+                [](const auto& design) { return design.survey->volume / design.mechanism.size(design.parameters); });
+          },
+  };
+}
+
+}  // namespace pkm

@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/unit/optimisers/known_problems.hpp"
+#include "tests/unit/optimisers/stage.hpp"
+
+namespace pkm::test {
+namespace {
+
+EvaluationTable numbered(const Problem& problem, std::size_t rows) {
+  EvaluationTable table(problem.shape());
+  table.extend(rows);
+  for (std::size_t i = 0; i < table.designs.size(); ++i) table.designs[i] = 1e-3 * static_cast<double>(i % 997);
+  return table;
+}
+
+TEST(Evaluator, ParallelEqualsSerialWhateverTheThreads) {
+  const auto problem = welded_beam();
+  for (const std::size_t rows : {0, 1, 2, 19, 1000}) {
+    EvaluationTable expected = numbered(problem, rows);
+    SerialEvaluator().evaluate(problem, expected, 0);
+    for (const int threads : {0, 1, 2, 7}) {
+      EvaluationTable table = numbered(problem, rows);
+      ParallelEvaluator(threads).evaluate(problem, table, 0);
+      EXPECT_TRUE(same_bits(table, expected)) << rows << " rows, " << threads << " threads";
+    }
+  }
+}
+
+TEST(Evaluator, LeavesEarlierRowsAlone) {
+  const auto problem = sphere(2);
+  for (const int threads : {1, 2}) {
+    EvaluationTable table = numbered(problem, 50);
+    ParallelEvaluator(threads).evaluate(problem, table, 20);
+    for (std::size_t row = 0; row < 50; ++row) {
+      EXPECT_EQ(table.status[row], row < 20 ? Status::failed : Status::feasible);
+      EXPECT_EQ(std::isnan(table.objectives[row]), row < 20);
+    }
+  }
+}
+
+TEST(Evaluator, AnExceptionFailsItsOwnRowOnly) {
+  const FunctionProblem problem(box(1, 0, 1), 1, [](auto x, auto g) {
+    g[0] = 1;
+    if (x[0] > 0.0125 && x[0] < 0.0135) throw std::runtime_error("no");
+    return x[0];
+  });
+  for (const int threads : {1, 2, 7}) {
+    EvaluationTable table = numbered(problem, 100);
+    ParallelEvaluator(threads).evaluate(problem, table, 0);
+    for (std::size_t row = 0; row < 100; ++row) {
+      EXPECT_EQ(table.status[row], row == 13 ? Status::failed : Status::feasible) << row;
+      if (row == 13) {
+        EXPECT_TRUE(std::isnan(table.objectives[row]) && std::isnan(table.margins[row]));
+      } else {
+        EXPECT_EQ(table.objectives[row], table.designs[row]);
+      }
+    }
+  }
+}
+
+TEST(Evaluator, AStatusThatItsNumbersContradictIsFailed) {
+  const auto status_of = [](double objective, double margin) {
+    const FunctionProblem problem(box(1, 0, 1), 1, [=](auto, auto g) {
+      g[0] = margin;
+      return objective;
+    });
+    EvaluationTable table = numbered(problem, 1);
+    SerialEvaluator().evaluate(problem, table, 0);
+    return table.status[0];
+  };
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(status_of(1, 0), Status::feasible);
+  EXPECT_EQ(status_of(1, -1), Status::infeasible);
+  EXPECT_EQ(status_of(nan, 1), Status::failed);
+  EXPECT_EQ(status_of(infinity, 1), Status::failed);
+  EXPECT_EQ(status_of(1, nan), Status::failed);  // a margin that is not a number does not hold
+}
+
+TEST(Evaluator, RecordsTheTimeOfEachDesign) {
+  const FunctionProblem problem(box(1, 0, 1), 0, [](auto x, auto) {
+    double sum = 0;
+    for (int i = 0; i < (x[0] == 0 ? 2000000 : 1); ++i) sum += std::sqrt(static_cast<double>(i));
+    return sum;
+  });
+  EvaluationTable table = numbered(problem, 3);
+  SerialEvaluator().evaluate(problem, table, 0);
+  EXPECT_GT(table.seconds[0], 0.0005f);
+  EXPECT_LT(table.seconds[1], table.seconds[0]);
+}
+
+TEST(Replay, ServesTheRecordAndComputesTheRest) {
+  const auto problem = welded_beam();
+  EvaluationTable whole = numbered(problem, 30), record = numbered(problem, 20);
+  SerialEvaluator serial;
+  serial.evaluate(problem, whole, 0);
+  serial.evaluate(problem, record, 0);
+  record.seconds.assign(20, 42);
+  record.objectives[3] = -7;  // shows that the record is used
+  ReplayEvaluator replay(serial, record);
+  EvaluationTable table = numbered(problem, 12);
+  replay.evaluate(problem, table, 0);
+  table.extend(18);
+  table.designs = whole.designs;
+  replay.evaluate(problem, table, 12);
+  EXPECT_EQ(table.objectives[3], -7);
+  table.objectives[3] = whole.objectives[3];
+  EXPECT_TRUE(same_bits(table, whole));
+  EXPECT_EQ(table.seconds[19], 42);
+  EXPECT_NE(table.seconds[20], 42);
+}
+
+TEST(Replay, NamesTheEvaluationThatDiffers) {
+  const auto problem = sphere(2);
+  EvaluationTable record = numbered(problem, 5);
+  SerialEvaluator serial;
+  serial.evaluate(problem, record, 0);
+  EvaluationTable table = numbered(problem, 8);
+  table.designs[9] = std::nextafter(table.designs[9], 1);
+  try {
+    ReplayEvaluator(serial, record).evaluate(problem, table, 0);
+    FAIL() << "accepted";
+  } catch (const ReplayMismatch& error) {
+    EXPECT_STREQ(error.what(),
+                 "Recorded evaluation 4 is of another design than the optimiser asks for: the record cannot be "
+                 "continued.");
+  }
+}
+
+TEST(Replay, RefusesARecordOfAnotherShape) {
+  const auto problem = sphere(2);
+  EvaluationTable record = numbered(sphere(3), 5);
+  SerialEvaluator serial;
+  EvaluationTable table = numbered(problem, 5);
+  EXPECT_THROW(ReplayEvaluator(serial, record).evaluate(problem, table, 0), ReplayMismatch);
+}
+
+}  // namespace
+}  // namespace pkm::test
