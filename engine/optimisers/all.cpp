@@ -1,0 +1,32 @@
+#include "engine/optimisers/genetic_algorithm.hpp"
+#include "engine/optimisers/optimiser.hpp"
+#include "engine/optimisers/sweep.hpp"
+
+namespace pkm {
+
+const std::vector<OptimiserEntry>& all_optimisers() {
+  static const std::vector<OptimiserEntry> entries = {genetic_algorithm(), sweep()};
+  return entries;
+}
+
+std::string_view words(StopReason reason) {
+  switch (reason) {
+    case StopReason::generations:
+      return "generation limit";
+    case StopReason::evaluations:
+      return "evaluation limit";
+    case StopReason::target:
+      return "target reached";
+    case StopReason::stall:
+      return "no further improvement";
+    case StopReason::tolerance:
+      return "converged";
+    case StopReason::exhausted:
+      return "every design evaluated";
+    case StopReason::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+}  // namespace pkm

@@ -1,0 +1,32 @@
+// Which designs a table already holds, so that none is evaluated twice: a hash set over the designs' bits.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/problem/evaluation.hpp"
+
+namespace pkm {
+
+class KnownDesigns {
+ public:
+  /// The row whose design equals `design` bit for bit, or -1. `table` is the one given to `insert`.
+  std::int64_t find(const EvaluationTable& table, std::span<const double> design) const;
+  /// Remembers a row that `find` does not know yet.
+  void insert(const EvaluationTable& table, std::size_t row);
+
+ private:
+  static constexpr std::uint32_t kEmpty = 0xffffffff;
+  struct Slot {
+    std::uint32_t hash = 0;
+    std::uint32_t row = kEmpty;
+  };
+  void grow();
+  void place(Slot slot);
+
+  std::vector<Slot> slots_;  // open addressing, a power of two, at most half full
+  std::size_t count_ = 0;
+};
+
+}  // namespace pkm

@@ -1,0 +1,84 @@
+// What every optimiser of a study's chain is given, promises and returns.
+//
+// An optimiser is a deterministic function of (problem, seed, starts): all it learns comes through the evaluator. That
+// is what makes resuming simple: a resumed run starts the optimiser anew and serves the recorded evaluations first, so
+// there is no state of its own to store, and every optimiser resumes bit for bit.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/options.hpp"
+#include "engine/problem/evaluator.hpp"
+
+namespace pkm {
+
+/// What an optimiser can handle, as data: a study that asks for more is refused before it starts.
+struct Capabilities {
+  std::size_t max_objectives = 1;
+  bool constraints = true;
+  bool discrete = true;         ///< variables with a step
+  bool needs_gradient = false;  ///< refuses surveys without derivative (voxels)
+  bool needs_objective = true;  ///< false: a plain sweep
+};
+
+/// What an optimiser tells after each batch of evaluations ("generation").
+struct Generation {
+  std::int64_t number = 0;                      ///< 0 is the start population
+  std::size_t first_row = 0;                    ///< rows [first_row, table.size()) are new
+  const EvaluationTable* table = nullptr;       ///< all evaluations of this stage so far
+  const std::vector<std::int64_t>* population;  ///< rows that form the population now
+  std::int64_t best_row = -1;                   ///< best by `better`; -1 while nothing is evaluated
+};
+
+/// Time limits, signals, checkpoints and the screen live behind this.
+class Monitor {
+ public:
+  virtual ~Monitor() = default;
+  /// After each generation. False: stop now (the stage then ends with StopReason::interrupted).
+  virtual bool generation(const Generation& generation) = 0;
+};
+
+enum class StopReason { generations, evaluations, target, stall, tolerance, exhausted, interrupted };
+
+/// "generation limit", ...: the words of the screen and the study file.
+std::string_view words(StopReason reason);
+
+struct StageResult {
+  StopReason reason = StopReason::generations;
+  std::int64_t best_row = -1;  ///< row of the stage's table
+};
+
+struct StageInput {
+  const Problem& problem;
+  Evaluator& evaluator;
+  Monitor& monitor;
+  std::uint64_t seed = 1;
+  std::vector<std::vector<double>> starts;  ///< designs to begin from; may be empty
+};
+
+class Optimiser {
+ public:
+  virtual ~Optimiser() = default;
+  /// Runs the stage; `table` is empty and receives every evaluation in order.
+  virtual StageResult minimise(const StageInput& input, EvaluationTable& table) const = 0;
+  /// Evaluations the stage will make at most (for the estimate before a run).
+  virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
+};
+
+/// An entry of the catalogue of optimisers.
+struct OptimiserEntry {
+  std::string name;
+  std::string meaning;  ///< one line
+  Capabilities capabilities;
+  std::vector<OptionSpec> options;
+  std::unique_ptr<Optimiser> (*make)(const Options&, const DesignSpace&);
+};
+
+/// Every optimiser there is, in the order in which `pkmopt list` shows them.
+const std::vector<OptimiserEntry>& all_optimisers();
+
+}  // namespace pkm

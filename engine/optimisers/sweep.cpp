@@ -1,0 +1,160 @@
+#include "engine/optimisers/sweep.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "engine/optimisers/option_specs.hpp"
+#include "engine/optimisers/order.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kBatch = 1000;
+constexpr double kMostDesigns = 1e8;
+
+using Levels = std::vector<std::vector<double>>;  // values of each variable, rising
+
+// Even steps over each range; a variable with a step has no more values than its lattice.
+Levels levels_of(const DesignSpace& space, std::size_t points) {
+  Levels levels(space.dimension());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    for (std::size_t k = 0; k < points; ++k)
+      levels[i].push_back(space.from_unit(i, static_cast<double>(k) / static_cast<double>(points - 1)));
+    levels[i].erase(std::unique(levels[i].begin(), levels[i].end()), levels[i].end());
+  }
+  return levels;
+}
+
+double combinations(const Levels& levels) {
+  double product = 1;
+  for (const auto& values : levels) product *= static_cast<double>(values.size());
+  return product;
+}
+
+// Evaluates what was appended to the table, batch by batch, and remembers the best.
+class Batches {
+ public:
+  Batches(const StageInput& input, EvaluationTable& table) : input_(input), table_(table) {}
+
+  /// Evaluates and reports the rows added since the last call. False: the monitor wants to stop.
+  bool finish_generation() {
+    input_.evaluator.evaluate(input_.problem, table_, first_);
+    for (std::size_t row = first_; row < table_.size(); ++row) {
+      const Ranked candidate = ranked(input_.problem, table_, row);
+      if (best_.row < 0 || candidate < best_) best_ = candidate;
+    }
+    rows_.resize(table_.size() - first_);
+    std::iota(rows_.begin(), rows_.end(), static_cast<std::int64_t>(first_));
+    const std::size_t first = std::exchange(first_, table_.size());
+    return input_.monitor.generation({generation_++, first, &table_, &rows_, best_.row});
+  }
+
+  std::size_t pending() const { return table_.size() - first_; }
+  StageResult result(StopReason reason) const { return {reason, best_.row}; }
+
+ private:
+  const StageInput& input_;
+  EvaluationTable& table_;
+  std::size_t first_ = 0;
+  std::int64_t generation_ = 0;
+  std::vector<std::int64_t> rows_;
+  Ranked best_;
+};
+
+class Sweep final : public Optimiser {
+ public:
+  Sweep(Levels levels, bool factorial) : levels_(std::move(levels)), factorial_(factorial) {}
+
+  StageResult minimise(const StageInput& input, EvaluationTable& table) const override {
+    Batches batches(input, table);
+    const bool finished = factorial_ ? all_combinations(batches, table) : one_at_a_time(input, batches, table);
+    return batches.result(finished ? StopReason::exhausted : StopReason::interrupted);
+  }
+
+  std::int64_t evaluation_limit(const Problem&) const override {
+    if (factorial_) return static_cast<std::int64_t>(combinations(levels_));
+    std::int64_t sum = 1;
+    for (const auto& values : levels_) sum += static_cast<std::int64_t>(values.size());
+    return sum;
+  }
+
+ private:
+  // Both return false when the monitor stopped them before the last generation was done.
+  bool one_at_a_time(const StageInput& input, Batches& batches, EvaluationTable& table) const {
+    const DesignSpace& space = input.problem.space();
+    std::vector<double> centre(space.dimension());
+    for (std::size_t i = 0; i < centre.size(); ++i)
+      centre[i] = input.starts.empty() ? space.from_unit(i, 0.5) : space.nearest(i, input.starts.front()[i]);
+    append(table, centre);
+    bool goes_on = batches.finish_generation();
+    for (std::size_t i = 0; i < centre.size(); ++i) {
+      if (!goes_on) return false;
+      std::vector<double> design = centre;
+      for (const double value : levels_[i]) {
+        design[i] = value;
+        append(table, design);
+      }
+      goes_on = batches.finish_generation();
+    }
+    return true;
+  }
+
+  bool all_combinations(Batches& batches, EvaluationTable& table) const {
+    std::vector<std::size_t> digit(levels_.size(), 0);
+    std::vector<double> design(levels_.size());
+    for (bool more = true; more;) {
+      for (std::size_t i = 0; i < design.size(); ++i) design[i] = levels_[i][digit[i]];
+      append(table, design);
+      more = next(digit);
+      if (more && batches.pending() < kBatch) continue;
+      if (!batches.finish_generation()) return !more;
+    }
+    return true;
+  }
+
+  // Counts up, the last digit fastest; false after the last combination.
+  bool next(std::vector<std::size_t>& digit) const {
+    for (std::size_t i = digit.size(); i-- > 0;) {
+      if (++digit[i] < levels_[i].size()) return true;
+      digit[i] = 0;
+    }
+    return false;
+  }
+
+  static void append(EvaluationTable& table, const std::vector<double>& design) {
+    const std::size_t row = table.extend(1);
+    std::copy(design.begin(), design.end(), table.design(row).begin());
+  }
+
+  Levels levels_;
+  bool factorial_;
+};
+
+std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space) {
+  Levels levels = levels_of(space, static_cast<std::size_t>(options.integer("points")));
+  const bool factorial = options.word("design") == "full-factorial";
+  if (factorial && combinations(levels) > kMostDesigns)
+    throw std::invalid_argument("points = " + std::to_string(options.integer("points")) + " for " +
+                                std::to_string(space.dimension()) + " variables makes " +
+                                shortest(combinations(levels)) + " designs; a full-factorial sweep may have 1e+08.");
+  return std::make_unique<Sweep>(std::move(levels), factorial);
+}
+
+}  // namespace
+
+OptimiserEntry sweep() {
+  Capabilities capabilities;
+  capabilities.max_objectives = std::numeric_limits<std::size_t>::max();
+  capabilities.needs_objective = false;
+  return {"sweep",
+          "designs on a grid, one variable at a time or every combination",
+          capabilities,
+          {word_option("design", {"one-at-a-time", "full-factorial"}, "which designs"),
+           integer_option("points", std::int64_t{41}, 2, 1e6, "values of each variable, both bounds included")},
+          make};
+}
+
+}  // namespace pkm

@@ -1,0 +1,109 @@
+// Small problems with known optima, for the tests of optimisers and evaluators.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/problem/problem.hpp"
+
+namespace pkm::test {
+
+/// A problem made of one function: it fills the margins and returns the objective.
+class FunctionProblem final : public Problem {
+ public:
+  using Function = std::function<double(std::span<const double> design, std::span<double> margins)>;
+
+  FunctionProblem(std::vector<Variable> variables, std::size_t margins, Function function,
+                  Direction direction = Direction::minimise)
+      : space_(std::move(variables)), function_(std::move(function)) {
+    objectives_.push_back({"f", "1", "", direction});
+    for (std::size_t i = 0; i < margins; ++i) margins_.push_back({"g" + std::to_string(i), "1", ""});
+  }
+
+  const DesignSpace& space() const override { return space_; }
+  const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
+  const std::vector<MarginInfo>& margins() const override { return margins_; }
+  const std::vector<ReportInfo>& reports() const override { return reports_; }
+
+  void evaluate(std::span<const double> design, EvaluationSlot result) const override {
+    result.objectives[0] = function_(design, result.margins);
+    result.status = Status::feasible;
+    for (const double margin : result.margins)
+      if (margin < 0) result.status = Status::infeasible;
+  }
+
+ private:
+  DesignSpace space_;
+  Function function_;
+  std::vector<ObjectiveInfo> objectives_;
+  std::vector<MarginInfo> margins_;
+  std::vector<ReportInfo> reports_;
+};
+
+inline std::vector<Variable> box(std::size_t dimension, double lower, double upper, double step = 0) {
+  std::vector<Variable> variables;
+  for (std::size_t i = 0; i < dimension; ++i) variables.push_back({"x" + std::to_string(i), "1", lower, upper, step});
+  return variables;
+}
+
+/// Minimum 0 at x_i = 0.3.
+inline FunctionProblem sphere(std::size_t dimension, double step = 0) {
+  return {box(dimension, -5, 7, step), 0, [](auto x, auto) {
+            double sum = 0;
+            for (const double v : x) sum += (v - 0.3) * (v - 0.3);
+            return sum;
+          }};
+}
+
+/// Maximum 1 in the corner (0, 1, 1, 1), with curvature and products: the shape of a bound-limited design problem.
+inline FunctionProblem corner() {
+  return {box(4, 0, 1), 0,
+          [](auto x, auto) {
+            return (1 - 0.8 * x[0]) * (0.4 + 0.6 * x[1]) * (0.5 + 0.7 * x[2] - 0.2 * x[2] * x[2]) *
+                   (0.6 + 0.4 * std::sqrt(x[3]));
+          },
+          Direction::maximise};
+}
+
+/// Welded beam (Deb 2000): four variables, optimum 1.724852 where four constraints are active.
+inline FunctionProblem welded_beam() {
+  return {{{"h", "1", 0.1, 2, 0}, {"l", "1", 0.1, 10, 0}, {"t", "1", 0.1, 10, 0}, {"b", "1", 0.1, 2, 0}},
+          5,
+          [](auto x, auto g) {
+            const double h = x[0], l = x[1], t = x[2], b = x[3], load = 6000, arm = 14, young = 30e6, shear = 12e6;
+            const double moment = load * (arm + l / 2), r2 = l * l / 4 + (h + t) * (h + t) / 4, r = std::sqrt(r2);
+            const double polar = 2 * std::sqrt(2.0) * h * l * (l * l / 12 + (h + t) * (h + t) / 4);
+            const double t1 = load / (std::sqrt(2.0) * h * l), t2 = moment * r / polar;
+            const double tau = std::sqrt(t1 * t1 + t1 * t2 * l / r + t2 * t2);
+            const double buckling = 4.013 * young * std::sqrt(t * t * std::pow(b, 6) / 36) / (arm * arm) *
+                                    (1 - t / (2 * arm) * std::sqrt(young / (4 * shear)));
+            g[0] = 1 - tau / 13600;
+            g[1] = 1 - 6 * load * arm / (b * t * t) / 30000;
+            g[2] = b - h;
+            g[3] = 0.25 - 4 * load * arm * arm * arm / (young * t * t * t * b);
+            g[4] = buckling / load - 1;
+            return 1.10471 * h * h * l + 0.04811 * t * b * (14 + l);
+          }};
+}
+
+/// Nothing is feasible; the violation is least, 0.5, at x = (1, 1).
+inline FunctionProblem infeasible_everywhere() {
+  return {box(2, 0, 4), 1, [](auto x, auto g) {
+            g[0] = -0.5 - (x[0] - 1) * (x[0] - 1) - (x[1] - 1) * (x[1] - 1);
+            return x[0];
+          }};
+}
+
+/// NaN on half of the box, where the objective would be best; minimum 1 at (0, 0.5) on the other half.
+inline FunctionProblem partly_undefined() {
+  return {box(2, -1, 1), 0, [](auto x, auto) {
+            if (x[0] < 0) return std::numeric_limits<double>::quiet_NaN();
+            return 1 + x[0] + (x[1] - 0.5) * (x[1] - 0.5);
+          }};
+}
+
+}  // namespace pkm::test

@@ -1,0 +1,83 @@
+// Runs one optimiser on one problem and keeps what it reported.
+#pragma once
+
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/optimisers/optimiser.hpp"
+#include "engine/problem/replay.hpp"
+
+namespace pkm::test {
+
+/// Records every generation; stops the stage after generation `last`.
+class Recorder final : public Monitor {
+ public:
+  explicit Recorder(std::int64_t last = std::numeric_limits<std::int64_t>::max()) : last_(last) {}
+
+  bool generation(const Generation& generation) override {
+    numbers.push_back(generation.number);
+    first_rows.push_back(generation.first_row);
+    sizes.push_back(generation.table->size());
+    populations.push_back(*generation.population);
+    best_rows.push_back(generation.best_row);
+    return generation.number < last_;
+  }
+
+  std::vector<std::int64_t> numbers, best_rows;
+  std::vector<std::size_t> first_rows, sizes;
+  std::vector<std::vector<std::int64_t>> populations;
+
+ private:
+  std::int64_t last_;
+};
+
+struct Outcome {
+  EvaluationTable table;
+  Recorder recorder;
+  StageResult result;
+};
+
+inline const OptimiserEntry& entry(const std::string& name) {
+  for (const OptimiserEntry& candidate : all_optimisers())
+    if (candidate.name == name) return candidate;
+  throw std::invalid_argument("no optimiser " + name);
+}
+
+/// Defaults and `changes`.
+inline std::unique_ptr<Optimiser> make(const OptimiserEntry& e, const Problem& problem,
+                                       const std::vector<std::pair<std::string, OptionValue>>& changes = {}) {
+  Options options = default_options(e.options);
+  for (const auto& [name, value] : changes) options.set(name, value);
+  return e.make(options, problem.space());
+}
+
+inline Outcome run(const Optimiser& optimiser, const Problem& problem, std::uint64_t seed = 1,
+                   std::int64_t last = std::numeric_limits<std::int64_t>::max(), Evaluator* evaluator = nullptr,
+                   std::vector<std::vector<double>> starts = {}) {
+  SerialEvaluator serial;
+  Outcome outcome{EvaluationTable(problem.shape()), Recorder(last), {}};
+  const StageInput input{problem, evaluator ? *evaluator : serial, outcome.recorder, seed, std::move(starts)};
+  outcome.result = optimiser.minimise(input, outcome.table);
+  return outcome;
+}
+
+/// Equal designs, results and order, bit for bit (not the times).
+inline bool same_bits(const EvaluationTable& a, const EvaluationTable& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+  };
+  return a.shape() == b.shape() && same(a.designs, b.designs) && same(a.objectives, b.objectives) &&
+         same(a.margins, b.margins) && same(a.reports, b.reports) && same(a.status, b.status);
+}
+
+inline bool same_bits(const Outcome& a, const Outcome& b) {
+  return same_bits(a.table, b.table) && a.recorder.populations == b.recorder.populations &&
+         a.recorder.best_rows == b.recorder.best_rows && a.recorder.numbers == b.recorder.numbers &&
+         a.recorder.first_rows == b.recorder.first_rows && a.result.reason == b.result.reason &&
+         a.result.best_row == b.result.best_row;
+}
+
+}  // namespace pkm::test
