@@ -1,0 +1,26 @@
+// The block of 512 bytes in front of a study's HDF5 data: format mark, schema, size and checksum, as text that `head`
+// shows:
+//
+//   pkmopt-study schema=1 bytes=51200 xxh64=0123456789abcdef
+//
+// `bytes` and `xxh64` are size and XXH64 (seed 0) of all that follows the block.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace pkm {
+
+inline constexpr std::size_t kSealBytes = 512;
+
+/// HDF5 data begin at byte `at`.
+bool starts_hdf5(const std::string& file, std::size_t at);
+
+/// Fills the first kSealBytes of `file`, whose remainder is complete.
+void seal(std::string& file, int schema);
+
+/// Verifies the seal of the bytes read from `path`. Throws StorageError with a sentence for each way in which they are
+/// not a sound study of at most this schema.
+void verify_seal(const std::string& file, const std::string& path, int newest_schema);
+
+}  // namespace pkm

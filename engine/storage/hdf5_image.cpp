@@ -1,0 +1,368 @@
+#include "engine/storage/hdf5_image.hpp"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "engine/storage/file_seal.hpp"
+#include "engine/storage/packed_text.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kChunkBytes = std::size_t{1} << 17;
+constexpr unsigned kDeflateLevel = 1;  // twice as fast as level 6, and files are a few per cent larger
+
+/// While one lives, HDF5 prints nothing.
+class QuietErrors {
+ public:
+  QuietErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
+};
+
+extern "C" herr_t take_first_error(unsigned, const H5E_error2_t* error, void* text) {
+  *static_cast<std::string*>(text) = error->desc ? error->desc : "";
+  return 1;  // stop
+}
+
+[[noreturn]] void fail(const std::string& what) {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first_error, &reason);
+  throw ImageError(what + (reason.empty() ? "" : ": " + reason));
+}
+
+void check(herr_t result, const std::string& what) {
+  if (result < 0) fail(what);
+}
+
+/// Owns one HDF5 id: a leaked one would keep the file open.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
+    if (id < 0) fail(what);
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle& operator=(Handle&&) = delete;
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+// Little-endian in the file, whatever the machine.
+template <class T>
+hid_t file_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_IEEE_F64LE;
+  if constexpr (std::is_same_v<T, float>) return H5T_IEEE_F32LE;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_STD_I64LE;
+  if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_STD_U8LE;
+}
+
+template <class T>
+hid_t memory_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_NATIVE_UINT64;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
+}
+
+/// In datasets, text is UTF-8 of fixed length, padded with NUL: it compresses and lies inside its dataset.
+Handle text_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "text type");
+  check(H5Tset_size(type.get(), std::max<std::size_t>(length, 1)), "text type");
+  check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "text type");
+  check(H5Tset_strpad(type.get(), H5T_STR_NULLPAD), "text type");
+  return type;
+}
+
+std::size_t text_length(hid_t type, const std::string& what) {
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+    throw ImageError(what + ": is not text of fixed length");
+  return H5Tget_size(type);
+}
+
+std::size_t product(const Extent& extent) {
+  std::size_t count = 1;
+  for (const std::size_t size : extent) count *= size;
+  return count;
+}
+
+Handle make_space(const Extent& extent, const std::string& what) {
+  if (extent.empty()) return {H5Screate(H5S_SCALAR), H5Sclose, what};
+  const std::vector<hsize_t> size(extent.begin(), extent.end());
+  std::vector<hsize_t> greatest = size;
+  for (hsize_t& g : greatest) g = std::max<hsize_t>(g, 1);
+  greatest[0] = H5S_UNLIMITED;
+  return {H5Screate_simple(static_cast<int>(size.size()), size.data(), greatest.data()), H5Sclose, what};
+}
+
+Handle dataset_properties(const Extent& extent, std::size_t value_bytes, const std::string& what) {
+  Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
+  check(H5Pset_obj_track_times(properties.get(), false), what);  // equal contents, equal bytes
+  if (extent.empty()) return properties;
+  std::vector<hsize_t> chunk(extent.begin(), extent.end());
+  std::size_t row_bytes = value_bytes;
+  for (std::size_t i = 1; i < chunk.size(); ++i) row_bytes *= chunk[i] = std::max<hsize_t>(chunk[i], 1);
+  chunk[0] = std::clamp<hsize_t>(extent[0], 1, std::max<std::size_t>(kChunkBytes / row_bytes, 1));
+  check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), what);
+  check(H5Pset_shuffle(properties.get()), what);
+  check(H5Pset_deflate(properties.get(), kDeflateLevel), what);
+  return properties;
+}
+
+void write_attribute(hid_t object, const std::string& name, hid_t type, hid_t as_type, hid_t space, const void* data,
+                     const std::string& what) {
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, what);
+  check(H5Awrite(attribute.get(), as_type, data), what);
+}
+
+/// In attributes, text is UTF-8 of variable length: h5py hands it out as str.
+Handle attribute_text_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "text type");
+  check(H5Tset_size(type.get(), H5T_VARIABLE), "text type");
+  check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "text type");
+  return type;
+}
+
+void write_text(hid_t object, const std::string& name, const std::string& text, const std::string& what) {
+  const Handle type = attribute_text_type();
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
+  const char* pointer = text.c_str();
+  write_attribute(object, name, type.get(), type.get(), space.get(), &pointer, what);
+}
+
+void write_texts(hid_t object, const std::string& name, const std::vector<std::string>& texts,
+                 const std::string& what) {
+  const Handle type = attribute_text_type();
+  const hsize_t size = texts.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
+  std::vector<const char*> pointers;
+  pointers.reserve(texts.size() + 1);  // HDF5 takes no null pointer, even for no text at all
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  write_attribute(object, name, type.get(), type.get(), space.get(), pointers.data(), what);
+}
+
+std::string read_text(hid_t attribute, const std::string& what) {
+  const Handle stored(H5Aget_type(attribute), H5Tclose, what);
+  if (H5Tis_variable_str(stored.get()) <= 0) throw ImageError(what + ": is not text of variable length");
+  const Handle type = attribute_text_type();
+  char* pointer = nullptr;
+  check(H5Aread(attribute, type.get(), &pointer), what);
+  std::string text = pointer ? pointer : "";
+  H5free_memory(pointer);
+  return text;
+}
+
+void write_labels(hid_t dataset, const Leaf& leaf) {
+  write_text(dataset, "description", leaf.description, leaf.path);
+  if (!leaf.columns.empty()) write_texts(dataset, "columns", leaf.columns, leaf.path);
+  if (leaf.columns.empty() && leaf.units.size() == 1)
+    write_text(dataset, "unit", leaf.units[0], leaf.path);
+  else
+    write_texts(dataset, "unit", leaf.units, leaf.path);
+}
+
+Handle core_access(const std::string& what) {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
+  check(H5Pset_fapl_core(access.get(), std::size_t{1} << 20, false), what);
+  check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), what);
+  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110), what);
+  return access;
+}
+
+Handle create_file() {
+  const std::string what = "a file in memory";
+  const Handle access = core_access(what);
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
+  check(H5Pset_userblock(creation.get(), kSealBytes), what);
+  check(H5Pset_istore_k(creation.get(), 4), what);  // small index nodes: most datasets have one chunk
+  check(H5Pset_obj_track_times(creation.get(), false), what);
+  return {H5Fcreate("study in memory", H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, what};
+}
+
+Handle open_image(const std::string& file) {
+  const std::string what = "the HDF5 data";
+  const Handle access = core_access(what);
+  // HDF5 copies the bytes.
+  check(H5Pset_file_image(access.get(), const_cast<char*>(file.data()), file.size()), what);
+  return {H5Fopen("study in memory", H5F_ACC_RDONLY, access.get()), H5Fclose, what};
+}
+
+std::string in_words(const Extent& extent) {
+  std::string text;
+  for (const std::size_t n : extent) text += (text.empty() ? "" : " x ") + std::to_string(n);
+  return text.empty() ? "1" : text;
+}
+
+[[noreturn]] void refuse_size(const Leaf& leaf, const Extent& present, const Extent& expected) {
+  throw ImageError(leaf.path + ": has " + in_words(present) + " values, but " + in_words(expected) + " are expected");
+}
+
+}  // namespace
+
+struct ImageWriter::Parts {
+  QuietErrors quiet;
+  Handle file = create_file();
+};
+
+ImageWriter::ImageWriter() : parts_(std::make_unique<Parts>()) {}
+ImageWriter::~ImageWriter() = default;
+
+void ImageWriter::group(const std::string& path, const std::string& description) {
+  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, path);
+  check(H5Pset_obj_track_times(properties.get(), false), path);
+  const hid_t file = parts_->file.get();
+  const Handle group(path == "/" ? H5Gopen2(file, "/", H5P_DEFAULT)
+                                 : H5Gcreate2(file, path.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                     H5Gclose, path);
+  write_text(group.get(), "description", description, path);
+}
+
+template <class T>
+void ImageWriter::attribute(const std::string& group, const std::string& name, const T& value, Repeats) {
+  const std::string what = group + "@" + name;
+  const Handle object(H5Oopen(parts_->file.get(), group.c_str(), H5P_DEFAULT), H5Oclose, what);
+  if constexpr (std::is_same_v<T, std::string>) {
+    write_text(object.get(), name, value, what);
+  } else {
+    using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+    const auto stored = static_cast<Stored>(value);
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
+    write_attribute(object.get(), name, file_type<Stored>(), memory_type<Stored>(), space.get(), &stored, what);
+  }
+}
+
+template <class T>
+void ImageWriter::array(const Leaf& leaf, const std::vector<T>& values, const Extent& wanted) {
+  Extent extent = wanted;
+  if (!extent.empty() && extent[0] == kAnyRows) extent[0] = values.size();
+  if (product(extent) != values.size()) refuse_size(leaf, {values.size()}, extent);
+  const hid_t file = parts_->file.get();
+  const Handle space = make_space(extent, leaf.path);
+  const auto write = [&](hid_t type, hid_t as_type, std::size_t value_bytes, const void* data) {
+    const Handle properties = dataset_properties(extent, value_bytes, leaf.path);
+    const Handle dataset(
+        H5Dcreate2(file, leaf.path.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose,
+        leaf.path);
+    if (!values.empty()) check(H5Dwrite(dataset.get(), as_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), leaf.path);
+    write_labels(dataset.get(), leaf);
+  };
+  if constexpr (std::is_same_v<T, std::string>) {
+    const PackedText packed = pack(values);
+    const Handle type = text_type(packed.length);
+    write(type.get(), type.get(), packed.length, packed.bytes.data());
+  } else {
+    write(file_type<T>(), memory_type<T>(), sizeof(T), values.data());
+  }
+}
+
+std::string ImageWriter::finish() {
+  const std::string what = "the file's end";
+  const hid_t file = parts_->file.get();
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL), what);
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) fail(what);
+  std::string bytes(kSealBytes + static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, bytes.data() + kSealBytes, static_cast<std::size_t>(size)) != size) fail(what);
+  // HDF5 1.10 hands out the file without its user block; the addresses inside count from the block's end all the same.
+  if (!starts_hdf5(bytes, kSealBytes)) bytes.erase(0, kSealBytes);
+  return bytes;
+}
+
+struct ImageReader::Parts {
+  explicit Parts(const std::string& bytes) : file(open_image(bytes)) {}
+  QuietErrors quiet;
+  Handle file;
+};
+
+ImageReader::ImageReader(const std::string& file) : parts_(std::make_unique<Parts>(file)) {}
+ImageReader::~ImageReader() = default;
+
+void ImageReader::group(const std::string& path, const std::string&) const {
+  const Handle group(H5Gopen2(parts_->file.get(), path.c_str(), H5P_DEFAULT), H5Gclose, path);
+}
+
+bool ImageReader::has(const std::string& path) const {
+  return H5Lexists(parts_->file.get(), path.c_str(), H5P_DEFAULT) > 0;
+}
+
+template <class T>
+void ImageReader::attribute(const std::string& group, const std::string& name, T& value, Repeats) const {
+  const std::string what = group + "@" + name;
+  const Handle attribute(H5Aopen_by_name(parts_->file.get(), group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, what);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose, what);
+  if (H5Sget_simple_extent_npoints(space.get()) != 1) throw ImageError(what + ": is not a single value");
+  if constexpr (std::is_same_v<T, std::string>) {
+    value = read_text(attribute.get(), what);
+  } else {
+    using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+    Stored stored{};
+    check(H5Aread(attribute.get(), memory_type<Stored>(), &stored), what);
+    value = static_cast<T>(stored);
+  }
+}
+
+template <class T>
+void ImageReader::array(const Leaf& leaf, std::vector<T>& values, const Extent& extent) const {
+  const Handle dataset(H5Dopen2(parts_->file.get(), leaf.path.c_str(), H5P_DEFAULT), H5Dclose, leaf.path);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose, leaf.path);
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank < 0) fail(leaf.path);
+  std::vector<hsize_t> size(static_cast<std::size_t>(rank));
+  check(H5Sget_simple_extent_dims(space.get(), size.data(), nullptr), leaf.path);
+  Extent expected = extent;
+  if (!extent.empty() && extent[0] == kAnyRows && rank > 0) expected[0] = size[0];
+  const Extent present(size.begin(), size.end());
+  if (present != expected) refuse_size(leaf, present, expected);
+  const std::size_t count = product(present);
+  if constexpr (std::is_same_v<T, std::string>) {
+    const Handle type(H5Dget_type(dataset.get()), H5Tclose, leaf.path);
+    const std::size_t length = text_length(type.get(), leaf.path);
+    std::string bytes(length * count, '\0');
+    if (count > 0) check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), leaf.path);
+    values = unpack(bytes, length, count);
+  } else {
+    values.resize(count);
+    if (count > 0)
+      check(H5Dread(dataset.get(), memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), leaf.path);
+  }
+}
+
+#define PKM_ATTRIBUTE(T)                                                                           \
+  template void ImageWriter::attribute(const std::string&, const std::string&, const T&, Repeats); \
+  template void ImageReader::attribute(const std::string&, const std::string&, T&, Repeats) const;
+#define PKM_ARRAY(T)                                                                   \
+  template void ImageWriter::array(const Leaf&, const std::vector<T>&, const Extent&); \
+  template void ImageReader::array(const Leaf&, std::vector<T>&, const Extent&) const;
+PKM_ATTRIBUTE(std::string)
+PKM_ATTRIBUTE(double)
+PKM_ATTRIBUTE(std::int64_t)
+PKM_ATTRIBUTE(std::uint64_t)
+PKM_ATTRIBUTE(bool)
+PKM_ARRAY(double)
+PKM_ARRAY(float)
+PKM_ARRAY(std::int64_t)
+PKM_ARRAY(std::uint8_t)
+PKM_ARRAY(std::string)
+#undef PKM_ATTRIBUTE
+#undef PKM_ARRAY
+
+}  // namespace pkm

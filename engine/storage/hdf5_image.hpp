@@ -1,0 +1,80 @@
+// HDF5 files in memory: one class builds the bytes of a file, one reads them. Private to engine/storage.
+//
+// Everything happens in memory (HDF5's core driver), so HDF5 never meets a full disk, a lock or a half-written file,
+// and its errors are limited to what lies in the data. Writing to disk is plain write(2), see safe_file.hpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace pkm {
+
+/// What HDF5 could not do, or what a file lacks: "/stages/1/evaluations/design: ...".
+class ImageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Does a resumed run have to repeat this bit for bit?
+enum class Repeats { yes, no };
+
+/// One dataset and what is written beside its values.
+struct Leaf {
+  std::string path;
+  std::string description;
+  std::vector<std::string> units;    ///< one for all values, or one per column
+  std::vector<std::string> columns;  ///< names along the last dimension; empty where it has none
+  Repeats repeats = Repeats::yes;
+};
+
+/// Sizes of a dataset, slowest first; {} is a single value.
+using Extent = std::vector<std::size_t>;
+inline constexpr std::size_t kAnyRows = static_cast<std::size_t>(-1);
+
+/// T of an array: double, float, std::int64_t, std::uint8_t or std::string; of an attribute: std::string, double,
+/// std::int64_t, std::uint64_t or bool.
+class ImageWriter {
+ public:
+  static constexpr bool kReads = false;
+  static constexpr bool kDerives = true;  ///< also writes what readers like but nothing reads back
+
+  ImageWriter();
+  ~ImageWriter();
+  void group(const std::string& path, const std::string& description);
+  template <class T>
+  void attribute(const std::string& group, const std::string& name, const T& value, Repeats = Repeats::yes);
+  /// Chunked, extensible along the first dimension, shuffled and deflated; a single value is stored as such.
+  template <class T>
+  void array(const Leaf& leaf, const std::vector<T>& values, const Extent& extent);
+  /// The whole file, beginning with an empty user block of 512 bytes. To be called last.
+  std::string finish();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+class ImageReader {
+ public:
+  static constexpr bool kReads = true;
+  static constexpr bool kDerives = false;
+
+  explicit ImageReader(const std::string& file);
+  ~ImageReader();
+  void group(const std::string& path, const std::string& description) const;  ///< must be there
+  bool has(const std::string& path) const;
+  template <class T>
+  void attribute(const std::string& group, const std::string& name, T& value, Repeats = Repeats::yes) const;
+  /// @param extent  must equal the dataset's; a first size of kAnyRows takes what is there
+  template <class T>
+  void array(const Leaf& leaf, std::vector<T>& values, const Extent& extent) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace pkm

@@ -1,0 +1,23 @@
+#include "engine/storage/study_contents.hpp"
+
+#include "engine/core/error.hpp"
+#include "engine/storage/schema.hpp"
+
+namespace pkm {
+
+std::span<const std::int64_t> GenerationRecords::population_of(std::size_t g) const {
+  PKM_EXPECTS(g < size());
+  const auto begin = static_cast<std::size_t>(population_first[g]);
+  const std::size_t end = g + 1 < size() ? static_cast<std::size_t>(population_first[g + 1]) : population.size();
+  return {population.data() + begin, end - begin};
+}
+
+std::int64_t StudyContents::evaluations() const {
+  std::size_t count = 0;
+  for (const StageRecord& stage : stages) count += stage.table.size();
+  return static_cast<std::int64_t>(count);
+}
+
+std::string words(StudyState state) { return schema::kStateWords[static_cast<std::size_t>(state)]; }
+
+}  // namespace pkm

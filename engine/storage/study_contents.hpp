@@ -1,0 +1,145 @@
+// All that a study file holds, as plain data: what the runner fills, what a resumed run starts from, what reports and
+// exports read. How it lies in the file is written down in engine/storage/README.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/parameter.hpp"
+#include "engine/problem/problem.hpp"
+#include "engine/workspace/survey.hpp"
+
+namespace pkm {
+
+/// Version of the file's layout. A file of a newer one is refused by name.
+inline constexpr int kStudySchema = 1;
+
+/// One parameter of the study's mechanism, in the mechanism's order.
+struct ParameterRecord {
+  std::string name;
+  std::string unit;
+  double value = 0;            ///< fixed value, SI; the nominal one where the parameter varies
+  std::int64_t variable = -1;  ///< index among the variables; -1: fixed
+};
+
+/// What is optimised, spelled out, so that a reader needs no TOML.
+struct ProblemRecord {
+  std::string mechanism;  ///< "4ppa-2par"
+  std::vector<ParameterRecord> parameters;
+  std::vector<Variable> variables;
+  std::vector<ObjectiveInfo> objectives;
+  std::vector<MarginInfo> margins;
+  std::vector<ReportInfo> reports;
+
+  EvaluationShape shape() const { return {variables.size(), objectives.size(), margins.size(), reports.size()}; }
+};
+
+/// A limit that `pkmopt resume` changed after the study was begun. Replay needs it, because the TOML text stays as is.
+struct Extension {
+  std::int64_t stage = 0;  ///< 0 is the first stage
+  std::string limit;       ///< "generations", "evaluations" or "time"
+  double value = 0;        ///< new limit; time in s
+};
+
+/// One entry per complete generation; all arrays have size() elements, except population.
+struct GenerationRecords {
+  std::vector<std::int64_t> first_row;         ///< the generation's first row in the evaluation table
+  std::vector<std::int64_t> best_row;          ///< best so far; -1 while there is none
+  std::vector<double> feasible_share;          ///< of the population, in [0, 1]
+  std::vector<double> diversity;               ///< as the runner defines it
+  std::vector<double> seconds;                 ///< wall time of the study at the generation's end
+  std::vector<std::int64_t> population_first;  ///< where the generation's rows begin in `population`
+  std::vector<std::int64_t> population;        ///< rows that form the population, generation after generation
+
+  std::size_t size() const { return first_row.size(); }
+  /// Rows of the table that form the population of generation g.
+  std::span<const std::int64_t> population_of(std::size_t g) const;
+};
+
+/// One optimiser's part of the study.
+struct StageRecord {
+  std::string optimiser;             ///< "ga"
+  std::vector<std::string> options;  ///< "name = value", defaults included
+  EvaluationTable table;             ///< every evaluation, in the order in which it was asked for
+  GenerationRecords generations;
+  bool finished = false;
+  std::string stop;  ///< why it ended, in words; "" while it runs
+  std::int64_t best_row = -1;
+};
+
+/// One design, evaluated with everything that the problem asks for.
+struct DesignRecord {
+  std::vector<double> parameters;  ///< all of ProblemRecord::parameters, SI
+  std::vector<double> objectives;
+  std::vector<double> margins;
+  std::vector<double> reports;
+  Status status = Status::failed;
+  std::string reason;  ///< why it failed; "" otherwise
+  double volume = 0;   ///< in FinalRecord::volume_unit
+  std::int64_t cells = 0;
+  std::int64_t feasible_cells = 0;
+  double cell_volume = 0;
+  bool touches_box = false;
+};
+
+/// The best design's voxels with the names of their axes.
+struct MapRecord {
+  VoxelMap voxels;
+  std::vector<std::string> axes;   ///< three names, outermost first: "x", "z", "theta"
+  std::vector<std::string> units;  ///< three: "m", "m", "rad"
+};
+
+/// What is worked out once a study has ended.
+struct FinalRecord {
+  std::optional<DesignRecord> best;
+  std::optional<DesignRecord> rounded;  ///< best, rounded as `[final] round` asks and evaluated again
+  std::optional<DesignRecord> baseline;
+  std::optional<MapRecord> map;  ///< of `best`
+  std::string volume_unit;
+  std::vector<std::string> active;  ///< active bounds and constraints of `best`, one sentence each
+};
+
+/// Which evaluation is the best so far.
+struct BestRow {
+  std::int64_t stage = -1;  ///< 0 is the first stage; -1: nothing evaluated yet
+  std::int64_t row = -1;
+};
+
+enum class StudyState { running, interrupted, finished };
+/// "running", "interrupted", "finished".
+std::string words(StudyState state);
+
+struct StudyContents {
+  // where it comes from
+  std::string name;
+  std::string toml;       ///< the study's text
+  std::string toml_file;  ///< and the file it was read from
+  std::uint64_t seed = 1;
+  std::string program_version;
+  std::string program_revision;
+  std::int64_t algorithms = 1;  ///< version of the optimisers' behaviour: a study goes on only under the same
+  std::string machine;          ///< processor, cores, system
+  std::string created;          ///< ISO 8601, UTC
+  std::string updated;
+  bool reproducible = true;  ///< false: a time limit decided something
+  ProblemRecord problem;
+  std::vector<Extension> extensions;
+  // what happened
+  StudyState state = StudyState::running;
+  double seconds = 0;  ///< wall time spent, all runs together
+  std::vector<StageRecord> stages;
+  BestRow best;
+  std::optional<FinalRecord> final;
+
+  /// Evaluations of all stages.
+  std::int64_t evaluations() const;
+};
+
+/// Compares everything that a resumed run must repeat bit for bit: all but times, machine, program and the TOML file's
+/// place. "" when equal, otherwise one line with the first difference: its place in the file and both values.
+std::string first_difference(const StudyContents& a, const StudyContents& b);
+
+}  // namespace pkm

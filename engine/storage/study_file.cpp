@@ -1,0 +1,88 @@
+#include "engine/storage/study_file.hpp"
+
+#include "engine/core/error.hpp"
+#include "engine/storage/file_seal.hpp"
+#include "engine/storage/safe_file.hpp"
+#include "engine/storage/schema.hpp"
+
+namespace pkm {
+namespace {
+
+void require(bool holds, const std::string& where, const char* what) {
+  if (!holds) throw ImageError(where + ": " + what);
+}
+
+/// True when 0 <= values[0] <= values[1] <= ... <= last.
+bool ascends(const std::vector<std::int64_t>& values, std::size_t last) {
+  std::int64_t before = 0;
+  for (const std::int64_t value : values) {
+    if (value < before) return false;
+    before = value;
+  }
+  return before <= static_cast<std::int64_t>(last);
+}
+
+bool is_row(std::int64_t row, std::size_t rows) { return row >= 0 && row < static_cast<std::int64_t>(rows); }
+bool is_row_or_none(std::int64_t row, std::size_t rows) { return row == -1 || is_row(row, rows); }
+
+/// Every index points at something: checked before writing, because nothing could read such a file, and after reading,
+/// so that nobody after this has to ask.
+void check_indices(const StudyContents& study) {
+  for (std::size_t i = 0; i < study.stages.size(); ++i) {
+    const std::string group = "/stages/" + std::to_string(i + 1);
+    const StageRecord& stage = study.stages[i];
+    const GenerationRecords& generations = stage.generations;
+    const std::size_t rows = stage.table.size();
+    require(
+        generations.best_row.size() == generations.size() && generations.population_first.size() == generations.size(),
+        group, "generations have arrays of different lengths");
+    require(is_row_or_none(stage.best_row, rows), group, "best_row is no row of evaluations");
+    require(ascends(generations.first_row, rows), group, "first_row does not ascend within evaluations");
+    require(ascends(generations.population_first, generations.population.size()), group,
+            "population_first does not ascend within population");
+    for (const std::int64_t row : generations.best_row)
+      require(is_row_or_none(row, rows), group, "best_row is no row of evaluations");
+    for (const std::int64_t row : generations.population)
+      require(is_row(row, rows), group, "population holds what is no row of evaluations");
+  }
+  const BestRow& best = study.best;
+  require(best.row == -1 || (is_row(best.stage, study.stages.size()) &&
+                             is_row(best.row, study.stages[static_cast<std::size_t>(best.stage)].table.size())),
+          "/best", "row is no row of evaluations");
+  for (const ParameterRecord& parameter : study.problem.parameters)
+    require(is_row_or_none(parameter.variable, study.problem.variables.size()), "/problem/parameters",
+            "variable is no index of a variable");
+}
+
+}  // namespace
+
+void write_study(const std::string& path, const StudyContents& contents) {
+  std::string bytes;
+  try {
+    check_indices(contents);
+    ImageWriter image;
+    schema::describe(image, contents);
+    bytes = image.finish();
+  } catch (const ImageError& error) {
+    throw StorageError(path + ": cannot be written (" + error.what() + ")");
+  }
+  seal(bytes, kStudySchema);
+  replace_file(path, bytes);
+}
+
+StudyContents read_study(const std::string& path) {
+  const std::string bytes = read_file(path);
+  verify_seal(bytes, path, kStudySchema);
+  try {
+    StudyContents contents;
+    const ImageReader image(bytes);
+    schema::describe(image, contents);
+    check_indices(contents);
+    return contents;
+  } catch (const ImageError& error) {
+    throw StorageError(path + ": not laid out as schema " + std::to_string(kStudySchema) + " says (" + error.what() +
+                       ")");
+  }
+}
+
+}  // namespace pkm

@@ -1,0 +1,78 @@
+#include "engine/storage/study_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "engine/core/error.hpp"
+
+namespace pkm {
+namespace {
+
+bool switched_off() {
+  const char* value = std::getenv("HDF5_USE_FILE_LOCKING");
+  return value && std::string_view(value) == "FALSE";
+}
+
+std::string holder(int fd) {
+  char text[256] = {};
+  const ssize_t n = ::pread(fd, text, sizeof text - 1, 0);
+  return n > 0 ? "process " + std::string(text) : "another process";
+}
+
+std::string own_name() {
+  char host[128] = {};
+  if (::gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
+  return std::to_string(::getpid()) + (host[0] ? " on " + std::string(host) : "");
+}
+
+/// The file behind `fd` still carries the name: its last holder may have removed it between our open and our lock.
+bool still_named(int fd, const std::string& path) {
+  struct stat ours {
+  }, named{};
+  return ::fstat(fd, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino &&
+         ours.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+StudyLock::StudyLock(const std::string& study_path) : lock_path_(study_path + ".lock") {
+  if (switched_off()) return;
+  for (;;) {
+    const int fd = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (fd < 0)
+      throw StorageError(study_path + ": the lock file " + lock_path_ + " cannot be created (" + std::strerror(errno) +
+                         ")");
+    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
+      const std::string by = holder(fd);
+      ::close(fd);
+      if (error == EINTR) continue;
+      if (error == EWOULDBLOCK) throw StorageError(study_path + ": in use by " + by + " (it holds " + lock_path_ + ")");
+      throw StorageError(study_path + ": cannot be locked (" + std::strerror(error) +
+                         "); on a file system without locks set HDF5_USE_FILE_LOCKING=FALSE");
+    }
+    if (still_named(fd, lock_path_)) {
+      fd_ = fd;
+      break;
+    }
+    ::close(fd);
+  }
+  // The name of the holder serves messages only, so failing to write it (a full disk) does no harm.
+  const std::string name = own_name();
+  if (::ftruncate(fd_, 0) == 0) static_cast<void>(!::pwrite(fd_, name.data(), name.size(), 0));
+}
+
+StudyLock::~StudyLock() {
+  if (fd_ < 0) return;
+  ::unlink(lock_path_.c_str());
+  ::close(fd_);
+}
+
+}  // namespace pkm

@@ -1,0 +1,25 @@
+// Keeps a second process off a running study.
+//
+// The lock is a file of its own, "<study>.lock", because the study file itself is replaced by rename. The kernel holds
+// the lock (flock), so it ends with the process, however that dies; a lock file left behind blocks nobody.
+#pragma once
+
+#include <string>
+
+namespace pkm {
+
+class StudyLock {
+ public:
+  /// Throws StorageError naming the process that holds the lock, or the system's reason. With
+  /// HDF5_USE_FILE_LOCKING=FALSE in the environment nothing is locked (for file systems without locks).
+  explicit StudyLock(const std::string& study_path);
+  ~StudyLock();
+  StudyLock(const StudyLock&) = delete;
+  StudyLock& operator=(const StudyLock&) = delete;
+
+ private:
+  std::string lock_path_;
+  int fd_ = -1;
+};
+
+}  // namespace pkm

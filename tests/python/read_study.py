@@ -1,0 +1,98 @@
+"""Reads and changes study files with h5py, which is trusted, for tests/unit/storage/h5py_test.cpp.
+
+read_study.py values FILE         bits of what the sample study holds, one item per line
+read_study.py labels FILE         checks attributes and layout of every dataset
+read_study.py snippets FILE README  runs the README's Python snippets on the file
+read_study.py contiguous FILE     writes one dataset anew, in h5py's own layout
+read_study.py put FILE PATH INDEX VALUE  changes one value
+read_study.py shorten FILE PATH   takes the last row off a dataset
+read_study.py remove FILE PATH    removes a dataset
+"""
+
+import os
+import re
+import shutil
+import sys
+import tempfile
+
+import h5py
+
+
+def values(path):
+    with h5py.File(path, "r") as f:
+        for name in ("design", "objective", "margin", "report"):
+            data = f["stages/1/evaluations/" + name][:]
+            print(name, data.shape, " ".join("%016x" % x for x in data.view("<u8").ravel()))
+        print("status", f["stages/1/evaluations/status"][:].tolist())
+        print("generation", f["stages/1/evaluations/generation"][:].tolist())
+        print("population", f["stages/1/generations/population"][:].tolist())
+        print("columns", f["stages/1/evaluations/margin"].attrs["columns"].tolist())
+        print("format", f.attrs["format"])
+        print("schema", f.attrs["schema"])
+        print("seed", f.attrs["seed"])
+        print("name", f.attrs["name"])
+        print("lower", f["problem/variables/lower"][:].tolist())
+        print("best", f["best/design"][:].tolist() == f["stages/1/evaluations/design"][8].tolist())
+        print("map", f["final/map/feasible"].shape, f["final/map/axis"].asstr()[:].tolist())
+        print("toml", len(f["toml"].asstr()[()]))
+
+
+def labels(path):
+    count = 0
+
+    def visit(name, item):
+        nonlocal count
+        assert item.attrs["description"], name
+        if not isinstance(item, h5py.Dataset):
+            return
+        count += 1
+        assert "unit" in item.attrs, name
+        if item.shape:
+            assert item.chunks and item.maxshape[0] is None, name
+            assert item.compression == "gzip" and item.shuffle, name
+        if "columns" in item.attrs:
+            assert len(item.attrs["columns"]) == len(item.attrs["unit"]) == item.shape[-1], name
+
+    with h5py.File(path, "r") as f:
+        assert f.userblock_size == 512
+        f.visititems(visit)
+    print(count, "datasets")
+
+
+def snippets(path, readme):
+    with open(readme, encoding="utf-8") as f:
+        blocks = re.findall(r"```python\n(.*?)```", f.read(), re.DOTALL)
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copy(path, os.path.join(folder, "wide.h5"))
+        os.chdir(folder)
+        for block in blocks:
+            exec(compile(block, readme, "exec"), {})
+        os.chdir("/")
+    print(len(blocks), "snippets")
+
+
+def contiguous(path):
+    with h5py.File(path, "r+") as f:
+        data = f["stages/1/evaluations/objective"][:]
+        del f["stages/1/evaluations/objective"]
+        f.create_dataset("stages/1/evaluations/objective", data=data.astype(">f8"))
+
+
+def put(path, name, index, value):
+    with h5py.File(path, "r+") as f:
+        f[name][int(index)] = float(value)
+
+
+def shorten(path, name):
+    with h5py.File(path, "r+") as f:
+        f[name].resize(f[name].shape[0] - 1, axis=0)
+
+
+def remove(path, name):
+    with h5py.File(path, "r+") as f:
+        del f[name]
+
+
+if __name__ == "__main__":
+    commands = {c.__name__: c for c in (values, labels, snippets, contiguous, put, shorten, remove)}
+    commands[sys.argv[1]](*sys.argv[2:])

@@ -1,0 +1,126 @@
+// Our writer against a trusted reader, and our reader against a trusted writer: two equal mistakes of ours would
+// cancel.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdio>
+#include <cstdlib>
+
+#include "engine/storage/file_seal.hpp"
+#include "engine/storage/study_file.hpp"
+#include "tests/unit/storage/sample_study.hpp"
+
+namespace pkm {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kTests = std::string(PKM_TEST_DATA) + "/..";
+
+std::string output_of(const std::string& command) {
+  std::string text;
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  char block[4096];
+  while (const std::size_t n = std::fread(block, 1, sizeof block, pipe)) text.append(block, n);
+  ::pclose(pipe);
+  return text;
+}
+
+class H5py : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "python3-h5py is missing";
+    write_study(path_, test::sample_study());
+  }
+  std::string python(const std::string& command, const std::string& more = "") const {
+    return output_of("/usr/bin/python3 " + kTests + "/python/read_study.py " + command + " " + path_ + " " + more);
+  }
+  void seal_again() const {
+    std::string bytes = test::slurp(path_);
+    seal(bytes, kStudySchema);
+    test::spill(path_, bytes);
+  }
+
+  test::Folder folder_;
+  std::string path_ = folder_ / "s.h5";
+};
+
+std::string bits(const std::vector<double>& values) {
+  std::string text;
+  char word[20];
+  for (const double value : values) {
+    std::snprintf(word, sizeof word, " %016llx", static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
+    text += word;
+  }
+  return text;
+}
+
+TEST_F(H5py, ReadsTheSameBits) {
+  const StudyContents study = test::sample_study();
+  const EvaluationTable& table = study.stages[0].table;
+  EXPECT_EQ(python("values"), "design (12, 2)" + bits(table.designs) +              //
+                                  "\nobjective (12, 1)" + bits(table.objectives) +  //
+                                  "\nmargin (12, 2)" + bits(table.margins) +        //
+                                  "\nreport (12, 1)" + bits(table.reports) + R"(
+status [0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3]
+generation [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]
+population [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]
+columns ['workspace-shape', 'rail-length']
+format pkmopt-study
+schema 1
+seed 18364758544493064720
+name Größe, 4PPa-2PaR <b>
+lower [0.1, 0.35]
+best True
+map (1, 2, 3) ['x', 'z', 'theta']
+)" + "toml " + std::to_string(study.toml.size() - 2) +
+                                  "\n");  // two letters take two bytes
+}
+
+TEST_F(H5py, FindsUnitDescriptionAndLayoutEverywhere) { EXPECT_THAT(python("labels"), HasSubstr(" datasets\n")); }
+
+TEST_F(H5py, RunsTheSnippetsOfTheDocumentation) {
+  EXPECT_THAT(python("snippets", kTests + "/../engine/storage/README.md"), testing::EndsWith("\n3 snippets\n"));
+}
+
+TEST_F(H5py, OpensEmptyStudies) {
+  write_study(path_, StudyContents{});
+  EXPECT_THAT(python("labels"), HasSubstr(" datasets\n"));
+}
+
+TEST_F(H5py, ChangesAreNoticed) {
+  ASSERT_EQ(python("remove", "/toml"), "");
+  EXPECT_THAT(test::storage_error([&] { read_study(path_); }), HasSubstr("its checksum differs"));
+}
+
+TEST_F(H5py, WritesWhatWeRead) {
+  ASSERT_EQ(python("contiguous"), "");
+  seal_again();
+  EXPECT_EQ(first_difference(read_study(path_), test::sample_study()), "");
+}
+
+TEST_F(H5py, AMissingPartIsNamed) {
+  ASSERT_EQ(python("remove", "/stages/1/evaluations/margin"), "");
+  seal_again();
+  EXPECT_THAT(test::storage_error([&] { read_study(path_); }),
+              testing::StartsWith(path_ + ": not laid out as schema 1 says (/stages/1/evaluations/margin: "));
+}
+
+TEST_F(H5py, AnIndexThatPointsNowhereIsNamed) {
+  ASSERT_EQ(python("put", "/stages/1/generations/population 5 12"), "");
+  seal_again();
+  EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
+            path_ + ": not laid out as schema 1 says (/stages/1: population holds what is no row of evaluations)");
+}
+
+TEST_F(H5py, APartOfAnotherSizeIsNamed) {
+  ASSERT_EQ(python("shorten", "/stages/1/evaluations/seconds"), "");
+  seal_again();
+  EXPECT_EQ(
+      test::storage_error([&] { read_study(path_); }),
+      path_ + ": not laid out as schema 1 says (/stages/1/evaluations/seconds: has 11 values, but 12 are expected)");
+}
+
+}  // namespace
+}  // namespace pkm

@@ -1,0 +1,141 @@
+// A disk that is full or read-only: one sentence, and the study as it was.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "engine/storage/study_file.hpp"
+#include "tests/unit/storage/sample_study.hpp"
+
+namespace pkm {
+namespace {
+
+using test::Folder;
+using test::slurp;
+using test::storage_error;
+
+/// Runs `action` in a child process with files limited to `bytes`; its StorageError comes back.
+template <class F>
+std::string error_under_limit(rlim_t bytes, F action) {
+  int ends[2];
+  if (::pipe(ends) != 0) return "no pipe";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    const std::string text = storage_error(action);
+    const bool sent = ::write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    ::_exit(sent ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string text(4096, '\0');
+  const ssize_t n = ::read(ends[0], text.data(), text.size());
+  ::close(ends[0]);
+  ::waitpid(child, nullptr, 0);
+  text.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+  return text;
+}
+
+TEST(WriteFailure, FullDiskKeepsTheLastCheckpoint) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  write_study(path, StudyContents{});
+  const std::string before = slurp(path);
+  StudyContents larger = test::sample_study();
+  larger.stages.push_back(test::sample_stage(larger.problem.shape(), 50, 20));
+  for (const rlim_t limit : {rlim_t{0}, rlim_t{1}, rlim_t{512}, rlim_t{4096}, rlim_t{30000}}) {
+    EXPECT_EQ(error_under_limit(limit, [&] { write_study(path, larger); }),
+              path + ": cannot be written, the previous state is kept (File too large)");
+    EXPECT_EQ(slurp(path), before);
+    EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+  }
+  write_study(path, larger);  // and goes on when there is room again
+  EXPECT_EQ(first_difference(read_study(path), larger), "");
+}
+
+TEST(WriteFailure, DeviceWithoutSpace) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  std::filesystem::create_symlink("/dev/full", path + ".part");
+  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }),
+            path + ": cannot be written, the previous state is kept (No space left on device)");
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(WriteFailure, FolderThatTakesNoFile) {
+  // The tests may run as root, whom permissions do not stop; /proc takes no file from anyone.
+  EXPECT_EQ(storage_error([] { write_study("/proc/s.h5", StudyContents{}); }),
+            "/proc/s.h5: cannot be written, its folder does not take a new file (No such file or directory)");
+  const Folder folder;
+  test::spill(folder / "file", "a file, not a folder");
+  const std::string path = folder / "file/s.h5";
+  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }),
+            path + ": cannot be written, its folder does not take a new file (Not a directory)");
+}
+
+TEST(WriteFailure, NameOfAFolder) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  std::filesystem::create_directory(path);
+  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }), path + ": cannot be replaced (Is a directory)");
+  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+}
+
+TEST(WriteFailure, WhatHdf5CannotHold) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  StudyContents study;
+  study.problem.margins.resize(5000);  // an attribute, here the columns' names, holds 64 kB
+  study.stages.emplace_back().table = EvaluationTable(study.problem.shape());
+  EXPECT_THAT(storage_error([&] { write_study(path, study); }),
+              testing::StartsWith(path + ": cannot be written (/stages/1/evaluations/margin: "));
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(WriteFailure, WhatNobodyCouldReadIsNotWritten) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  StudyContents study = test::sample_study();
+  study.stages[0].generations.population[5] = 12;
+  EXPECT_EQ(storage_error([&] { write_study(path, study); }),
+            path + ": cannot be written (/stages/1: population holds what is no row of evaluations)");
+  study = test::sample_study();
+  study.stages[0].table.designs.pop_back();
+  EXPECT_EQ(storage_error([&] { write_study(path, study); }),
+            path + ": cannot be written (/stages/1/evaluations/design: has 23 values, but 12 x 2 are expected)");
+  study = test::sample_study();
+  study.stages[0].generations.best_row.push_back(3);
+  EXPECT_EQ(storage_error([&] { write_study(path, study); }),
+            path + ": cannot be written (/stages/1: generations have arrays of different lengths)");
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(WriteFailure, KilledWriterLeavesACompleteFile) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  StudyContents study = test::sample_study();
+  study.stages.push_back(test::sample_stage(study.problem.shape(), 50, 20));
+  write_study(path, study);
+  for (int kill = 0; kill < 20; ++kill) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      for (study.seed = 0;; ++study.seed) write_study(path, study);
+    }
+    ::usleep(static_cast<useconds_t>(3000 + 1777 * kill));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    StudyContents read = read_study(path);
+    read.seed = study.seed;
+    EXPECT_EQ(first_difference(read, study), "");
+  }
+  write_study(path, study);  // what a killed writer left beside it is no obstacle
+  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+}
+
+}  // namespace
+}  // namespace pkm
