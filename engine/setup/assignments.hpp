@@ -1,0 +1,35 @@
+// The command line's lists of numbers: `--at x=0.3,y=200mm`, `--set a=0.2 --set b=800mm`.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/workspace/mechanism.hpp"
+
+namespace pkm {
+
+/// A name that a list may give a value to.
+struct Assignable {
+  std::string name;
+  std::string unit;
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// The mechanism's parameters, pose coordinates and joints as assignable names.
+std::vector<Assignable> assignable_parameters(const MechanismInfo& info);
+std::vector<Assignable> assignable_coordinates(const MechanismInfo& info);
+std::vector<Assignable> assignable_joints(const MechanismInfo& info);
+
+/// Values [SI] of comma-separated `name=value` lists, in the order of `known`; absent where a name is not given.
+/// `option` ("--set") is named in messages. Throws ConfigError for anything unknown, malformed, out of range or twice.
+std::vector<std::optional<double>> parse_assignments(const std::vector<std::string>& lists, const std::string& option,
+                                                     const std::vector<Assignable>& known);
+
+/// The same, when every name must be given.
+std::vector<double> parse_all_assignments(const std::vector<std::string>& lists, const std::string& option,
+                                          const std::vector<Assignable>& known);
+
+}  // namespace pkm

@@ -1,0 +1,164 @@
+#include "engine/setup/config_value.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+double quantity(const ConfigValue& value, const std::string& text, std::string_view unit) {
+  try {
+    return parse_quantity(text, unit);
+  } catch (const std::invalid_argument&) {
+    throw value.error(quantity_hint(unit));
+  }
+}
+
+NamedNumbers read_named_numbers(const ConfigValue& table, std::string_view unit, double lower, double upper) {
+  table.expect_table("a table of numbers, { name = number, ... }");
+  NamedNumbers numbers;
+  for (const auto& key : table.keys()) numbers[key] = table.find(key)->number(unit, lower, upper);
+  return numbers;
+}
+
+OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
+  switch (spec.kind) {
+    case OptionKind::integer:
+      return value.integer(spec.lower, spec.upper);
+    case OptionKind::flag:
+      return value.flag();
+    case OptionKind::word:
+      return spec.choices.empty() ? value.text("text") : value.word(spec.choices);
+    case OptionKind::named_numbers:
+      return read_named_numbers(value, spec.unit, spec.lower, spec.upper);
+    case OptionKind::number:
+      break;
+  }
+  return value.number(spec.unit, spec.lower, spec.upper);
+}
+
+std::string expectation(const OptionSpec& spec) {
+  switch (spec.kind) {
+    case OptionKind::integer:
+      return range_text("an integer", spec.lower, spec.upper);
+    case OptionKind::flag:
+      return "true or false";
+    case OptionKind::word:
+      return spec.choices.empty() ? "text" : "one of " + join(spec.choices);
+    case OptionKind::named_numbers:
+      return "a table of numbers, { name = number, ... }";
+    case OptionKind::number:
+      break;
+  }
+  return range_text("a number", spec.lower, spec.upper, spec.unit);
+}
+
+}  // namespace
+
+std::string range_text(std::string_view noun, double lower, double upper, std::string_view unit) {
+  const bool below = std::isfinite(upper), above = std::isfinite(lower);
+  const std::string head{noun};
+  if (above && below)
+    return head + " in [" + shortest(lower) + ", " + shortest(upper) + "]" +
+           (unit == "1" ? "" : " " + std::string(unit));
+  if (above) return head + " >= " + with_unit(lower, unit);
+  if (below) return head + " <= " + with_unit(upper, unit);
+  return unit == "1" ? head : head + " in " + std::string(unit);
+}
+
+ConfigValue::ConfigValue(const TomlValue& value, std::string file, std::string path)
+    : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
+
+double ConfigValue::number(std::string_view unit, double lower, double upper) const {
+  using Kind = TomlValue::Kind;
+  double result = value_->number;
+  if (is_text())
+    result = quantity(*this, value_->text, unit);
+  else if ((value_->kind != Kind::number && value_->kind != Kind::integer) || !std::isfinite(result))
+    throw error(quantity_hint(unit));
+  if (!(result >= lower && result <= upper)) throw error(range_text("a number", lower, upper, unit));
+  return result;
+}
+
+std::int64_t ConfigValue::integer(double lower, double upper) const {
+  const auto number = static_cast<double>(value_->integer);
+  if (value_->kind != TomlValue::Kind::integer || number < lower || number > upper)
+    throw error(range_text("an integer", lower, upper));
+  return value_->integer;
+}
+
+bool ConfigValue::flag() const {
+  if (value_->kind != TomlValue::Kind::flag) throw error("true or false");
+  return value_->flag;
+}
+
+const std::string& ConfigValue::text(std::string_view expected) const {
+  if (!is_text()) throw error(expected);
+  return value_->text;
+}
+
+const std::string& ConfigValue::word(const std::vector<std::string>& choices) const {
+  const std::string expected = "one of " + join(choices);
+  const std::string& found = text(expected);
+  if (std::find(choices.begin(), choices.end(), found) == choices.end())
+    throw error(expected, nearest_name(found, choices));
+  return found;
+}
+
+std::vector<ConfigValue> ConfigValue::elements(std::string_view expected) const {
+  if (value_->kind != TomlValue::Kind::array) throw error(expected);
+  std::vector<ConfigValue> list;
+  for (std::size_t i = 0; i < value_->items.size(); ++i)
+    list.emplace_back(value_->items[i], file_, path_ + "[" + std::to_string(i + 1) + "]");
+  return list;
+}
+
+void ConfigValue::allow(const std::vector<std::string>& known, std::string_view what) const {
+  for (const auto& key : keys())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw find(key)->error_of("an unknown " + std::string(what), "one of " + join(known), nearest_name(key, known));
+}
+
+std::optional<ConfigValue> ConfigValue::find(const std::string& key) const {
+  const TomlValue* child = value_->find(key);
+  if (!child) return std::nullopt;
+  return ConfigValue(*child, file_, path_.empty() ? key : path_ + "." + key);
+}
+
+ConfigValue ConfigValue::at(const std::string& key, std::string_view expected) const {
+  if (auto found = find(key)) return *found;
+  SourcePlace missing = place();
+  missing.key += (path_.empty() ? "" : ".") + key;
+  throw ConfigError(missing, "nothing", expected);
+}
+
+const ConfigValue& ConfigValue::expect_table(std::string_view expected) const {
+  if (!is_table()) throw error(expected);
+  return *this;
+}
+
+ConfigError ConfigValue::error(std::string_view expected, std::string_view nearest) const {
+  return ConfigError(place(), value_->written, expected, nearest);
+}
+
+ConfigError ConfigValue::error_of(std::string_view found, std::string_view expected, std::string_view nearest) const {
+  return ConfigError(place(), found, expected, nearest);
+}
+
+ConfigError ConfigValue::refusal(std::string_view sentence) const { return ConfigError(place(), sentence); }
+
+Options read_options(const ConfigValue& table, const std::vector<OptionSpec>& specs) {
+  Options options = default_options(specs);
+  for (const auto& spec : specs) {
+    if (const auto value = table.find(spec.name))
+      options.set(spec.name, read_option(*value, spec));
+    else if (spec.required)
+      table.at(spec.name, expectation(spec));
+  }
+  return options;
+}
+
+}  // namespace pkm

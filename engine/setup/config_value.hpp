@@ -1,0 +1,73 @@
+// A strict view of one value of a study file: it reads what is expected and refuses everything else with file, line,
+// key path, the value as written, what was expected and the nearest known name.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/error.hpp"
+#include "engine/core/options.hpp"
+#include "engine/setup/toml.hpp"
+
+namespace pkm {
+
+/// "a number in [0, 1]", "a number >= 0 s", "any number": a range for messages; `noun` is "a number" or "an integer".
+std::string range_text(std::string_view noun, double lower, double upper, std::string_view unit = "1");
+
+/// Refers to a TomlValue that must outlive it. Every function that reads throws ConfigError.
+class ConfigValue {
+ public:
+  /// @param path  dotted key path: "variables.a.min"; tables of a list count from 1: "constraint[2].bound"
+  ConfigValue(const TomlValue& value, std::string file, std::string path);
+
+  bool is_table() const { return value_->kind == TomlValue::Kind::table; }
+  bool is_text() const { return value_->kind == TomlValue::Kind::text; }
+
+  /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].
+  double number(std::string_view unit, double lower = -std::numeric_limits<double>::infinity(),
+                double upper = std::numeric_limits<double>::infinity()) const;
+  /// A whole number written without point or exponent.
+  std::int64_t integer(double lower = -std::numeric_limits<double>::infinity(),
+                       double upper = std::numeric_limits<double>::infinity()) const;
+  bool flag() const;
+  const std::string& text(std::string_view expected) const;
+  /// Text that is one of `choices`.
+  const std::string& word(const std::vector<std::string>& choices) const;
+  /// The elements of an array: `path[1]`, `path[2]`, ...
+  std::vector<ConfigValue> elements(std::string_view expected) const;
+
+  // Tables
+  /// Refuses any key that is not in `known`; `what` says what the keys are: "key", "parameter".
+  void allow(const std::vector<std::string>& known, std::string_view what = "key") const;
+  const std::vector<std::string>& keys() const { return value_->keys; }
+  bool has(const std::string& key) const { return value_->find(key) != nullptr; }
+  std::optional<ConfigValue> find(const std::string& key) const;
+  /// The value of a key that must be there.
+  ConfigValue at(const std::string& key, std::string_view expected) const;
+  /// Refuses anything but a table.
+  const ConfigValue& expect_table(std::string_view expected = "a table") const;
+
+  SourcePlace place() const { return {file_, value_->line, path_}; }
+  /// "line 12", for a message about another place.
+  std::string line() const { return "line " + std::to_string(value_->line); }
+  /// found: the value as written.
+  ConfigError error(std::string_view expected, std::string_view nearest = {}) const;
+  ConfigError error_of(std::string_view found, std::string_view expected, std::string_view nearest = {}) const;
+  /// A message that is a sentence of its own.
+  ConfigError refusal(std::string_view sentence) const;
+
+ private:
+  const TomlValue* value_;
+  std::string file_;
+  std::string path_;
+};
+
+/// The options of one entry of a catalogue, read by their descriptions; defaults filled in. Only the options' own keys
+/// are looked at: the caller refuses unknown keys with `allow`.
+Options read_options(const ConfigValue& table, const std::vector<OptionSpec>& specs);
+
+}  // namespace pkm

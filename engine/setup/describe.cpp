@@ -1,0 +1,170 @@
+// The text of `pkmopt check`.
+
+#include <algorithm>
+#include <sstream>
+
+#include "engine/core/unit.hpp"
+#include "engine/setup/study.hpp"
+
+namespace pkm {
+namespace {
+
+using Row = std::vector<std::string>;
+
+/// Rows of cells, each column as wide as its widest cell.
+void write_aligned(std::ostream& out, const std::vector<Row>& rows) {
+  std::vector<std::size_t> width;
+  for (const auto& row : rows)
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c == width.size()) width.push_back(0);
+      width[c] = std::max(width[c], row[c].size());
+    }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) line += "  " + row[c] + std::string(width[c] - row[c].size(), ' ');
+    line.erase(line.find_last_not_of(' ') + 1);
+    out << line << '\n';
+  }
+}
+
+std::string range(double lower, double upper, const std::string& unit) {
+  return shortest(lower) + " .. " + with_unit(upper, unit);
+}
+
+void write_parameters(std::ostream& out, const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const auto& known = parts.mechanism->info().parameters;
+  std::vector<Row> varying, fixed;
+  for (std::size_t v = 0; v < parts.varies.size(); ++v) {
+    const std::size_t i = parts.varies[v];
+    const Variable& variable = parts.space[v];
+    std::string bounds = range(variable.lower, variable.upper, variable.unit);
+    if (variable.step > 0) bounds += " in steps of " + with_unit(variable.step, variable.unit);
+    const std::string base = study.baseline ? "baseline " + with_unit((*study.baseline)[i], variable.unit) : "";
+    varying.push_back({variable.name, bounds, base, known[i].meaning});
+  }
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (std::find(parts.varies.begin(), parts.varies.end(), i) != parts.varies.end()) continue;
+    const double value = parts.parameters[i];
+    std::string note = value == known[i].nominal ? "(default)" : "";
+    if (study.baseline && (*study.baseline)[i] != value)
+      note += (note.empty() ? "" : " ") + ("baseline " + with_unit((*study.baseline)[i], known[i].unit));
+    fixed.push_back({known[i].name, with_unit(value, known[i].unit), note, known[i].meaning});
+  }
+  out << "\nvariables" << (varying.empty() ? ": none" : "") << '\n';
+  write_aligned(out, varying);
+  out << "\nfixed parameters" << (fixed.empty() ? ": none" : "") << '\n';
+  write_aligned(out, fixed);
+}
+
+std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
+  const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
+  const auto unit = [](int i) { return std::string(i == 3 ? "rad" : "m"); };
+  std::vector<Row> rows;
+  if (plan.method == Method::voxels) {
+    std::string cells, box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string separator = k == 0 ? "" : ", ";
+      const int swept = info.swept[k];
+      cells += separator + coordinate(swept) + " = " + std::to_string(plan.cells[k]);
+      if (plan.box)
+        box += separator + coordinate(swept) + " = " + range((*plan.box)[k][0], (*plan.box)[k][1], unit(swept));
+    }
+    if (plan.held_cells > 0) cells += ", " + coordinate(info.held) + " = " + std::to_string(plan.held_cells);
+    rows = {{"method", "voxels"}, {"cells", cells}, {"box", plan.box ? box : "derived from each design"}};
+  } else {
+    rows = {{"method", "columns"}};
+    std::string nodes;
+    std::size_t k = 0;
+    for (const int swept : info.swept)
+      if (swept != info.column)
+        nodes += (nodes.empty() ? "" : ", ") + coordinate(swept) + " = " + std::to_string(plan.nodes[k++]);
+    if (plan.nodes[0] > 0)
+      rows.push_back({"nodes", nodes + " per piece"});
+    else
+      rows.push_back({"tolerance", shortest(plan.tolerance) + " relative"});
+  }
+  using Kind = HeldCoordinate::Kind;
+  const std::string held = plan.held.kind == Kind::middle       ? "middle of each design"
+                           : plan.held.kind == Kind::integrated ? "integrated over its range"
+                                                                : with_unit(plan.held.value, unit(info.held));
+  rows.push_back({coordinate(info.held), held});
+  return rows;
+}
+
+std::vector<Row> limit_rows(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const auto& known = parts.mechanism->info().limits;
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto& limit = known[i];
+    std::string value = with_unit(limit.inactive, limit.unit), origin = "(default: cuts nothing)";
+    if (!study.limit_origins[i].empty()) {
+      value = parts.plan.limits.given[i] ? with_unit(*parts.plan.limits.given[i], limit.unit) : limit.derivation;
+      origin = "from " + study.limit_origins[i];
+    }
+    rows.push_back({limit.name, value, origin, limit.meaning});
+  }
+  return rows;
+}
+
+void write_options(std::ostream& out, const std::vector<OptionSpec>& specs, const Options& options) {
+  std::vector<Row> rows;
+  for (const auto& spec : specs) {
+    const auto value = options.values().find(spec.name);
+    if (value == options.values().end()) {
+      rows.push_back({"  " + spec.name, "not set", "(default)"});
+      continue;
+    }
+    const std::string unit = spec.kind == OptionKind::number && spec.unit != "1" ? " " + spec.unit : "";
+    const bool initial = spec.initial && *spec.initial == value->second;
+    rows.push_back({"  " + spec.name, to_text(value->second) + unit, initial ? "(default)" : ""});
+  }
+  write_aligned(out, rows);
+}
+
+void write_entries(std::ostream& out, const std::string& title, const std::vector<StudyEntry>& entries) {
+  out << '\n' << title << (entries.empty() ? ": none" : "") << '\n';
+  for (const auto& entry : entries) {
+    out << "  " << entry.name << (entry.name == entry.type ? "" : " (" + entry.type + ")") << ": " << entry.role
+        << '\n';
+    write_options(out, entry.specs, entry.options);
+  }
+}
+
+}  // namespace
+
+std::string describe(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const MechanismInfo& info = parts.mechanism->info();
+  std::ostringstream out;
+  write_aligned(out, {{"study", study.name},
+                      {"file", study.file_name},
+                      {"seed", std::to_string(study.seed)},
+                      {"output", study.output_file()},
+                      {"mechanism", info.name + ": " + info.title}});
+  write_parameters(out, study);
+  out << "\nworkspace\n";
+  write_aligned(out, survey_rows(info, parts.plan));
+  out << "\nlimits of a pose" << (info.limits.empty() ? ": none" : "") << '\n';
+  write_aligned(out, limit_rows(study));
+  write_entries(out, "objectives", study.objectives);
+  write_entries(out, "constraints", study.constraints);
+  write_entries(out, "reports", study.reports);
+  out << "\nstages\n";
+  for (std::size_t i = 0; i < study.stages.size(); ++i) {
+    const Stage& stage = study.stages[i];
+    out << "  " << i + 1 << ". " << stage.entry->name << ": " << stage.entry->meaning << '\n';
+    write_options(out, stage.entry->options, stage.options);
+  }
+  std::string round = "best design as it is";
+  if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
+  out << "\nrun\n";
+  write_aligned(out, {{"checkpoint", study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
+                                                            : "adapts: at most 2 % of the run time"},
+                      {"final", round}});
+  for (const auto& warning : study.warnings) out << "\nwarning: " << warning << '\n';
+  return out.str();
+}
+
+}  // namespace pkm

@@ -1,0 +1,114 @@
+// [mechanism], [variables], [baseline]: which machine, what of it varies, what it is compared with.
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/unit.hpp"
+#include "engine/setup/sections.hpp"
+
+namespace pkm {
+namespace {
+
+std::size_t index_of(const std::vector<Parameter>& parameters, const std::string& name) {
+  const auto same = [&name](const Parameter& p) { return p.name == name; };
+  return static_cast<std::size_t>(std::find_if(parameters.begin(), parameters.end(), same) - parameters.begin());
+}
+
+/// Overwrites the parameters that `table` names.
+void read_parameters(const ConfigValue& table, const std::vector<Parameter>& known, std::vector<double>& values) {
+  table.expect_table("a table of parameters, { name = value, ... }");
+  table.allow(names_of(known), "parameter");
+  for (const auto& key : table.keys()) {
+    const std::size_t i = index_of(known, key);
+    values[i] = table.find(key)->number(known[i].unit, known[i].lower, known[i].upper);
+  }
+}
+
+Variable read_variable(const ConfigValue& table, const Parameter& parameter) {
+  table.expect_table("a table { min = .., max = .., step = .. (if discrete) }");
+  table.allow({"min", "max", "step"});
+  const std::string range = range_text("a number", parameter.lower, parameter.upper, parameter.unit);
+  Variable variable{parameter.name, parameter.unit, 0, 0, 0};
+  variable.lower = table.at("min", range).number(parameter.unit, parameter.lower, parameter.upper);
+  const ConfigValue max = table.at("max", range);
+  variable.upper = max.number(parameter.unit, parameter.lower, parameter.upper);
+  if (variable.lower >= variable.upper)
+    throw max.error("a number above min = " + with_unit(variable.lower, parameter.unit));
+  if (const auto step = table.find("step")) {
+    variable.step = step->number(parameter.unit);
+    if (!(variable.step > 0 && variable.step <= variable.upper - variable.lower))
+      throw step->error("a step > 0 and at most max - min = " +
+                        with_unit(variable.upper - variable.lower, parameter.unit));
+  }
+  return variable;
+}
+
+void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < space.dimension(); ++i) {
+    const Variable& v = space[i];
+    const double last = space.nearest(i, v.upper);
+    if (v.step > 0 && v.upper - last > 1e-9 * v.step)
+      warnings.push_back("variable " + v.name + " never takes its max " + with_unit(v.upper, v.unit) +
+                         ": the last value that min + k step reaches is " + with_unit(last, v.unit));
+  }
+}
+
+}  // namespace
+
+void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
+  std::vector<std::string> names;
+  for (const auto& mechanism : draft.catalogues.mechanisms) names.push_back(mechanism->info().name);
+  const ConfigValue table = root.at("mechanism", "a table [mechanism] with type = one of " + join(names));
+  table.expect_table("a table [mechanism]").allow({"type", "parameters"});
+  const std::string& type = table.at("type", "one of " + join(names)).word(names);
+  for (const auto& mechanism : draft.catalogues.mechanisms)
+    if (mechanism->info().name == type) draft.parts.mechanism = mechanism;
+
+  for (const auto& parameter : draft.info().parameters) draft.parts.parameters.push_back(parameter.nominal);
+  if (const auto fixed = table.find("parameters"))
+    read_parameters(*fixed, draft.info().parameters, draft.parts.parameters);
+}
+
+void read_variables(const ConfigValue& root, StudyDraft& draft) {
+  const auto& known = draft.info().parameters;
+  const ConfigValue mechanism = *root.find("mechanism");
+  std::vector<Variable> variables;
+  std::vector<double> nominal = draft.parts.parameters;
+  if (const auto table = root.find("variables")) {
+    table->expect_table("a table [variables]").allow(names_of(known), "parameter");
+    const auto fixed = mechanism.find("parameters");
+    for (const auto& key : table->keys()) {
+      const ConfigValue entry = *table->find(key);
+      if (fixed && fixed->has(key))
+        throw entry.refusal("the parameter is also fixed in mechanism.parameters (" + fixed->find(key)->line() +
+                            "); it can either vary or be fixed");
+      const std::size_t i = index_of(known, key);
+      variables.push_back(read_variable(entry, known[i]));
+      draft.parts.varies.push_back(i);
+      nominal[i] = std::clamp(nominal[i], variables.back().lower, variables.back().upper);
+    }
+  }
+  draft.parts.space = DesignSpace(std::move(variables));
+  warn_of_lattice_end(draft.parts.space, draft.study.warnings);
+  if (const std::string reason = draft.parts.mechanism->refuse(nominal); !reason.empty())
+    throw mechanism.refusal(reason);
+}
+
+void read_baseline(const ConfigValue& root, StudyDraft& draft) {
+  const auto table = root.find("baseline");
+  if (!table) return;
+  std::vector<double> values = draft.parts.parameters;
+  read_parameters(*table, draft.info().parameters, values);
+  if (const std::string reason = draft.parts.mechanism->refuse(values); !reason.empty()) throw table->refusal(reason);
+  for (std::size_t k = 0; k < draft.parts.varies.size(); ++k) {
+    const Variable& v = draft.parts.space[k];
+    const double value = values[draft.parts.varies[k]];
+    if (value < v.lower || value > v.upper)
+      draft.study.warnings.push_back("the baseline's " + v.name + " = " + with_unit(value, v.unit) +
+                                     " lies outside the variable's bounds [" + shortest(v.lower) + ", " +
+                                     shortest(v.upper) + "]");
+  }
+  draft.study.baseline = std::move(values);
+}
+
+}  // namespace pkm

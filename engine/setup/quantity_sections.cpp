@@ -1,0 +1,179 @@
+// [[objective]], [[constraint]], [[report]]: entries of the catalogues become named quantities of the problem.
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/core/unit.hpp"
+#include "engine/setup/sections.hpp"
+
+namespace pkm {
+namespace {
+
+std::string in_unit(const std::string& unit) { return unit == "1" ? "dimensionless" : "in " + unit; }
+
+/// The name of an entry within its kind: `name = `, else its type. Names are keys of the study file and of JSON.
+std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
+  const auto given = table.find("name");
+  const std::string name = given ? given->text("text") : type;
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
+           c == '.';
+  };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), allowed))
+    throw given->error("a name of letters, digits, '-', '_' and '.'");
+  for (const auto& other : before)
+    if (other.name == name)
+      throw table.refusal("there is already one called '" + name + "'; tell them apart with name = \"...\"");
+  return name;
+}
+
+/// Adds what an entry needs to the demands of those before it. All samples share one characteristic length.
+void add_demand(const ConfigValue& table, const ObjectiveEntry& entry, const EntryContext& context, Demand& demand) {
+  Demand own;
+  entry.demand(context, own);
+  if (own.conditioning && demand.conditioning && own.characteristic_length != demand.characteristic_length)
+    throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
+  if (own.conditioning) demand = own;
+}
+
+/// What an [[objective]], [[constraint]] or [[report]] made from an entry of the catalogue of objectives has in common.
+NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, const std::string& name,
+                             const Options& options, StudyDraft& draft) {
+  if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
+    throw table.find("type")->refusal(reason);
+  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options};
+  try {
+    add_demand(table, entry, context, draft.parts.demand);
+    return {name, entry.unit(context), entry.meaning, entry.direction, entry.make(context), {}, {}};
+  } catch (const std::invalid_argument& reason) {
+    throw table.refusal(reason.what());
+  }
+}
+
+void read_objective(const ConfigValue& table, StudyDraft& draft) {
+  const auto& catalogue = draft.catalogues.objectives;
+  const std::string& type = type_of(table, "type", names_of(catalogue));
+  const ObjectiveEntry& entry = *find_named(catalogue, type);
+  allow_options(table, {"type", "name", "direction"}, entry.options);
+  const Options options = read_options(table, entry.options);
+  NamedQuantity made = make_objective(table, entry, entry_name(table, type, draft.study.objectives), options, draft);
+  if (const auto direction = table.find("direction"))
+    made.direction =
+        direction->word({"minimise", "maximise"}) == "maximise" ? Direction::maximise : Direction::minimise;
+  const std::string verb = made.direction == Direction::maximise ? "maximise" : "minimise";
+  draft.study.objectives.push_back({type, made.name, verb + ", " + in_unit(made.unit), entry.options, options});
+  draft.parts.objectives.push_back(std::move(made));
+}
+
+void read_report(const ConfigValue& table, StudyDraft& draft) {
+  const auto& catalogue = draft.catalogues.objectives;
+  const std::string& type = type_of(table, "type", names_of(catalogue));
+  const ObjectiveEntry& entry = *find_named(catalogue, type);
+  allow_options(table, {"type", "name"}, entry.options);
+  const Options options = read_options(table, entry.options);
+  NamedQuantity made = make_objective(table, entry, entry_name(table, type, draft.study.reports), options, draft);
+  draft.study.reports.push_back({type, made.name, in_unit(made.unit), entry.options, options});
+  draft.parts.reports.push_back(std::move(made));
+}
+
+/// An objective as a constraint: its value has a least or a greatest allowed value.
+void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entry, StudyDraft& draft) {
+  allow_options(table, {"type", "name", "min", "max"}, entry.options);
+  const auto least = table.find("min"), greatest = table.find("max");
+  if (!least && !greatest)
+    throw table.refusal("the objective " + entry.name + " becomes a constraint by min = .. or max = ..; give one");
+  if (least && greatest)
+    throw table.refusal("found both min and max; a constraint has one of them (write two [[constraint]] tables)");
+  const Options options = read_options(table, entry.options);
+  NamedQuantity made =
+      make_objective(table, entry, entry_name(table, entry.name, draft.study.constraints), options, draft);
+  const double bound = (least ? least : greatest)->number(made.unit);
+  (least ? made.least : made.greatest) = bound;
+  const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
+  made.meaning = "margin of " + role + ": " + made.meaning;
+  draft.study.constraints.push_back({entry.name, made.name, role, entry.options, options});
+  draft.parts.survey_margins.push_back(std::move(made));
+}
+
+void read_design_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
+  const auto specs = entry.options(draft.info());
+  allow_options(table, {"type", "name"}, specs);
+  if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
+    throw table.find("type")->refusal(reason);
+  const Options options = read_options(table, specs);
+  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options};
+  NamedQuantity made;
+  made.name = entry_name(table, entry.name, draft.study.constraints);
+  made.meaning = entry.meaning;
+  try {
+    made.unit = entry.unit(context);
+    made.quantity = entry.make(context);
+  } catch (const std::invalid_argument& reason) {
+    throw table.refusal(reason.what());
+  }
+  draft.study.constraints.push_back({entry.name, made.name, "margin >= 0, " + in_unit(made.unit), specs, options});
+  draft.parts.design_margins.push_back(std::move(made));
+}
+
+void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
+  const MechanismInfo& info = draft.info();
+  const auto specs = entry.options(info);
+  allow_options(table, {"type"}, specs);
+  if (const std::string reason = entry.refusal(info); !reason.empty()) throw table.find("type")->refusal(reason);
+  const Options options = read_options(table, specs);
+  LimitSpec& all = draft.parts.plan.limits;
+  LimitSpec own;
+  try {
+    own = entry.limits(info, options);
+  } catch (const std::invalid_argument& reason) {
+    throw table.refusal(reason.what());
+  }
+  std::vector<std::string> set;
+  for (std::size_t i = 0; i < info.limits.size(); ++i) {
+    if (!own.given[i] && !own.derived[i]) continue;
+    std::string& origin = draft.study.limit_origins[i];
+    if (!origin.empty())
+      throw table.refusal("the threshold " + info.limits[i].name + " is set here and in " + origin + "; set it once");
+    origin = table.place().key + " " + entry.name + " (" + table.line() + ")";
+    all.given[i] = own.given[i];
+    all.derived[i] = own.derived[i];
+    set.push_back(info.limits[i].name);
+  }
+  const std::string role = set.empty() ? "sets no threshold" : "cuts the workspace by " + join(set);
+  draft.study.constraints.push_back({entry.name, entry.name, role, specs, options});
+}
+
+/// Calls `read` for each [[constraint]] whose entry is of the wanted level; objectives' names count as design level.
+template <class Read>
+void for_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level, Read read) {
+  std::vector<std::string> names = names_of(draft.catalogues.constraints);
+  for (const auto& name : names_of(draft.catalogues.objectives))
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  for (const auto& table : tables_of(root, "constraint")) {
+    const std::string& type = type_of(table, "type", names);
+    const ConstraintEntry* entry = find_named(draft.catalogues.constraints, type);
+    if ((entry && entry->pose_level) == pose_level) read(table, entry, type);
+  }
+}
+
+}  // namespace
+
+void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
+  for_constraints(root, draft, true, [&](const ConfigValue& table, const ConstraintEntry* entry, const std::string&) {
+    read_pose_constraint(table, *entry, draft);
+  });
+}
+
+void read_quantities(const ConfigValue& root, StudyDraft& draft) {
+  for (const auto& table : tables_of(root, "objective")) read_objective(table, draft);
+  for_constraints(root, draft, false,
+                  [&](const ConfigValue& table, const ConstraintEntry* entry, const std::string& type) {
+                    if (entry)
+                      read_design_constraint(table, *entry, draft);
+                    else
+                      read_bounded_objective(table, *find_named(draft.catalogues.objectives, type), draft);
+                  });
+  for (const auto& table : tables_of(root, "report")) read_report(table, draft);
+}
+
+}  // namespace pkm

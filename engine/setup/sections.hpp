@@ -1,0 +1,45 @@
+// The sections of a study file, one function each, in the order in which read_study_toml calls them. Each reads its
+// part of the document's root table and adds to what is known of the problem.
+#pragma once
+
+#include <string>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/setup/config_value.hpp"
+#include "engine/setup/study.hpp"
+
+namespace pkm {
+
+/// What the sections build up together.
+struct StudyDraft {
+  const Catalogues& catalogues;
+  Study study;
+  ProblemParts parts;
+
+  const MechanismInfo& info() const { return parts.mechanism->info(); }
+};
+
+/// [mechanism]: type and fixed parameters.
+void read_mechanism(const ConfigValue& root, StudyDraft& draft);
+/// [variables]
+void read_variables(const ConfigValue& root, StudyDraft& draft);
+/// [baseline]
+void read_baseline(const ConfigValue& root, StudyDraft& draft);
+/// [workspace]: method, grid or accuracy, held coordinate, limits.
+void read_workspace(const ConfigValue& root, StudyDraft& draft);
+/// The [[constraint]]s that cut the workspace: they complete the survey plan, so they come before what uses it.
+void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
+/// [[objective]], the other [[constraint]]s and [[report]]
+void read_quantities(const ConfigValue& root, StudyDraft& draft);
+/// [[stage]]
+void read_stages(const ConfigValue& root, StudyDraft& draft);
+
+/// The tables [[name]] of the document; none: empty.
+std::vector<ConfigValue> tables_of(const ConfigValue& root, const std::string& name);
+/// The value of `key` ("type", "optimiser"), which must be one of `choices`. It is read before the other keys are
+/// checked, since it decides which are allowed; a key that looks like it is named in the message.
+const std::string& type_of(const ConfigValue& table, const std::string& key, const std::vector<std::string>& choices);
+/// Refuses keys that are neither in `keys` nor the name of one of `specs`.
+void allow_options(const ConfigValue& table, std::vector<std::string> keys, const std::vector<OptionSpec>& specs);
+
+}  // namespace pkm

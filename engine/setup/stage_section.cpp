@@ -1,0 +1,54 @@
+// [[stage]]: optimisers with their options, checked against what the problem asks of them.
+
+#include <stdexcept>
+
+#include "engine/setup/sections.hpp"
+
+namespace pkm {
+namespace {
+
+/// "" or one sentence naming what the optimiser can do and what the study asks for.
+std::string refusal_of(const OptimiserEntry& entry, const ProblemParts& parts) {
+  const Capabilities& can = entry.capabilities;
+  const std::string who = "the optimiser " + entry.name + " ";
+  if (parts.space.dimension() == 0) return who + "needs variables, but the study's [variables] is empty";
+  if (can.needs_objective && parts.objectives.empty())
+    return who + "needs an objective, but the study has no [[objective]]";
+  if (parts.objectives.size() > can.max_objectives)
+    return who + "handles " + std::to_string(can.max_objectives) + " objective" + (can.max_objectives == 1 ? "" : "s") +
+           ", but the study has " + std::to_string(parts.objectives.size()) + " (" + join(names_of(parts.objectives)) +
+           ")";
+  auto margins = names_of(parts.design_margins);
+  for (const auto& name : names_of(parts.survey_margins)) margins.push_back(name);
+  if (!can.constraints && !margins.empty()) return who + "handles no constraints, but the study has " + join(margins);
+  for (const auto& variable : parts.space.variables())
+    if (!can.discrete && variable.step > 0)
+      return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
+  if (can.needs_gradient && parts.plan.method == Method::voxels)
+    return who +
+           "needs derivatives, but the study surveys voxels, whose sums have none; take workspace.method = \"columns\"";
+  return "";
+}
+
+}  // namespace
+
+void read_stages(const ConfigValue& root, StudyDraft& draft) {
+  const auto names = names_of(draft.catalogues.optimisers);
+  const auto tables = tables_of(root, "stage");
+  if (tables.empty()) root.at("stage", "at least one [[stage]] with optimiser = one of " + join(names));
+  for (const auto& table : tables) {
+    const OptimiserEntry& entry = *find_named(draft.catalogues.optimisers, type_of(table, "optimiser", names));
+    allow_options(table, {"optimiser"}, entry.options);
+    if (const std::string reason = refusal_of(entry, draft.parts); !reason.empty())
+      throw table.find("optimiser")->refusal(reason);
+    Stage stage{&entry, read_options(table, entry.options), nullptr, table.place().line};
+    try {
+      stage.optimiser = entry.make(stage.options, draft.parts.space);
+    } catch (const std::invalid_argument& reason) {
+      throw table.refusal(reason.what());
+    }
+    draft.study.stages.push_back(std::move(stage));
+  }
+}
+
+}  // namespace pkm

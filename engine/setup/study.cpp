@@ -1,0 +1,122 @@
+#include "engine/setup/study.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "engine/setup/sections.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t{16} << 20;  // bytes; a study takes a few thousand
+
+std::string stem(const std::string& file_name) { return std::filesystem::path(file_name).stem().string(); }
+
+void read_study_section(const ConfigValue& root, Study& study) {
+  study.name = stem(study.file_name);
+  const auto table = root.find("study");
+  if (!table) return;
+  table->expect_table("a table [study]").allow({"name", "seed", "output"});
+  if (const auto name = table->find("name")) study.name = name->text("text");
+  if (const auto seed = table->find("seed")) study.seed = static_cast<std::uint64_t>(seed->integer(0));
+  if (const auto output = table->find("output")) {
+    study.output = output->text("a file name");
+    if (study.output->empty()) throw output->error("a file name");
+  }
+}
+
+/// [checkpoint] and [final]: one key each.
+void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
+  if (const auto table = root.find("checkpoint")) {
+    table->expect_table("a table [checkpoint]").allow({"every"});
+    if (const auto every = table->find("every")) draft.study.checkpoint_every = every->number("s", 0);
+  }
+  if (const auto table = root.find("final")) {
+    table->expect_table("a table [final]").allow({"round"});
+    if (const auto round = table->find("round")) {
+      // A step with a unit makes sense where the variables share that unit. (A stage has made sure that there are
+      // some.)
+      const auto& variables = draft.parts.space.variables();
+      std::string& unit = draft.study.round_unit = variables.front().unit;
+      for (const auto& variable : variables)
+        if (variable.unit != unit) unit = "1";
+      draft.study.round = round->number(unit);
+      if (!(*draft.study.round > 0)) throw round->error("a step > 0");
+    }
+  }
+}
+
+}  // namespace
+
+std::string Study::output_file() const { return output ? *output : stem(file_name) + ".h5"; }
+
+std::vector<ConfigValue> tables_of(const ConfigValue& root, const std::string& name) {
+  const auto list = root.find(name);
+  if (!list) return {};
+  const std::string expected = "a list of tables, each written [[" + name + "]]";
+  auto tables = list->elements(expected);
+  for (const auto& table : tables) table.expect_table(expected);
+  return tables;
+}
+
+const std::string& type_of(const ConfigValue& table, const std::string& key, const std::vector<std::string>& choices) {
+  const std::string expected = "one of " + join(choices);
+  if (!table.has(key))
+    for (const auto& present : table.keys())
+      if (!nearest_name(present, {key}).empty())
+        throw table.find(present)->error_of("an unknown key", key + " = " + expected, key);
+  return table.at(key, expected).word(choices);
+}
+
+void allow_options(const ConfigValue& table, std::vector<std::string> keys, const std::vector<OptionSpec>& specs) {
+  for (const auto& name : names_of(specs)) keys.push_back(name);
+  table.allow(keys);
+}
+
+Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues) {
+  const TomlValue document = parse_toml(text, file_name);
+  if (document.keys.empty())
+    throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
+  const ConfigValue root(document, file_name, "");
+  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "objective", "constraint", "report", "stage",
+              "checkpoint", "final"},
+             "section");
+
+  StudyDraft draft{catalogues, {}, {}};
+  draft.study.text = text;
+  draft.study.file_name = file_name;
+  read_study_section(root, draft.study);
+  read_mechanism(root, draft);
+  read_variables(root, draft);
+  read_baseline(root, draft);
+  read_workspace(root, draft);
+  read_pose_constraints(root, draft);
+  read_quantities(root, draft);
+  read_stages(root, draft);
+  read_run_sections(root, draft);
+  try {
+    draft.study.problem = std::make_shared<const DesignProblem>(std::move(draft.parts));
+  } catch (const std::invalid_argument& reason) {
+    throw root.find("workspace").value_or(*root.find("mechanism")).refusal(reason.what());
+  }
+  return std::move(draft.study);
+}
+
+Study load_study_toml(const std::string& path, const Catalogues& catalogues) {
+  const std::string expected = "a study file in TOML";
+  std::error_code unreadable;  // is told below, by the attempt to open
+  if (std::filesystem::is_directory(path, unreadable)) throw ConfigError({path, 0, ""}, "a folder", expected);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw ConfigError({path, 0, ""}, std::string("no readable file (") + std::strerror(errno) + ")", expected);
+  std::string text(kLargestFile + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLargestFile) throw ConfigError({path, 0, ""}, "more than 16 MiB", expected);
+  return read_study_toml(text, path, catalogues);
+}
+
+}  // namespace pkm

@@ -1,0 +1,75 @@
+// A study: the design problem and the chain of optimisers that a TOML file describes.
+//
+// Reading is strict. A key nobody knows, a value out of range, a threshold named twice or an optimiser that is asked
+// for more than it can do is a ConfigError before anything runs. The same reader serves a file on disk and the text
+// that a stored study carries, so a resumed study is built exactly like a new one. experiments/ holds examples.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/mechanisms/all.hpp"
+#include "engine/optimisers/optimiser.hpp"
+#include "engine/problem/design_problem.hpp"
+
+namespace pkm {
+
+/// What a study may name. Stages keep pointers into `optimisers`.
+struct Catalogues {
+  const MechanismList& mechanisms;
+  const std::vector<ObjectiveEntry>& objectives;
+  const std::vector<ConstraintEntry>& constraints;
+  const std::vector<OptimiserEntry>& optimisers;
+};
+
+struct Stage {
+  const OptimiserEntry* entry = nullptr;
+  Options options;  ///< defaults filled in
+  std::shared_ptr<const Optimiser> optimiser;
+  int line = 0;  ///< of its [[stage]]
+};
+
+/// An [[objective]], [[constraint]] or [[report]] as it was understood, for listings.
+struct StudyEntry {
+  std::string type;
+  std::string name;
+  std::string role;  ///< "maximise, in m^2 rad", ">= 0.5 m^2 rad", "cuts the workspace"
+  std::vector<OptionSpec> specs;
+  Options options;
+};
+
+struct Study {
+  std::string text;       ///< the TOML document
+  std::string file_name;  ///< as it was called when it was read
+  std::string name;       ///< default: the file's stem
+  std::uint64_t seed = 1;
+  std::optional<std::string> output;
+  /// Mechanism, parameters, variables and survey plan are in problem->parts().
+  std::shared_ptr<const DesignProblem> problem;
+  std::optional<std::vector<double>> baseline;  ///< every parameter of the mechanism
+  std::vector<Stage> stages;
+  std::optional<double> round;             ///< [final]: step [SI] to which the best design is rounded
+  std::string round_unit = "1";            ///< the unit that all variables share, else "1"
+  std::optional<double> checkpoint_every;  ///< [s]; none: adapts itself
+  std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
+
+  std::vector<StudyEntry> objectives, constraints, reports;
+  std::vector<std::string> limit_origins;  ///< per limit of the mechanism: where it was set; "" when it was not
+
+  /// `output`, else the study file's stem + ".h5" in the current folder.
+  std::string output_file() const;
+};
+
+/// Builds a study from a TOML document. `file_name` is named in messages. Throws ConfigError.
+Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues);
+
+/// Reads the file at `path` and builds its study. Throws ConfigError, also when the file cannot be read.
+Study load_study_toml(const std::string& path, const Catalogues& catalogues);
+
+/// The resolved problem with every default spelled out: the text of `pkmopt check`.
+std::string describe(const Study& study);
+
+}  // namespace pkm

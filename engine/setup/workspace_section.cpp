@@ -1,0 +1,139 @@
+// [workspace]: how a design's workspace is surveyed, and the short form of its limits.
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/setup/sections.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid: the one of the 4PPa-2PaR paper
+constexpr std::int64_t kHeldCells = 32;  // and its default where the held coordinate is integrated over
+constexpr std::int64_t kMostCellsPerAxis = 1 << 20;
+constexpr std::int64_t kMostCells = std::int64_t{1} << 31;  // a voxel map takes a byte per cell
+constexpr double kFinestTolerance = 1e-13, kCoarsestTolerance = 0.1;
+constexpr std::int64_t kMostNodes = 1024;
+
+std::string unit_of_coordinate(int coordinate) { return coordinate == 3 ? "rad" : "m"; }
+
+std::array<std::string, 3> swept_names(const MechanismInfo& info) {
+  std::array<std::string, 3> names;
+  for (std::size_t k = 0; k < 3; ++k) names[k] = info.coordinates[static_cast<std::size_t>(info.swept[k])];
+  return names;
+}
+
+void read_cells(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
+  const auto swept = swept_names(info);
+  std::vector<std::string> known(swept.begin(), swept.end());
+  const bool integrated = plan.held.kind == HeldCoordinate::Kind::integrated;
+  if (integrated) known.push_back(info.coordinates[static_cast<std::size_t>(info.held)]);
+  table.expect_table("a table of cell numbers for " + join(known)).allow(known, "coordinate");
+  const auto read = [&table](const std::string& name) {
+    return table.at(name, "a number of cells").integer(1, kMostCellsPerAxis);
+  };
+  std::int64_t all = 1;
+  for (std::size_t k = 0; k < 3; ++k) all *= plan.cells[k] = read(known[k]);  // at most 2^60
+  if (integrated) plan.held_cells = read(known[3]);
+  if (all > kMostCells)
+    throw table.error_of(std::to_string(all) + " cells",
+                         "at most " + std::to_string(kMostCells) + " (a voxel map takes a byte of memory per cell)");
+}
+
+void read_box(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
+  const auto names = swept_names(info);
+  const std::vector<std::string> known(names.begin(), names.end());
+  table.expect_table("a table of ranges [from, to] for " + join(known)).allow(known, "coordinate");
+  plan.box.emplace();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string expected = "a range [from, to]", unit = unit_of_coordinate(info.swept[k]);
+    const ConfigValue range = table.at(names[k], expected);
+    const auto ends = range.elements(expected);
+    if (ends.size() != 2) throw range.error(expected);
+    (*plan.box)[k] = {ends[0].number(unit), ends[1].number(unit)};
+    if (!((*plan.box)[k][0] < (*plan.box)[k][1])) throw range.error("a range whose first end is the lower one");
+  }
+}
+
+void read_nodes(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
+  std::vector<std::string> names;
+  for (const int coordinate : info.swept)
+    if (coordinate != info.column) names.push_back(info.coordinates[static_cast<std::size_t>(coordinate)]);
+  table.expect_table("a table of node numbers for " + join(names)).allow(names, "coordinate");
+  for (std::size_t k = 0; k < plan.nodes.size(); ++k)
+    plan.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer(1, kMostNodes));
+}
+
+/// The key of the coordinate that is not swept: "middle", "integrated" or a number.
+HeldCoordinate read_held(const ConfigValue& value, const MechanismInfo& info) {
+  using Kind = HeldCoordinate::Kind;
+  const std::string choices =
+      info.held_can_integrate ? "\"middle\", \"integrated\" or a number in " : "\"middle\" or a number in ";
+  const std::string unit = unit_of_coordinate(info.held), expected = choices + unit;
+  if (value.is_text()) {
+    const std::string& word = value.text(expected);
+    if (word == "middle") return {Kind::middle, 0};
+    if (word == "integrated" && info.held_can_integrate) return {Kind::integrated, 0};
+    if (word == "integrated")
+      throw value.refusal("the mechanism " + info.name + " cannot integrate its workspace over " +
+                          info.coordinates[static_cast<std::size_t>(info.held)] + "; give " + expected);
+  }
+  try {
+    return {Kind::value, value.number(unit)};
+  } catch (const ConfigError&) {
+    const std::string word = value.is_text() ? nearest_name(value.text(""), {"middle", "integrated"}) : "";
+    throw value.error(expected, word);
+  }
+}
+
+void read_limits(const ConfigValue& table, StudyDraft& draft) {
+  const auto& known = draft.info().limits;
+  table.expect_table("a table of limits, { name = threshold, ... }").allow(names_of(known), "limit");
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (const auto value = table.find(known[i].name)) {
+      draft.parts.plan.limits.given[i] = value->number(known[i].unit, known[i].lower, known[i].upper);
+      draft.study.limit_origins[i] = "workspace.limits (" + value->line() + ")";
+    }
+}
+
+}  // namespace
+
+void read_workspace(const ConfigValue& root, StudyDraft& draft) {
+  const MechanismInfo& info = draft.info();
+  SurveyPlan& plan = draft.parts.plan;
+  plan.limits = no_limits(info);
+  draft.study.limit_origins.resize(info.limits.size());
+  const auto table = root.find("workspace");
+  if (!table) return;
+
+  const std::string& held = info.coordinates[static_cast<std::size_t>(info.held)];
+  table->expect_table("a table [workspace]")
+      .allow({"method", "tolerance", "nodes", "cells", "box", held, "limits"}, "key");
+  if (const auto method = table->find("method"))
+    plan.method = method->word({"columns", "voxels"}) == "voxels" ? Method::voxels : Method::columns;
+  const bool voxels = plan.method == Method::voxels;
+  for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
+    const bool of_voxels = key == "cells" || key == "box";
+    if (of_voxels != voxels && table->has(key))
+      throw table->find(key)->refusal(std::string("this key belongs to method = ") +
+                                      (of_voxels ? "\"voxels\", but the study's method is \"columns\""
+                                                 : "\"columns\", but the study's method is \"voxels\""));
+  }
+  if (const auto tolerance = table->find("tolerance")) {
+    plan.tolerance = tolerance->number("1", kFinestTolerance, kCoarsestTolerance);
+    if (table->has("nodes"))
+      throw table->find("nodes")->refusal("either tolerance (" + tolerance->line() +
+                                          ") or nodes set the accuracy; give one of them");
+  }
+  if (const auto nodes = table->find("nodes")) read_nodes(*nodes, info, plan);
+  if (const auto value = table->find(held)) plan.held = read_held(*value, info);
+  if (voxels) {
+    plan.cells = kPaperCells;
+    if (plan.held.kind == HeldCoordinate::Kind::integrated) plan.held_cells = kHeldCells;
+  }
+  if (const auto cells = table->find("cells")) read_cells(*cells, info, plan);
+  if (const auto box = table->find("box")) read_box(*box, info, plan);
+  if (const auto limits = table->find("limits")) read_limits(*limits, draft);
+}
+
+}  // namespace pkm

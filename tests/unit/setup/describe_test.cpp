@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include "tests/unit/setup/right_studies.hpp"
+
+namespace pkm {
+namespace {
+
+using testing::kFull;
+using testing::kSmallest;
+using testing::read_right;
+
+TEST(Describe, SpellsOutEveryDefault) {
+  EXPECT_EQ(describe(read_right(kSmallest)), R"(  study      wide
+  file       runs/wide.toml
+  seed       1
+  output     wide.h5
+  mechanism  slider: a machine for tests
+
+variables
+  a  0.1 .. 0.9 m    half width
+
+fixed parameters
+  b     0.8 m    (default)  distance
+  tilt  0.5 rad  (default)  tilt
+  mass  2 kg     (default)  mass
+
+workspace
+  method     columns
+  tolerance  1e-08 relative
+  y          middle of each design
+
+limits of a pose
+  gap_min    0 m      (default: cuts nothing)  least gap
+  angle_max  1.5 rad  (default: cuts nothing)  greatest angle
+
+objectives
+  volume: maximise, in m^2 rad
+
+constraints: none
+
+reports: none
+
+stages
+  1. ga: evolves
+    population  40       (default)
+    rate        0.5      (default)
+    target      not set  (default)
+
+run
+  checkpoint  adapts: at most 2 % of the run time
+  final       best design as it is
+)");
+}
+
+TEST(Describe, ShowsWhatWasGivenAndWhere) {
+  EXPECT_EQ(describe(read_right(kFull)), R"(  study      wide <bounds>
+  file       runs/wide.toml
+  seed       7
+  output     out.h5
+  mechanism  slider: a machine for tests
+
+variables
+  tilt  -0.5235987755982988 .. 0.5 rad    baseline 0.5 rad  tilt
+  a     0.25 .. 0.72 m in steps of 0.1 m  baseline 0.8 m    half width
+
+fixed parameters
+  b     0.8 m   (default)  distance
+  mass  0.5 kg             mass
+
+workspace
+  method  voxels
+  cells   x = 32, z = 34, theta = 60
+  box     x = 0 .. 0.8 m, z = -1 .. 1 m, theta = -1.5707963267948966 .. 1.5 rad
+  y       0.2 m
+
+limits of a pose
+  gap_min    2 a                     from constraint[1] gap (line 23)  least gap
+  angle_max  0.7853981633974483 rad  from workspace.limits (line 19)   greatest angle
+
+objectives
+  volume: minimise, in m^2 rad
+
+constraints
+  gap: cuts the workspace by gap_min
+    angle_max  not set  (default)
+  big-enough (volume): >= 0.5 m^2 rad
+  linear: margin >= 0, dimensionless
+    coefficients  { a = 1, b = -1 }
+    bound         0
+
+reports
+  shape: dimensionless
+    length     0.12 m
+    count      5        (default)
+    exact      false    (default)
+    statistic  "min"
+    weights    not set  (default)
+    note       not set  (default)
+
+stages
+  1. sweep: tries all
+  2. ga: evolves
+    population  10
+    rate        0.5  (default)
+    target      2
+
+run
+  checkpoint  every 60 s
+  final       best design rounded to 0.01, evaluated again
+
+warning: variable a never takes its max 0.72 m: the last value that min + k step reaches is 0.65 m
+
+warning: the baseline's a = 0.8 m lies outside the variable's bounds [0.25, 0.72]
+)");
+}
+
+}  // namespace
+}  // namespace pkm

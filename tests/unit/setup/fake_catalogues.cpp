@@ -1,0 +1,154 @@
+#include "tests/unit/setup/fake_catalogues.hpp"
+
+#include <stdexcept>
+
+namespace pkm::testing {
+namespace {
+
+class IdleSurveyor final : public Surveyor {
+ public:
+  void survey(std::span<const double>, Survey<double>& survey) const override { survey.clear(); }
+};
+
+class Slider final : public Mechanism {
+ public:
+  Slider() {
+    info_.name = "slider";
+    info_.title = "a machine for tests";
+    info_.parameters = {{"a", "m", 0.2, 0, 2, "half width"},
+                        {"b", "m", 0.8, 0.1, 3, "distance"},
+                        {"tilt", "rad", 0.5, -1, 1, "tilt"},
+                        {"mass", "kg", 2, 0, 100, "mass"}};
+    info_.coordinates = {"x", "y", "z", "theta"};
+    info_.joints = {"q1", "q2", "q3", "q4"};
+    info_.modes = {"lower"};
+    info_.swept = {0, 2, 3};
+    info_.held = 1;
+    info_.held_can_integrate = true;
+    info_.limits = {{"gap_min", "m", 0, 0, 1, "gap", "2 a", "least gap"},
+                    {"angle_max", "rad", 1.5, 0, 1.5, "gap", "", "greatest angle"}};
+  }
+  const MechanismInfo& info() const override { return info_; }
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand&) const override {
+    if (plan.held.kind == HeldCoordinate::Kind::integrated && plan.box)
+      throw std::invalid_argument("the slider cannot integrate inside a given box");
+    return std::make_unique<IdleSurveyor>();
+  }
+  VoxelMap voxel_map(std::span<const double>, const SurveyPlan&) const override { return {}; }
+  void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
+  NamedValues facts(std::span<const double>, const LimitSpec&) const override { return {}; }
+  double size(std::span<const double>) const override { return 1; }
+  std::string refuse(std::span<const double> parameters) const override {
+    return parameters[0] > 0 ? "" : "the half width a must be > 0";
+  }
+  PoseReport inspect(std::span<const double>, const Pose<double>&, const std::string&,
+                     const LimitSpec&) const override {
+    return {};
+  }
+  std::vector<AssemblyMode> forward(std::span<const double>, const std::array<double, 4>&) const override { return {}; }
+
+ private:
+  MechanismInfo info_;
+};
+
+std::string volume_unit(const EntryContext&) { return "m^2 rad"; }
+std::string no_unit(const EntryContext&) { return "1"; }
+std::string metre(const EntryContext&) { return "m"; }
+std::string serves_all(const MechanismInfo&) { return ""; }
+void needs_nothing(const EntryContext&, Demand&) {}
+void needs_conditioning(const EntryContext& context, Demand& demand) {
+  demand.conditioning = true;
+  if (context.options.has("length")) demand.characteristic_length = context.options.number("length");
+}
+std::unique_ptr<const Quantity> make_zero(const EntryContext&) {
+  return make_quantity([](const auto&) { return 0.0; });
+}
+
+std::vector<ObjectiveEntry> make_objectives() {
+  std::vector<OptionSpec> options(6);
+  options[0] = {"length", OptionKind::number, "m", {}, false, 0, 10, {}, "characteristic length"};
+  options[1] = {"count", OptionKind::integer, "1", std::int64_t{5}, false, 1, 100, {}, "how many"};
+  options[2] = {"exact", OptionKind::flag, "1", false, false, 0, 0, {}, "exactly or not"};
+  options[3] = {"statistic", OptionKind::word, "1", "mean", false, 0, 0, {"mean", "min"}, "which"};
+  options[4] = {"weights", OptionKind::named_numbers, "1", {}, false, 0, 1, {}, "weights"};
+  options[5] = {"note", OptionKind::word, "1", {}, false, 0, 0, {}, "any text"};
+  const auto lacks_force = [](const MechanismInfo& info) {
+    return "force needs bodies, which the mechanism " + info.name + " does not describe";
+  };
+  return {
+      {"volume", "size of the workspace", Direction::maximise, {}, volume_unit, serves_all, needs_nothing, make_zero},
+      {"shape", "how well it is shaped", Direction::maximise, options, no_unit, serves_all, needs_conditioning,
+       make_zero},
+      {"force", "peak force", Direction::minimise, {}, no_unit, lacks_force, needs_nothing, make_zero}};
+}
+
+std::vector<OptionSpec> no_options(const MechanismInfo&) { return {}; }
+std::vector<OptionSpec> gap_options(const MechanismInfo&) {
+  return {{"angle_max", OptionKind::number, "rad", {}, false, 0, 1.5, {}, "greatest angle"}};
+}
+std::vector<OptionSpec> linear_options(const MechanismInfo&) {
+  OptionSpec coefficients, bound;
+  coefficients.name = "coefficients";
+  coefficients.kind = OptionKind::named_numbers;
+  coefficients.required = true;
+  bound.name = "bound";
+  bound.required = true;
+  return {coefficients, bound};
+}
+/// gap_min follows from the parameters, angle_max if given.
+LimitSpec gap_limits(const MechanismInfo& info, const Options& options) {
+  LimitSpec limits = no_limits(info);
+  limits.derived[0] = true;
+  if (options.has("angle_max") && options.number("angle_max") == 0)
+    throw std::invalid_argument("an angle_max of 0 leaves no pose");
+  if (options.has("angle_max")) limits.given[1] = options.number("angle_max");
+  return limits;
+}
+std::unique_ptr<const Quantity> make_linear(const EntryContext& context) {
+  for (const auto& [name, number] : context.options.numbers("coefficients"))
+    if (name != "a" && name != "b") throw std::invalid_argument("coefficients name no parameter '" + name + "'");
+  return make_zero(context);
+}
+
+std::vector<ConstraintEntry> make_constraints() {
+  return {{"gap", "parts stay apart", true, gap_options, nullptr, serves_all, gap_limits, nullptr},
+          {"reach", "long enough", false, no_options, metre, serves_all, nullptr, make_zero},
+          {"linear", "sum <= bound", false, linear_options, no_unit, serves_all, nullptr, make_linear}};
+}
+
+class Idle final : public Optimiser {
+ public:
+  StageResult minimise(const StageInput&, EvaluationTable&) const override { return {}; }
+  std::int64_t evaluation_limit(const Problem&) const override { return 0; }
+};
+
+std::unique_ptr<Optimiser> make_idle(const Options&, const DesignSpace&) { return std::make_unique<Idle>(); }
+std::unique_ptr<Optimiser> make_broken(const Options&, const DesignSpace&) {
+  throw std::invalid_argument("elite must be smaller than population");
+}
+
+std::vector<OptimiserEntry> make_optimisers() {
+  OptionSpec target;
+  target.name = "target";
+  const std::vector<OptionSpec> options = {
+      {"population", OptionKind::integer, "1", std::int64_t{40}, false, 2, 1e6, {}, "designs per generation"},
+      {"rate", OptionKind::number, "1", 0.5, false, 0, 1, {}, "mutation rate"},
+      target};
+  return {{"ga", "evolves", {}, options, make_idle},
+          {"simple", "unconstrained, continuous", {1, false, false, false, true}, {}, make_idle},
+          {"newton", "by derivatives", {1, true, true, true, true}, {}, make_idle},
+          {"sweep", "tries all", {9, true, true, false, false}, {}, make_idle},
+          {"broken", "refuses its options", {}, {}, make_broken}};
+}
+
+}  // namespace
+
+Catalogues fake_catalogues() {
+  static const MechanismList mechanisms{std::make_shared<const Slider>()};
+  static const auto objectives = make_objectives();
+  static const auto constraints = make_constraints();
+  static const auto optimisers = make_optimisers();
+  return {mechanisms, objectives, constraints, optimisers};
+}
+
+}  // namespace pkm::testing
