@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "engine/core/random.hpp"
+#include "engine/math/random.hpp"
 
 namespace pkm {
 

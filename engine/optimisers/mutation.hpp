@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/core/parameter.hpp"
-#include "engine/core/random.hpp"
+#include "engine/math/random.hpp"
 
 namespace pkm {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/core/random.hpp"
+#include "engine/math/random.hpp"
 
 namespace pkm {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/core/random.hpp"
+#include "engine/math/random.hpp"
 
 namespace pkm {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/core/random.hpp"
+#include "engine/math/random.hpp"
 
 #include <Random123/philox.h>
 

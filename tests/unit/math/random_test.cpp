@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "engine/core/random.hpp"
+#include "engine/math/random.hpp"
 
 namespace pkm {
 namespace {

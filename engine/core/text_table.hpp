@@ -1,0 +1,12 @@
+// Tables of text with aligned columns.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pkm {
+
+/// One line per row, two spaces before each cell, each column as wide as its widest cell.
+std::string aligned(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace pkm
