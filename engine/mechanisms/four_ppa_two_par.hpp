@@ -88,7 +88,8 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
 enum class Branch { lower, upper };
 using WorkingMode = std::array<Branch, 2>;
 
-/// Position of the limbs at a pose. Exists (`assembles`) where x_j is in [0, l_d] and z_cj in [-l_u, 0].
+/// Position of the limbs at a pose. Exists (`assembles`) where x_j is in [0, l_d] and |z_cj| <= l_u. The paper takes
+/// z_cj <= 0, C_j below its rail, but lists q for both (table 2), since q depends on z_cj^2 only.
 template <class S>
 struct Limbs {
   std::array<S, 2> x, y, sigma, z_c, h;    ///< [m]
@@ -110,7 +111,7 @@ Limbs<S> inverse(const Geometry<S>& g, const Pose<S>& pose, WorkingMode mode) {
     limb.z_c[j] = mode[j] == Branch::lower ? S(pose.z + g.d + limb.sigma[j]) : S(pose.z + g.d - limb.sigma[j]);
     limb.h[j] = root_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
     limb.reach_x[j] = std::fmin(value_of(limb.x[j]), value_of(g.l_d - limb.x[j]));
-    limb.reach_z[j] = std::fmin(value_of(-limb.z_c[j]), value_of(g.l_u + limb.z_c[j]));
+    limb.reach_z[j] = value_of(g.l_u) - std::fabs(value_of(limb.z_c[j]));
     limb.assembles = limb.assembles && limb.reach_x[j] >= 0 && limb.reach_z[j] >= 0;
   }
   limb.q = {limb.y[0] - limb.h[0], limb.y[0] + limb.h[0], limb.y[1] - limb.h[1], limb.y[1] + limb.h[1]};
@@ -133,7 +134,7 @@ Velocity<S> velocity(const Geometry<S>& g, const Pose<S>& pose, const Limbs<S>& 
   for (std::size_t j = 0; j < 2; ++j) {
     sin_b[j] = limb.x[j] / g.l_d;
     cos_b[j] = (mode[j] == Branch::lower ? limb.sigma[j] : S(-limb.sigma[j])) / g.l_d;
-    const bool flat = !(value_of(limb.z_c[j]) < 0);
+    const bool flat = value_of(limb.z_c[j]) == 0;
     v.finite = v.finite && !flat;
     v.k[j] = flat ? S(0.0) : S(limb.h[j] / -limb.z_c[j] * cos_b[j]);  // cot(alpha) = h / (-z_c)
   }

@@ -17,18 +17,15 @@ template <class S>
 S conditioning(const Geometry<S>& g, const S& sin_theta, const S& cos_theta, const std::array<S, 2>& x,
                const std::array<S, 2>& sigma, const std::array<S, 2>& z_c, const S& gamma) {
   constexpr double kRoot2 = 1.41421356237309504880;
-  S m[3][3];  // columns x, z, theta
-  m[0][0] = m[1][0] = S(0.0);
-  m[2][0] = gamma * cos_theta * 2.0;
+  Rows3<S> m;  // columns x, z, theta
+  m[0] = {S(0.0), S(0.0), gamma * cos_theta * 2.0};
   for (std::size_t j = 0; j < 2; ++j) {
     const S h = root_or_zero(S((g.l_u - z_c[j]) * (g.l_u + z_c[j])));
     const S below = h * sigma[j];  // k_j = h sigma / (-z_c l_d)
     if (!(value_of(below) > 0) || !(value_of(z_c[j]) < 0)) return S(0.0);
     const S scale = z_c[j] * -kRoot2 / below;  // (sqrt2 / k_j) / l_d
     const double sign = j == 0 ? 1 : -1;
-    m[0][j + 1] = scale * x[j];
-    m[1][j + 1] = scale * sigma[j] * -sign;
-    m[2][j + 1] = scale * x[j] * gamma * sin_theta * sign;
+    m[j + 1] = {scale * x[j], scale * sigma[j] * -sign, scale * x[j] * gamma * sin_theta * sign};
   }
   return inverse_condition(m, S(4.0));  // the whole matrix is diag(2) and this 3 x 3
 }

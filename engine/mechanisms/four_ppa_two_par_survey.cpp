@@ -161,10 +161,8 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
             name + ": x_" + std::to_string(j + 1) + " < 0, the platform is beyond the rail's vertical plane";
       else if (limb.reach_x[j] < 0)
         report.reason = name + ": out of reach of the lower bars (x_" + std::to_string(j + 1) + " > l_d)";
-      else if (limb.z_c[j] > 0)
-        report.reason = name + ": C_" + std::to_string(j + 1) + " would lie above the rail";
       else if (limb.reach_z[j] < 0)
-        report.reason = name + ": out of reach of the upper bars (z_c < -l_u)";
+        report.reason = name + ": out of reach of the upper bars (|z_c| > l_u)";
     }
     for (std::size_t j = 0; j < 2; ++j) {
       report.margins.emplace_back("reach_x_" + std::to_string(j + 1), limb.reach_x[j]);
@@ -211,6 +209,8 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
       {"reach_x_2", limb.reach_x[1]},
       {"reach_z_1", limb.reach_z[0]},
       {"reach_z_2", limb.reach_z[1]},
+      {"below_rail_1", -limb.z_c[0]},
+      {"below_rail_2", -limb.z_c[1]},
       {"stroke", stroke},
       {"alpha_min", least(alpha) - asin(l.sin_alpha_min)},
       {"beta_min", least(folded) - asin(l.sin_beta_min)},
@@ -220,12 +220,10 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
       {"cos_theta_min", c - l.cos_theta_min},
   };
   report.feasible = true;
-  const auto* worst = &report.margins.front();
-  for (const auto& margin : report.margins) {
-    report.feasible = report.feasible && margin.second >= 0;
-    if (margin.second < worst->second) worst = &margin;
+  for (const auto& [name, margin] : report.margins) {  // the most basic tests come first
+    if (report.feasible && !(margin >= 0)) report.reason = "limit " + name + " is broken";
+    report.feasible = report.feasible && margin >= 0;
   }
-  if (!report.feasible) report.reason = "limit " + worst->first + " is broken";
   return report;
 }
 

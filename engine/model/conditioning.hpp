@@ -1,7 +1,13 @@
 // Singular values of small matrices and the inverse condition number made of them.
+//
+// Two ways to the same number. One-sided Jacobi serves any size. Surveys, which ask for it at every sample, use a
+// closed form for 3 x 3 that is two to three times faster: sigma_1^2 is the largest eigenvalue of M M^T, (sigma_1
+// sigma_2)^2 that of C C^T with the cofactors C, and sigma_3 = |det M| / (sigma_1 sigma_2). Taking the quotient by the
+// determinant rather than the smallest eigenvalue keeps the small singular value's leading digits.
 #pragma once
 
-#include <cstddef>
+#include <array>
+#include <cmath>
 
 #include "engine/math/scalar.hpp"
 
@@ -50,6 +56,96 @@ S inverse_condition(S (&m)[N][N], const S& extra = S(-1.0)) {
     const S length = dot(i, i);
     least = min(least, length);
     greatest = max(greatest, length);
+  }
+  const bool usable = value_of(least) > 0 && value_of(greatest) < 1e300;
+  return usable ? S(sqrt(S(least / greatest))) : S(0.0);
+}
+
+/// A symmetric 3 x 3 matrix.
+template <class S>
+struct Symmetric3 {
+  S xx, yy, zz, xy, yz, zx;
+};
+
+/// Rows of a 3 x 3 matrix.
+template <class S>
+using Rows3 = std::array<std::array<S, 3>, 3>;
+
+/// M M^T.
+template <class S>
+Symmetric3<S> gram(const Rows3<S>& m) {
+  const auto dot = [&](std::size_t i, std::size_t j) {
+    return S(m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2]);
+  };
+  return {dot(0, 0), dot(1, 1), dot(2, 2), dot(0, 1), dot(1, 2), dot(2, 0)};
+}
+
+/// cos(phi / 2) for 0 <= phi <= pi/3, given t = cos(3 phi / 2): the root r of 4 r^3 - 3 r = t in [sqrt(3/4), 1], where
+/// the slope is at least 6. Two Halley steps from a start within 0.01 end at rounding.
+template <class S>
+S cos_of_a_third(const S& t) {
+  constexpr double kAtZero = 0.86602540378443864676;
+  S r = t * (1 - kAtZero) + kAtZero;
+  for (int step = 0; step < 2; ++step) {
+    const S square = r * r, value = (square * 4.0 - 3.0) * r - t, slope = square * 12.0 - 3.0;
+    r = r - value * slope / (slope * slope - value * r * 12.0);
+  }
+  return r;
+}
+
+/// Largest eigenvalue of a positive semidefinite matrix, to a few ulp, also where two eigenvalues (nearly) meet; NaN
+/// for the zero matrix.
+///
+/// With m the mean of the eigenvalues and p the root of a sixth of the sum of their squared distances to it, it is
+/// m + 2 p cos(phi), where p^3 (cos 3 phi, sin 3 phi) = (det(A - m) / 2, sqrt(D / 108)) and D is the discriminant.
+/// D = 4 (3 p^2)^3 - 27 det^2 would lose half of the digits where eigenvalues meet; it is the Gram determinant of
+/// I, A, A^2, and by Cauchy and Binet a sum of squares of the minors of these three, taken as vectors of their
+/// elements.
+template <class S>
+S largest_eigenvalue(const Symmetric3<S>& matrix) {
+  const S trace = matrix.xx + matrix.yy + matrix.zz, scale = S(1.0) / trace;  // to trace 1: nothing overflows
+  const S third(1.0 / 3);
+  const S x = matrix.xx * scale - third, y = matrix.yy * scale - third, z = matrix.zz * scale - third;
+  const S f = matrix.xy * scale, g = matrix.yz * scale, h = matrix.zx * scale;
+  // elements of the square of that
+  const S ff = f * f, gg = g * g, hh = h * h;
+  const S X = x * x + ff + hh, Y = y * y + ff + gg, Z = z * z + gg + hh;
+  const S F = f * (x + y) + g * h, G = g * (y + z) + f * h, H = h * (z + x) + f * g;
+
+  const S xy = x - y, yz = y - z, zx = z - x, XY = X - Y, YZ = Y - Z, ZX = Z - X;
+  const auto square = [](const S& a) { return S(a * a); };
+  const auto with_diagonal = [&](const S& e, const S& E) {
+    return S(square(S(xy * E - XY * e)) + square(S(yz * E - YZ * e)) + square(S(zx * E - ZX * e)));
+  };
+  const S discriminant = square(S(xy * YZ - yz * XY)) +
+                         (with_diagonal(f, F) + with_diagonal(g, G) + with_diagonal(h, H)) * 2.0 +
+                         (square(S(f * G - g * F)) + square(S(g * H - h * G)) + square(S(h * F - f * H))) * 12.0;
+
+  const S p = root_or_zero(S((X + Y + Z) * (1.0 / 6)));
+  const S cosine = (x * (y * z - gg) - f * (f * z - g * h) + h * (f * g - y * h)) * 0.5;  // p^3 cos(3 phi)
+  const S sine_2 = discriminant * (1.0 / 108);                                            // p^6 sin(3 phi)^2
+  const S cube = root_or_zero(S(cosine * cosine + sine_2));                               // p^3
+  if (!(value_of(cube) > 0)) return trace * (p * 2.0 + third);                            // all three are equal
+  const S more = value_of(cosine) >= 0 ? S(cube + cosine) : S(sine_2 / (cube - cosine));  // p^3 (1 + cos(3 phi))
+  const S r = cos_of_a_third(root_or_zero(S(more / (cube * 2.0))));
+  return trace * (p * 2.0 * (r * r * 2.0 - 1.0) + third);
+}
+
+/// The same as inverse_condition for 3 x 3, in closed form. Relative error a few ulp where the determinant and the
+/// cofactors, computed as written here, have no cancellation; a few ulp of sigma_1 / sigma_2 otherwise.
+/// @param extra  square of one more singular value, of a block that is diagonal already; < 0: none
+template <class S>
+S inverse_condition(const Rows3<S>& m, const S& extra = S(-1.0)) {
+  const auto cross = [](const std::array<S, 3>& a, const std::array<S, 3>& b) {
+    return std::array<S, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  const Rows3<S> cofactors{cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
+  const S determinant = m[0][0] * cofactors[0][0] + m[0][1] * cofactors[0][1] + m[0][2] * cofactors[0][2];
+  const S pair = largest_eigenvalue(gram(cofactors));  // (sigma_1 sigma_2)^2
+  S greatest = largest_eigenvalue(gram(m)), least = determinant * determinant / pair;
+  if (value_of(extra) >= 0) {
+    least = min(least, extra);
+    greatest = max(greatest, extra);
   }
   const bool usable = value_of(least) > 0 && value_of(greatest) < 1e300;
   return usable ? S(sqrt(S(least / greatest))) : S(0.0);

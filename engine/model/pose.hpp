@@ -26,7 +26,7 @@ using NamedValues = std::vector<std::pair<std::string, double>>;
 struct PoseReport {
   bool assembles = false;  ///< the inverse kinematics has a solution in the working mode asked for
   bool feasible = false;   ///< assembles and every margin >= 0
-  std::string reason;      ///< why it does not assemble, or which margin is least; "" when feasible
+  std::string reason;      ///< why it does not assemble, or the first broken margin; "" when feasible
   std::optional<std::array<double, 4>> joints;  ///< [m], order of MechanismInfo::joints
   std::optional<Eigen::Matrix4d> Jq, G, J;      ///< Jq qdot = G V, J = Jq^-1 G (absent when Jq is singular)
   std::optional<double> det_Jq, det_G;

@@ -53,7 +53,8 @@ TEST(FourPpaKinematics, JacobianMapsPoseRatesToJointRates) {
       if (!r.J) continue;
       bool near_edge = std::fabs(*r.det_Jq) > 20 || std::fabs(*r.det_Jq) < 1e-2;
       for (const auto& [name, margin] : r.margins)
-        near_edge = near_edge || (name.starts_with("reach") && margin < 0.01);
+        near_edge = near_edge || (name.starts_with("reach") && margin < 0.01) ||
+                    (name.starts_with("below_rail") && std::fabs(margin) < 0.01);
       if (near_edge) continue;
       for (int k = 0; k < 4; ++k) {
         constexpr double kStep = 1e-6;
@@ -97,10 +98,12 @@ TEST(FourPpaKinematics, SingularPosesGiveZeroConditioningAndNoNan) {
 TEST(FourPpaKinematics, ReasonsAndUnreachableJoints) {
   const auto p = nominal();
   const auto none = no_limits(four_ppa().info());
-  EXPECT_EQ(four_ppa().inspect(p, {0.4, 1.25, 0.5, 0}, "lower,lower", none).reason,
-            "limb 1: C_1 would lie above the rail");
+  const PoseReport above = four_ppa().inspect(p, {0.4, 1.25, -0.2, 0}, "lower,lower", none);
+  EXPECT_TRUE(above.assembles);  // table 2 of the paper lists its q
+  EXPECT_FALSE(above.feasible);
+  EXPECT_EQ(above.reason, "limit below_rail_1 is broken");
   EXPECT_EQ(four_ppa().inspect(p, {0.4, 1.25, -3, 0}, "lower,lower", none).reason,
-            "limb 1: out of reach of the upper bars (z_c < -l_u)");
+            "limb 1: out of reach of the upper bars (|z_c| > l_u)");
   EXPECT_EQ(four_ppa().inspect(p, {0.79, 1.25, -0.5, 0}, "lower,lower", none).reason,
             "limb 1: out of reach of the lower bars (x_1 > l_d)");
   const PoseReport off_rail = four_ppa().inspect(p, {0.4, 0.1, -0.9, 0}, "lower,lower", none);

@@ -199,7 +199,7 @@ TEST(FourPpaColumns, IntegratedOverYEqualsTheSumOverPlanes) {
     for (int i = 0; i < kPlanes; ++i)
       sum += survey(c.p, columns(c.limits, {HeldCoordinate::Kind::value, c.p[kL0] * (i + 0.5) / kPlanes}, 1e-7)).volume;
     const double expected = sum * c.p[kL0] / kPlanes;
-    const auto found = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::integrated, 0}));
+    const auto found = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::integrated, 0}, 1e-8));
     EXPECT_NEAR(found.volume, expected, 2e-4 * (expected + 1e-3));
   }
 }

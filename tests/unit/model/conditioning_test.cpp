@@ -1,0 +1,126 @@
+// The inverse condition number: both ways to it against known singular values and against each other.
+#include "engine/model/conditioning.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+#include <Eigen/QR>
+
+#include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
+
+namespace pkm::testing {
+namespace {
+
+class Uniform {
+ public:
+  double operator()(double lower, double upper) {
+    return lower + (upper - lower) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+
+ private:
+  std::mt19937_64 engine_{1};
+};
+
+Eigen::Matrix3d rotation(Uniform& uniform) {
+  Eigen::Matrix3d m;
+  for (int i = 0; i < 9; ++i) m(i) = uniform(-1, 1);
+  return Eigen::HouseholderQR<Eigen::Matrix3d>(m).householderQ();
+}
+
+Rows3<double> rows_of(const Eigen::Matrix3d& m) {
+  Rows3<double> rows;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = m(i, j);
+  return rows;
+}
+
+double by_jacobi(const Rows3<double>& rows, double extra = -1) {
+  double columns[3][3];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) columns[j][i] = rows[i][j];
+  return inverse_condition(columns, extra);
+}
+
+TEST(Conditioning, FindsKnownSingularValues) {
+  Uniform uniform;
+  const struct {
+    double s[3];
+  } cases[] = {{{3, 2, 1}},        {{1, 1, 1}},        {{1, 1, 1 - 1e-15}}, {{2, 2, 1}},
+               {{2, 2 - 1e-9, 1}}, {{2, 2 - 1e-5, 1}}, {{5, 1, 1}},         {{5, 1, 1 - 1e-9}},
+               {{5, 1, 1 - 1e-5}}, {{5, 1, 0.3}},      {{1e8, 0.7e8, 3e7}}, {{1e-9, 7e-10, 2e-10}}};
+  for (const auto& [s] : cases)
+    for (int i = 0; i < 200; ++i) {
+      const Eigen::Matrix3d m =
+          rotation(uniform) * Eigen::DiagonalMatrix<double, 3>(s[0], s[1], s[2]) * rotation(uniform);
+      EXPECT_NEAR(by_jacobi(rows_of(m)), s[2] / s[0], 2e-14);
+      EXPECT_NEAR(inverse_condition(rows_of(m)), s[2] / s[0], 2e-14);
+    }
+}
+
+TEST(Conditioning, ExtraSingularValueTakesPart) {
+  const Rows3<double> m{{{3, 0, 0}, {0, 2, 0}, {0, 0, 1}}};
+  EXPECT_NEAR(inverse_condition(m, 16.0), 1.0 / 4, 1e-15);
+  EXPECT_NEAR(inverse_condition(m, 0.25), 0.5 / 3, 1e-15);
+  EXPECT_NEAR(inverse_condition(m, 4.0), 1.0 / 3, 1e-15);
+}
+
+TEST(Conditioning, SingularOrNotFiniteIsZero) {
+  EXPECT_EQ(inverse_condition(Rows3<double>{}), 0);
+  EXPECT_EQ(inverse_condition(Rows3<double>{{{1, 2, 3}, {2, 4, 6}, {0, 0, 1}}}), 0);
+  EXPECT_EQ(inverse_condition(Rows3<double>{{{1, 0, 0}, {0, std::nan(""), 0}, {0, 0, 1}}}), 0);
+  EXPECT_EQ(inverse_condition(Rows3<double>{{{1, 0, 0}, {0, HUGE_VAL, 0}, {0, 0, 1}}}), 0);
+}
+
+// The matrices of the mechanism, up to a distance of 1e-7 from its singularities: all digits but the last few.
+TEST(Conditioning, ClosedFormKeepsTheDigitsOfJacobiOnTheMechanism) {
+  Uniform uniform;
+  using namespace four_ppa_two_par;
+  double worst = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Rows3<double> m;
+    const auto near_zero = [&] { return std::pow(10.0, uniform(-7, 0)); };
+    const double t = 2 * near_zero(), theta_part = uniform(-1, 1);
+    m[0] = {0, 0, t};
+    for (std::size_t j = 0; j < 2; ++j) {
+      const double s = near_zero(), c = std::sqrt(1 - s * s), k = near_zero() / near_zero(), sign = j == 0 ? 1 : -1;
+      m[j + 1] = {k * s, k * c * -sign, k * s * theta_part * sign};
+    }
+    const double closed = inverse_condition(m, 4.0), jacobi = by_jacobi(m, 4.0);
+    ASSERT_GT(jacobi, 0);
+    worst = std::max(worst, std::fabs(closed / jacobi - 1));
+  }
+  EXPECT_LT(worst, 1e-13);
+}
+
+TEST(Conditioning, DerivativeEqualsDifferences) {
+  using Jet = ceres::Jet<double, 1>;
+  Uniform uniform;
+  for (int i = 0; i < 300; ++i) {
+    Rows3<double> at, slope;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) {
+        at[r][c] = uniform(-1, 1);
+        slope[r][c] = uniform(-1, 1);
+      }
+    const auto moved = [&](double by) {
+      Rows3<double> m = at;
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) m[r][c] += by * slope[r][c];
+      return inverse_condition(m);
+    };
+    if (moved(0) < 0.02) continue;  // the differences need a smooth neighbourhood
+    Rows3<Jet> m;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) {
+        m[r][c] = Jet(at[r][c]);
+        m[r][c].v[0] = slope[r][c];
+      }
+    const double h = 1e-5;
+    EXPECT_NEAR(inverse_condition(m).v[0], (moved(h) - moved(-h)) / (2 * h), 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace pkm::testing
