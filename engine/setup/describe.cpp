@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/setup/study.hpp"
 
@@ -10,22 +11,6 @@ namespace pkm {
 namespace {
 
 using Row = std::vector<std::string>;
-
-/// Rows of cells, each column as wide as its widest cell.
-void write_aligned(std::ostream& out, const std::vector<Row>& rows) {
-  std::vector<std::size_t> width;
-  for (const auto& row : rows)
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c == width.size()) width.push_back(0);
-      width[c] = std::max(width[c], row[c].size());
-    }
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) line += "  " + row[c] + std::string(width[c] - row[c].size(), ' ');
-    line.erase(line.find_last_not_of(' ') + 1);
-    out << line << '\n';
-  }
-}
 
 std::string range(double lower, double upper, const std::string& unit) {
   return shortest(lower) + " .. " + with_unit(upper, unit);
@@ -40,7 +25,12 @@ void write_parameters(std::ostream& out, const Study& study) {
     const Variable& variable = parts.space[v];
     std::string bounds = range(variable.lower, variable.upper, variable.unit);
     if (variable.step > 0) bounds += " in steps of " + with_unit(variable.step, variable.unit);
-    const std::string base = study.baseline ? "baseline " + with_unit((*study.baseline)[i], variable.unit) : "";
+    std::string base;
+    if (study.baseline) {
+      const double value = (*study.baseline)[i];
+      base = "baseline " + with_unit(value, variable.unit);
+      if (value < variable.lower || value > variable.upper) base += " (outside the bounds)";
+    }
     varying.push_back({variable.name, bounds, base, known[i].meaning});
   }
   for (std::size_t i = 0; i < known.size(); ++i) {
@@ -52,9 +42,9 @@ void write_parameters(std::ostream& out, const Study& study) {
     fixed.push_back({known[i].name, with_unit(value, known[i].unit), note, known[i].meaning});
   }
   out << "\nvariables" << (varying.empty() ? ": none" : "") << '\n';
-  write_aligned(out, varying);
+  out << aligned(varying);
   out << "\nfixed parameters" << (fixed.empty() ? ": none" : "") << '\n';
-  write_aligned(out, fixed);
+  out << aligned(fixed);
 }
 
 std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
@@ -120,7 +110,7 @@ void write_options(std::ostream& out, const std::vector<OptionSpec>& specs, cons
     const bool initial = spec.initial && *spec.initial == value->second;
     rows.push_back({"  " + spec.name, to_text(value->second) + unit, initial ? "(default)" : ""});
   }
-  write_aligned(out, rows);
+  out << aligned(rows);
 }
 
 void write_entries(std::ostream& out, const std::string& title, const std::vector<StudyEntry>& entries) {
@@ -138,16 +128,16 @@ std::string describe(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
   std::ostringstream out;
-  write_aligned(out, {{"study", study.name},
-                      {"file", study.file_name},
-                      {"seed", std::to_string(study.seed)},
-                      {"output", study.output_file()},
-                      {"mechanism", info.name + ": " + info.title}});
+  out << aligned({{"study", study.name},
+                  {"file", study.file_name},
+                  {"seed", std::to_string(study.seed)},
+                  {"output", study.output_file()},
+                  {"mechanism", info.name + ": " + info.title}});
   write_parameters(out, study);
   out << "\nworkspace\n";
-  write_aligned(out, survey_rows(info, parts.plan));
+  out << aligned(survey_rows(info, parts.plan));
   out << "\nlimits of a pose" << (info.limits.empty() ? ": none" : "") << '\n';
-  write_aligned(out, limit_rows(study));
+  out << aligned(limit_rows(study));
   write_entries(out, "objectives", study.objectives);
   write_entries(out, "constraints", study.constraints);
   write_entries(out, "reports", study.reports);
@@ -160,9 +150,9 @@ std::string describe(const Study& study) {
   std::string round = "best design as it is";
   if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
   out << "\nrun\n";
-  write_aligned(out, {{"checkpoint", study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
-                                                            : "adapts: at most 2 % of the run time"},
-                      {"final", round}});
+  out << aligned({{"checkpoint", study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
+                                                        : "adapts: at most 2 % of the run time"},
+                  {"final", round}});
   for (const auto& warning : study.warnings) out << "\nwarning: " << warning << '\n';
   return out.str();
 }

@@ -100,14 +100,6 @@ void read_baseline(const ConfigValue& root, StudyDraft& draft) {
   std::vector<double> values = draft.parts.parameters;
   read_parameters(*table, draft.info().parameters, values);
   if (const std::string reason = draft.parts.mechanism->refuse(values); !reason.empty()) throw table->refusal(reason);
-  for (std::size_t k = 0; k < draft.parts.varies.size(); ++k) {
-    const Variable& v = draft.parts.space[k];
-    const double value = values[draft.parts.varies[k]];
-    if (value < v.lower || value > v.upper)
-      draft.study.warnings.push_back("the baseline's " + v.name + " = " + with_unit(value, v.unit) +
-                                     " lies outside the variable's bounds [" + shortest(v.lower) + ", " +
-                                     shortest(v.upper) + "]");
-  }
   draft.study.baseline = std::move(values);
 }
 

@@ -31,6 +31,8 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft);
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
 /// [[objective]], the other [[constraint]]s and [[report]]
 void read_quantities(const ConfigValue& root, StudyDraft& draft);
+/// [[reference]]
+void read_references(const ConfigValue& root, StudyDraft& draft);
 /// [[stage]]
 void read_stages(const ConfigValue& root, StudyDraft& draft);
 

@@ -81,8 +81,8 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
   const ConfigValue root(document, file_name, "");
-  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "objective", "constraint", "report", "stage",
-              "checkpoint", "final"},
+  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "objective", "constraint", "report",
+              "reference", "stage", "checkpoint", "final"},
              "section");
 
   StudyDraft draft{catalogues, {}, {}};
@@ -95,6 +95,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_workspace(root, draft);
   read_pose_constraints(root, draft);
   read_quantities(root, draft);
+  read_references(root, draft);
   read_stages(root, draft);
   read_run_sections(root, draft);
   try {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/mechanisms/all.hpp"
@@ -41,6 +42,14 @@ struct StudyEntry {
   Options options;
 };
 
+/// A published result to compare with: [[reference]].
+struct Reference {
+  std::string name;
+  std::vector<std::optional<double>> design;              ///< per variable; empty where the source gives no design
+  std::vector<std::pair<std::string, double>> values;     ///< objectives and reports by name
+  std::optional<double> seconds;                          ///< computing time
+};
+
 struct Study {
   std::string text;       ///< the TOML document
   std::string file_name;  ///< as it was called when it was read
@@ -55,6 +64,8 @@ struct Study {
   std::string round_unit = "1";            ///< the unit that all variables share, else "1"
   std::optional<double> checkpoint_every;  ///< [s]; none: adapts itself
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
+
+  std::vector<Reference> references;
 
   std::vector<StudyEntry> objectives, constraints, reports;
   std::vector<std::string> limit_origins;  ///< per limit of the mechanism: where it was set; "" when it was not

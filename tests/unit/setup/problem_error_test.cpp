@@ -214,5 +214,20 @@ TEST(ProblemErrors, Stages) {
       });
 }
 
+TEST(ProblemErrors, References) {
+  expect_messages(
+      kVolume,
+      {{"[[reference]]\nseconds = 1",
+        "s.toml:7: reference[1].name: found nothing; expected where the result was published"},
+       {"[[reference]]\nname = \"p\"\nvalues = { volumme = 1 }",
+        "s.toml:9: reference[1].values.volumme: found an unknown objective or report; expected one of volume; "
+        "did you mean 'volume'?"},
+       {"[[reference]]\nname = \"p\"\ndesign = { b = 1 }",
+        "s.toml:9: reference[1].design.b: found an unknown variable; expected one of a; did you mean 'a'?"},
+       {"[[reference]]\nname = \"p\"\nseconds = -1",
+        "s.toml:9: reference[1].seconds: found -1; expected a number >= 0 s"}},
+      kStage);
+}
+
 }  // namespace
 }  // namespace pkm

@@ -59,8 +59,22 @@ TEST(Study, ReadsParametersVariablesAndBaseline) {
   EXPECT_EQ(study.round, 0.01);
   EXPECT_EQ(study.checkpoint_every, 60);
   EXPECT_THAT(study.warnings,
-              ElementsAre("variable a never takes its max 0.72 m: the last value that min + k step reaches is 0.65 m",
-                          "the baseline's a = 0.8 m lies outside the variable's bounds [0.25, 0.72]"));
+              ElementsAre("variable a never takes its max 0.72 m: the last value that min + k step reaches is 0.65 m"));
+}
+
+TEST(Study, ReadsReferences) {
+  const Study study = read_right(std::string(kFull) + R"(
+[[reference]]
+name = "a paper"
+design = { a = "300 mm" }
+values = { volume = 0.5, shape = 2 }
+seconds = "2 min"
+)");
+  ASSERT_EQ(study.references.size(), 1U);
+  EXPECT_EQ(study.references[0].name, "a paper");
+  EXPECT_THAT(study.references[0].design, ElementsAre(std::nullopt, 0.3));
+  EXPECT_THAT(study.references[0].values, ElementsAre(std::pair("volume", 0.5), std::pair("shape", 2.0)));
+  EXPECT_EQ(study.references[0].seconds, 120);
 }
 
 TEST(Study, ReadsWorkspaceAndMergesLimits) {
