@@ -185,6 +185,10 @@ void describe_final(Archive& archive, const Problem& problem, Final& final) {
     describe_design(archive, "/final/rounded", "The best design, rounded and evaluated again", problem, *final.rounded);
   if (present(archive, "/final/baseline", final.baseline))
     describe_design(archive, "/final/baseline", "The design to compare with", problem, *final.baseline);
+  if (present(archive, "/final/best_exact", final.best_exact))
+    describe_design(archive, "/final/best_exact", "The best design on exact columns", problem, *final.best_exact);
+  if (present(archive, "/final/baseline_exact", final.baseline_exact))
+    describe_design(archive, "/final/baseline_exact", "The baseline on exact columns", problem, *final.baseline_exact);
   if (present(archive, "/final/map", final.map)) describe_map(archive, *final.map);
 }
 

@@ -97,6 +97,8 @@ struct FinalRecord {
   std::optional<DesignRecord> best;
   std::optional<DesignRecord> rounded;  ///< best, rounded as `[final] round` asks and evaluated again
   std::optional<DesignRecord> baseline;
+  /// Voxel studies: the same designs on exact columns, where the mechanism has them.
+  std::optional<DesignRecord> best_exact, baseline_exact;
   std::optional<MapRecord> map;  ///< of `best`
   std::string volume_unit;
   std::vector<std::string> active;  ///< active bounds and constraints of `best`, one sentence each

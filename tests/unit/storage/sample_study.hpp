@@ -101,6 +101,7 @@ inline StudyContents sample_study() {
   final.baseline = sample_design(0.5);
   final.baseline->status = Status::failed;
   final.baseline->reason = "does not assemble";
+  final.best_exact = sample_design(0.25);
   final.map = MapRecord{
       {{0, 1, 1, 0, 1, 0}, {1, 2, 3}, {0, -1.3, -1.5}, {0.8, -0.1, 1.5}}, {"x", "z", "theta"}, {"m", "m", "rad"}};
   final.volume_unit = "m^2 rad";

@@ -1,0 +1,51 @@
+// What a running study tells while it runs.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+namespace pkm {
+
+/// The state of a run after a generation.
+struct ProgressReport {
+  std::size_t stage = 0, stages = 1;
+  std::string optimiser;
+  std::int64_t generation = 0;
+  std::int64_t evaluations = 0;       ///< of the stage
+  std::int64_t evaluation_limit = 0;  ///< of the stage
+  double evaluations_per_second = 0;  ///< of this run
+  double seconds = 0;                 ///< of this run
+  bool has_best = false;              ///< the best design so far is feasible
+  double best = 0;                    ///< its (first) objective
+  std::string objective;
+  double violation = 0;  ///< of the least infeasible design, while none is feasible
+  double feasible_share = 0;
+};
+
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  virtual void generation(const ProgressReport&) {}
+  /// The line is about to be used by something else.
+  virtual void finish() {}
+};
+
+/// On a terminal one line with a bar, redrawn at most ten times a second; elsewhere a line every ten seconds.
+class ScreenProgress final : public Progress {
+ public:
+  explicit ScreenProgress(std::FILE* out);
+  void generation(const ProgressReport& report) override;
+  void finish() override;
+
+ private:
+  std::FILE* out_;
+  bool terminal_;
+  double last_ = -1;   ///< seconds of the report shown last
+  bool open_ = false;  ///< a line without its end stands on the terminal
+};
+
+/// "1 h 02 min", "3 min 20 s", "12.3 s", "45 ms", "4.5 us".
+std::string duration_text(double seconds);
+
+}  // namespace pkm

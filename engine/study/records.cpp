@@ -1,0 +1,138 @@
+#include "engine/study/records.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "engine/core/unit.hpp"
+#include "engine/study/machine.hpp"
+
+namespace pkm {
+namespace {
+
+DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters) {
+  const DesignReport r = problem.report(parameters);
+  const bool box_matters = problem.parts().plan.box.has_value();  // the default box ends where the mechanism does
+  return {r.parameters,
+          r.objectives,
+          r.margins,
+          r.reports,
+          r.status,
+          r.reason,
+          r.survey.volume,
+          r.survey.cells,
+          r.survey.feasible_cells,
+          r.survey.cell_volume,
+          box_matters && r.survey.touches_box};
+}
+
+/// The same problem on exact columns, or null where the mechanism has none.
+std::unique_ptr<const DesignProblem> on_columns(const ProblemParts& parts) {
+  ProblemParts exact = parts;
+  exact.plan.method = Method::columns;
+  exact.plan.tolerance = 1e-10;
+  exact.plan.nodes = {};
+  try {
+    return std::make_unique<const DesignProblem>(std::move(exact));
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+}
+
+/// The plan whose voxels picture the workspace: the study's own, or a default grid on the middle plane.
+SurveyPlan picture_plan(const SurveyPlan& plan) {
+  SurveyPlan picture = plan;
+  if (plan.method == Method::columns) {
+    picture.method = Method::voxels;
+    picture.cells = {32, 34, 60};
+    picture.box.reset();
+  }
+  if (plan.held.kind == HeldCoordinate::Kind::integrated) picture.held = {};
+  return picture;
+}
+
+/// Sentences on bounds and constraints that hold the best design back.
+std::vector<std::string> active_sentences(const DesignProblem& problem, const DesignRecord& best) {
+  std::vector<std::string> sentences;
+  const ProblemParts& parts = problem.parts();
+  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    const Variable& v = parts.space[i];
+    const double value = best.parameters[parts.varies[i]], near = 1e-6 * (v.upper - v.lower);
+    if (value - v.lower <= near) sentences.push_back(v.name + " at its lower bound " + with_unit(v.lower, v.unit));
+    if (v.upper - value <= near) sentences.push_back(v.name + " at its upper bound " + with_unit(v.upper, v.unit));
+  }
+  for (std::size_t i = 0; i < best.margins.size(); ++i) {
+    const MarginInfo& m = problem.margins()[i];
+    if (!(best.margins[i] <= 1e-4)) continue;
+    char margin[32];
+    std::snprintf(margin, sizeof margin, "%.3g", best.margins[i]);
+    sentences.push_back(m.name + (best.margins[i] < 0 ? " is violated" : " is active") + ", margin " + margin +
+                        (m.unit == "1" ? "" : " " + m.unit));
+  }
+  return sentences;
+}
+
+}  // namespace
+
+StudyContents new_contents(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const MechanismInfo& info = parts.mechanism->info();
+  StudyContents c;
+  c.name = study.name;
+  c.toml = study.text;
+  c.toml_file = study.file_name;
+  c.seed = study.seed;
+  c.machine = describe_machine();
+  c.created = c.updated = utc_now();
+  c.problem.mechanism = info.name;
+  for (std::size_t i = 0; i < info.parameters.size(); ++i)
+    c.problem.parameters.push_back({info.parameters[i].name, info.parameters[i].unit, parts.parameters[i], -1});
+  for (std::size_t v = 0; v < parts.varies.size(); ++v)
+    c.problem.parameters[parts.varies[v]].variable = static_cast<std::int64_t>(v);
+  c.problem.variables = parts.space.variables();
+  c.problem.objectives = study.problem->objectives();
+  c.problem.margins = study.problem->margins();
+  c.problem.reports = study.problem->reports();
+  return c;
+}
+
+std::vector<std::string> option_lines(const Options& options) {
+  std::vector<std::string> lines;
+  for (const auto& [name, value] : options.values()) lines.push_back(name + " = " + to_text(value));
+  return lines;
+}
+
+FinalRecord final_record(const Study& study, const StudyContents& contents) {
+  const DesignProblem& problem = *study.problem;
+  const ProblemParts& parts = problem.parts();
+  const MechanismInfo& info = parts.mechanism->info();
+  const auto exact = parts.plan.method == Method::voxels ? on_columns(parts) : nullptr;
+  FinalRecord f;
+  f.volume_unit = volume_unit(info, parts.plan);
+  if (study.baseline) {
+    f.baseline = evaluated(problem, *study.baseline);
+    if (exact) f.baseline_exact = evaluated(*exact, *study.baseline);
+  }
+  if (contents.best.row < 0) return f;
+  const auto design = contents.stages[static_cast<std::size_t>(contents.best.stage)].table.design(
+      static_cast<std::size_t>(contents.best.row));
+  const auto best = problem.parameters(design);
+  f.best = evaluated(problem, best);
+  if (exact) f.best_exact = evaluated(*exact, best);
+  f.active = active_sentences(problem, *f.best);
+  if (study.round) {
+    auto rounded = best;
+    for (const std::size_t i : parts.varies) rounded[i] = std::nearbyint(best[i] / *study.round) * *study.round;
+    f.rounded = evaluated(problem, rounded);
+  }
+  MapRecord map;
+  map.voxels = parts.mechanism->voxel_map(best, picture_plan(parts.plan));
+  for (const int swept : info.swept) {
+    map.axes.push_back(info.coordinates[static_cast<std::size_t>(swept)]);
+    map.units.push_back(swept == 3 ? "rad" : "m");
+  }
+  f.map = std::move(map);
+  return f;
+}
+
+}  // namespace pkm

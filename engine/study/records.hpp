@@ -1,0 +1,18 @@
+// From a study to the records of its file.
+#pragma once
+
+#include "engine/setup/study.hpp"
+#include "engine/storage/study_contents.hpp"
+
+namespace pkm {
+
+/// Header and problem of a study that has not begun.
+StudyContents new_contents(const Study& study);
+
+/// "name = value" per option.
+std::vector<std::string> option_lines(const Options& options);
+
+/// What is worked out at the end, from the best design so far. Empty records where nothing was evaluated.
+FinalRecord final_record(const Study& study, const StudyContents& contents);
+
+}  // namespace pkm

@@ -1,0 +1,316 @@
+#include "engine/study/run_study.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+
+#include "engine/problem/replay.hpp"
+#include "engine/storage/checkpoint_clock.hpp"
+#include "engine/storage/study_file.hpp"
+#include "engine/storage/study_lock.hpp"
+#include "engine/study/machine.hpp"
+#include "engine/study/records.hpp"
+#include "engine/study/stop_request.hpp"
+
+namespace pkm {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Mean over the variables of the population's standard deviation, in units of the variable's range.
+double diversity(const DesignSpace& space, const EvaluationTable& table, const std::vector<std::int64_t>& population) {
+  if (population.empty() || space.dimension() == 0) return 0;
+  double sum = 0;
+  const auto n = static_cast<double>(population.size());
+  for (std::size_t v = 0; v < space.dimension(); ++v) {
+    double mean = 0, square = 0;
+    for (const auto row : population) mean += space.to_unit(v, table.design(static_cast<std::size_t>(row))[v]) / n;
+    for (const auto row : population) {
+      const double d = space.to_unit(v, table.design(static_cast<std::size_t>(row))[v]) - mean;
+      square += d * d / n;
+    }
+    sum += std::sqrt(square);
+  }
+  return sum / static_cast<double>(space.dimension());
+}
+
+double feasible_share(const EvaluationTable& table, const std::vector<std::int64_t>& population) {
+  if (population.empty()) return 0;
+  std::size_t feasible = 0;
+  for (const auto row : population) feasible += table.status[static_cast<std::size_t>(row)] == Status::feasible;
+  return static_cast<double>(feasible) / static_cast<double>(population.size());
+}
+
+/// One run of one study into one file.
+class Run final : public Monitor {
+ public:
+  Run(const Study& study, StudyContents contents, std::string path, const RunOptions& options, Progress& progress)
+      : study_(study),
+        path_(std::move(path)),
+        options_(options),
+        progress_(progress),
+        clock_(study.checkpoint_every),
+        evaluator_(options.threads),
+        contents_(std::move(contents)),
+        recorded_(std::move(contents_.stages)),
+        earlier_seconds_(contents_.seconds),
+        start_(now()) {
+    contents_.stages.clear();
+    contents_.best = {};
+    contents_.final.reset();
+    contents_.program_version = options.program.version;
+    contents_.program_revision = options.program.revision;
+    contents_.algorithms = kAlgorithms;
+  }
+
+  RunOutcome run() {
+    StopRequest listen;
+    clock_.first([&] {
+      if (recorded_.empty()) write(StudyState::running);  // a new study's file precedes its first evaluation
+    });
+    for (std::size_t i = 0; i < study_.stages.size(); ++i)
+      if (!run_stage(i)) break;
+    RunOutcome outcome;
+    outcome.stopped = stopped_;
+    if (!stopped_.empty() && replaying_) {
+      contents_ = read_study(path_);  // stopped before it came to anything new: the file holds more than this run
+    } else {
+      if (stopped_.empty()) contents_.final = final_record(study_, contents_);
+      write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);
+    }
+    outcome.contents = std::move(contents_);
+    outcome.seconds = now() - start_;
+    outcome.evaluations = made_;
+    outcome.parallel_efficiency = evaluator_.wall > 0 ? evaluator_.busy / (evaluator_.wall * evaluator_.threads()) : 0;
+    return outcome;
+  }
+
+  bool generation(const Generation& g) override {
+    const EvaluationTable& table = *g.table;
+    StageRecord& stage = contents_.stages.back();
+    const std::size_t index = static_cast<std::size_t>(g.number);
+    const StageRecord* record = stage_ < recorded_.size() ? &recorded_[stage_] : nullptr;
+    // A generation that an evaluation limit had cut short is reported again, complete.
+    GenerationRecords& list = stage.generations;
+    if (index < list.size()) truncate(list, index);
+    list.first_row.push_back(static_cast<std::int64_t>(g.first_row));
+    list.best_row.push_back(g.best_row);
+    list.feasible_share.push_back(feasible_share(table, *g.population));
+    list.diversity.push_back(diversity(study_.problem->space(), table, *g.population));
+    list.population_first.push_back(static_cast<std::int64_t>(list.population.size()));
+    list.population.insert(list.population.end(), g.population->begin(), g.population->end());
+    replaying_ = record && table.size() <= record->table.size() && index < record->generations.size();
+    list.seconds.push_back(replaying_ ? record->generations.seconds[index] : seconds());
+    take_best(table, g.best_row);
+    if (!replaying_)
+      made_ += static_cast<std::int64_t>(table.size() - std::max(g.first_row, record ? record->table.size() : 0));
+    report(g, stage.optimiser);
+
+    if (const int signal = StopRequest::signal())
+      stopped_ = signal == SIGTERM ? "SIGTERM" : "SIGINT";
+    else if (options_.time_limit && now() - start_ >= *options_.time_limit)
+      stopped_ = "time limit";
+    if (!stopped_.empty()) return false;
+    if (!replaying_ && clock_.due()) clock_.checkpoint([&] { write(StudyState::running); });
+    return true;
+  }
+
+ private:
+  /// Adds up what parallel efficiency is made of.
+  class TimedEvaluator final : public Evaluator {
+   public:
+    explicit TimedEvaluator(int threads) : inner_(threads) {}
+    void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override {
+      const double begin = now();
+      inner_.evaluate(problem, table, first);
+      wall += now() - begin;
+      for (std::size_t row = first; row < table.size(); ++row) busy += static_cast<double>(table.seconds[row]);
+    }
+    int threads() const { return inner_.threads(); }
+    double wall = 0, busy = 0;
+
+   private:
+    ParallelEvaluator inner_;
+  };
+
+  static void truncate(GenerationRecords& list, std::size_t size) {
+    list.population.resize(static_cast<std::size_t>(list.population_first[size]));
+    for (auto* column : {&list.first_row, &list.best_row, &list.population_first}) column->resize(size);
+    for (auto* column : {&list.feasible_share, &list.diversity, &list.seconds}) column->resize(size);
+  }
+
+  double seconds() const { return earlier_seconds_ + (now() - start_); }
+
+  /// False when the run has to stop.
+  bool run_stage(std::size_t index) {
+    stage_ = index;
+    const Stage& stage = study_.stages[index];
+    StageInput input{*study_.problem, evaluator_, *this, stage_seed(index), starts(stage)};
+    contents_.stages.push_back(
+        {stage.entry->name, option_lines(stage.options), EvaluationTable(study_.problem->shape())});
+    StageRecord& record = contents_.stages.back();
+    limit_ = stage.optimiser->evaluation_limit(*study_.problem);
+    StageResult result;
+    if (index < recorded_.size()) {
+      ReplayEvaluator replay(evaluator_, recorded_[index].table);
+      StageInput again{input.problem, replay, input.monitor, input.seed, input.starts};
+      result = stage.optimiser->minimise(again, record.table);
+    } else {
+      result = stage.optimiser->minimise(input, record.table);
+    }
+    if (result.reason == StopReason::interrupted) return false;
+    stopped_.clear();  // the stage came to its own end in the same generation
+    record.finished = true;
+    record.stop = words(result.reason);
+    record.best_row = result.best_row;
+    return true;
+  }
+
+  /// Every stage has streams of its own.
+  std::uint64_t stage_seed(std::size_t index) const {
+    return contents_.seed + 0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(index);
+  }
+
+  /// The best design of the stages before; for a sweep without one, the baseline or else the parameters as they are.
+  std::vector<std::vector<double>> starts(const Stage& stage) const {
+    if (contents_.best.row >= 0) {
+      const auto best = contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table.design(
+          static_cast<std::size_t>(contents_.best.row));
+      return {{best.begin(), best.end()}};
+    }
+    if (stage.entry->capabilities.needs_objective) return {};
+    const auto& parts = study_.problem->parts();
+    const auto& from = study_.baseline ? *study_.baseline : parts.parameters;
+    std::vector<double> centre;
+    for (const std::size_t i : parts.varies) centre.push_back(from[i]);
+    return {centre};
+  }
+
+  void take_best(const EvaluationTable& table, std::int64_t row) {
+    if (row < 0 || study_.problem->objectives().empty()) return;
+    const auto stage = static_cast<std::int64_t>(stage_);
+    const bool first = contents_.best.row < 0 || contents_.best.stage == stage;
+    if (!first) {
+      // Earlier stages win ties, so that a stage that finds nothing better changes nothing.
+      const EvaluationTable& before = contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table;
+      EvaluationTable pair(table.shape());
+      pair.extend(2);
+      copy_row(before, static_cast<std::size_t>(contents_.best.row), pair, 0);
+      copy_row(table, static_cast<std::size_t>(row), pair, 1);
+      if (!better(pair, study_.problem->objectives()[0].direction, 1, 0)) return;
+    }
+    contents_.best = {stage, row};
+  }
+
+  static void copy_row(const EvaluationTable& from, std::size_t row, EvaluationTable& to, std::size_t at) {
+    const EvaluationSlot slot = to.slot(at);
+    std::ranges::copy(from.objective_row(row), slot.objectives.begin());
+    std::ranges::copy(from.margin_row(row), slot.margins.begin());
+    slot.status = from.status[row];
+  }
+
+  void report(const Generation& g, const std::string& optimiser) {
+    ProgressReport r;
+    r.stage = stage_;
+    r.stages = study_.stages.size();
+    r.optimiser = optimiser;
+    r.generation = g.number;
+    r.evaluations = static_cast<std::int64_t>(g.table->size());
+    r.evaluation_limit = limit_;
+    r.seconds = now() - start_;
+    r.evaluations_per_second = r.seconds > 0 ? static_cast<double>(made_) / r.seconds : 0;
+    r.feasible_share = contents_.stages.back().generations.feasible_share.back();
+    if (!study_.problem->objectives().empty() && g.best_row >= 0) {
+      const auto row = static_cast<std::size_t>(g.best_row);
+      r.objective = study_.problem->objectives()[0].name;
+      r.has_best = g.table->status[row] == Status::feasible;
+      if (r.has_best)
+        r.best = g.table->objective_row(row)[0];
+      else
+        r.violation = violation(g.table->margin_row(row));
+    }
+    progress_.generation(r);
+  }
+
+  void write(StudyState state) {
+    contents_.state = state;
+    contents_.seconds = seconds();
+    contents_.updated = utc_now();
+    write_study(path_, contents_);
+  }
+
+  const Study& study_;
+  std::string path_;
+  RunOptions options_;
+  Progress& progress_;
+  CheckpointClock clock_;
+  TimedEvaluator evaluator_;
+  StudyContents contents_;
+  std::vector<StageRecord> recorded_;
+  double earlier_seconds_;
+  double start_;
+  std::size_t stage_ = 0;
+  std::int64_t limit_ = 0;
+  std::int64_t made_ = 0;
+  bool replaying_ = false;
+  std::string stopped_;
+};
+
+/// Changes the limits of the last stage, and remembers it for the next resume.
+void extend(Study& study, StudyContents& contents, const ExtensionRequest& request) {
+  const auto last = static_cast<std::int64_t>(study.stages.size()) - 1;
+  const auto set = [&](const std::string& limit, const std::optional<std::int64_t>& value) {
+    if (!value) return;
+    std::erase_if(contents.extensions, [&](const Extension& e) { return e.stage == last && e.limit == limit; });
+    contents.extensions.push_back({last, limit, static_cast<double>(*value)});
+  };
+  set("generations", request.generations);
+  set("evaluations", request.evaluations);
+  for (const Extension& e : contents.extensions) {
+    Stage& stage = study.stages.at(static_cast<std::size_t>(e.stage));
+    const bool known =
+        std::ranges::any_of(stage.entry->options, [&](const OptionSpec& o) { return o.name == e.limit; });
+    if (!known)
+      throw ConfigError({"", 0, "--" + e.limit}, "an optimiser '" + stage.entry->name + "' as the last stage",
+                        "one that has a limit on " + e.limit);
+    stage.options.set(e.limit, static_cast<std::int64_t>(e.value));
+    stage.optimiser = stage.entry->make(stage.options, study.problem->space());
+  }
+}
+
+}  // namespace
+
+Study study_of(const StudyContents& contents, const Catalogues& catalogues) {
+  Study study = read_study_toml(contents.toml, contents.toml_file, catalogues);
+  study.seed = contents.seed;
+  return study;
+}
+
+RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
+                     Progress& progress) {
+  const StudyLock lock(path);
+  if (!overwrite && std::filesystem::exists(path))
+    throw StorageError(path + " exists already; resume it with --resume, or overwrite it with --force");
+  return Run(study, new_contents(study), path, options, progress).run();
+}
+
+RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
+                        const RunOptions& options, Progress& progress) {
+  const StudyLock lock(path);
+  StudyContents contents = read_study(path);
+  if (contents.algorithms != kAlgorithms)
+    throw StorageError(path + " was written by pkmopt " + contents.program_version + " (" + contents.program_revision +
+                       "), whose algorithms have version " + std::to_string(contents.algorithms) +
+                       "; this program has version " + std::to_string(kAlgorithms) + " and would not repeat it");
+  Study study = study_of(contents, catalogues);
+  extend(study, contents, extension);
+  try {
+    return Run(study, std::move(contents), path, options, progress).run();
+  } catch (const ReplayMismatch& mismatch) {
+    throw StorageError(path + " cannot be continued: " + mismatch.what());
+  }
+}
+
+}  // namespace pkm

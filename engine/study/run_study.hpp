@@ -1,0 +1,57 @@
+// Runs a study: its stages one after the other, checkpoints on the way, and what is worked out at the end. New studies,
+// interrupted ones and finished ones that are to be extended take the same path: a stage always starts from nothing,
+// and recorded evaluations are served before new ones are made.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "engine/setup/study.hpp"
+#include "engine/storage/study_contents.hpp"
+#include "engine/study/progress.hpp"
+
+namespace pkm {
+
+/// Version of the behaviour of optimisers and surveys: a study is continued only by a program of the same one. Raise it
+/// with every change that changes the evaluations that a seed leads to.
+inline constexpr std::int64_t kAlgorithms = 1;
+
+struct ProgramVersion {
+  std::string version, revision;
+};
+
+struct RunOptions {
+  int threads = 0;                   ///< 0: as many as the machine has cores
+  std::optional<double> time_limit;  ///< [s] of this run; the study then stops early with a checkpoint
+  ProgramVersion program;
+};
+
+/// How a study file is to be extended.
+struct ExtensionRequest {
+  std::optional<std::int64_t> generations, evaluations;  ///< new limits of the last stage, totals
+};
+
+struct RunOutcome {
+  StudyContents contents;
+  /// Why the run stopped before the study's end ("SIGINT", "time limit"); "" when the study is finished.
+  std::string stopped;
+  double seconds = 0;              ///< of this run
+  std::int64_t evaluations = 0;    ///< made by this run, replayed ones not counted
+  double parallel_efficiency = 0;  ///< evaluation time over threads times wall time of the evaluations
+};
+
+/// Runs a new study into `path`, which must not exist unless `overwrite`. Throws StorageError.
+RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
+                     Progress& progress);
+
+/// Goes on with the study in `path`. Throws StorageError, also when the file was written by a program whose algorithms
+/// differ or its recorded evaluations do not repeat, and ConfigError when its problem cannot be built or the extension
+/// does not fit.
+RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
+                        const RunOptions& options, Progress& progress);
+
+/// The study that a file holds, with its seed.
+Study study_of(const StudyContents& contents, const Catalogues& catalogues);
+
+}  // namespace pkm

@@ -1,0 +1,225 @@
+// The runner inside the process: every generation a resume starts from, chains of stages, what the end records.
+#include "engine/study/run_study.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+
+#include "constraints/all.hpp"
+#include "engine/storage/study_file.hpp"
+#include "objectives/all.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Catalogues catalogues() { return {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()}; }
+
+const char* const kStudy = R"([study]
+name = "two stages"
+seed = 3
+[mechanism]
+type = "4ppa-2par"
+[variables]
+a   = { min = 0.15, max = 0.3 }
+b   = { min = 1.0, max = 1.5 }
+l_u = { min = 0.5, max = 0.7 }
+[baseline]
+a = 0.2
+[workspace]
+method = "voxels"
+cells = { x = 12, z = 14, theta = 16 }
+[[objective]]
+type = "workspace-ratio"
+[[report]]
+type = "conditioning"
+[[constraint]]
+type = "workspace-volume"
+min = 0.3
+[[stage]]
+optimiser = "ga"
+population = 8
+generations = 6
+[[stage]]
+optimiser = "ga"
+population = 6
+generations = 4
+crossover = "sbx"
+[final]
+round = 0.05
+[checkpoint]
+every = 0
+)";
+
+class RunStudy : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (std::filesystem::temp_directory_path() / "pkmopt-run-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+  std::string folder_;
+};
+
+/// Asks the process to stop at the n-th generation, as Ctrl-C would.
+class StopAt final : public Progress {
+ public:
+  explicit StopAt(int n) : left_(n) {}
+  void generation(const ProgressReport&) override {
+    if (left_-- == 0) std::raise(SIGINT);
+  }
+
+ private:
+  int left_;
+};
+
+TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  Progress silent;
+  const auto straight = run_study(study, path("straight.h5"), false, {}, silent);
+  EXPECT_EQ(straight.stopped, "");
+  const int generations = 7 + 5;
+  for (int stop = 0; stop < generations; ++stop) {
+    const std::string file = path("s" + std::to_string(stop) + ".h5");
+    StopAt at(stop);
+    const auto first = run_study(study, file, false, {}, at);
+    // A stop in a stage's last generation lets the stage end; in the last stage of all the study is then finished.
+    EXPECT_EQ(first.stopped, stop == generations - 1 ? "" : "SIGINT") << stop;
+    const auto second = resume_study(file, catalogues(), {}, {}, silent);
+    EXPECT_EQ(second.stopped, "");
+    EXPECT_EQ(first_difference(straight.contents, second.contents), "") << stop;
+    EXPECT_EQ(first_difference(straight.contents, read_study(file)), "") << stop;
+    EXPECT_LE(first.evaluations + second.evaluations, straight.evaluations);
+  }
+}
+
+TEST_F(RunStudy, StoppingWhileItReplaysKeepsTheFile) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  StopAt at(9);
+  run_study(study, path("a.h5"), false, {}, at);
+  const auto before = read_study(path("a.h5"));
+  StopAt early(2);
+  const auto outcome = resume_study(path("a.h5"), catalogues(), {}, {}, early);
+  EXPECT_EQ(outcome.stopped, "SIGINT");
+  EXPECT_EQ(outcome.evaluations, 0);
+  EXPECT_EQ(first_difference(before, read_study(path("a.h5"))), "");
+  EXPECT_EQ(first_difference(before, outcome.contents), "");
+}
+
+TEST_F(RunStudy, TheEndRecordsBestBaselineRoundedAndMap) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  Progress silent;
+  const auto contents = run_study(study, path("a.h5"), false, {}, silent).contents;
+  ASSERT_TRUE(contents.final && contents.final->best && contents.final->baseline && contents.final->rounded);
+  const FinalRecord& f = *contents.final;
+  EXPECT_EQ(f.best->status, Status::feasible);
+  const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
+  EXPECT_EQ(f.best->objectives[0], stage.table.objective_row(static_cast<std::size_t>(contents.best.row))[0]);
+  EXPECT_EQ(f.best->feasible_cells, std::count(f.map->voxels.feasible.begin(), f.map->voxels.feasible.end(), 1));
+  EXPECT_THAT(f.map->axes, ElementsAre("x", "z", "theta"));
+  EXPECT_THAT(f.map->units, ElementsAre("m", "m", "rad"));
+  for (int i = 0; i < 3; ++i) {
+    const double steps = f.rounded->parameters[static_cast<std::size_t>(i)] / 0.05;
+    EXPECT_NEAR(steps, std::round(steps), 1e-9);
+  }
+  ASSERT_TRUE(f.best_exact);
+  EXPECT_NEAR(f.best_exact->objectives[0] / f.best->objectives[0], 1, 0.1);  // a coarse grid
+  EXPECT_EQ(f.best->reports.size(), 1u);
+  EXPECT_EQ(contents.stages[1].options.empty(), false);
+  EXPECT_EQ(contents.stages[0].stop, "generation limit");
+  // the second stage starts from the first one's best
+  const auto start = contents.stages[1].table.design(0);
+  const StageRecord& first = contents.stages[0];
+  EXPECT_TRUE(std::ranges::equal(start, first.table.design(static_cast<std::size_t>(first.best_row))));
+}
+
+TEST_F(RunStudy, RefusesOtherAlgorithmsAndOtherPaths) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  StopAt at(3);
+  auto contents = run_study(study, path("a.h5"), false, {}, at).contents;
+  const auto message = [&](const StudyContents& c) {
+    write_study(path("b.h5"), c);
+    Progress silent;
+    try {
+      resume_study(path("b.h5"), catalogues(), {}, {}, silent);
+    } catch (const StorageError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  StudyContents other = contents;
+  other.algorithms = kAlgorithms + 1;
+  EXPECT_THAT(message(other), HasSubstr("b.h5 was written by pkmopt"));
+  StudyContents edited = contents;
+  edited.stages[0].table.designs[5] += 1e-9;
+  EXPECT_THAT(message(edited), HasSubstr("b.h5 cannot be continued: "));
+}
+
+TEST_F(RunStudy, RefusesALimitThatTheLastStageHasNot) {
+  const Study study = read_study_toml(R"([mechanism]
+type = "4ppa-2par"
+[variables]
+a = { min = 0.15, max = 0.3 }
+[workspace]
+method = "columns"
+[[objective]]
+type = "workspace-volume"
+[[stage]]
+optimiser = "sweep"
+points = 5
+)",
+                                      "s.toml", catalogues());
+  Progress silent;
+  run_study(study, path("a.h5"), false, {}, silent);
+  try {
+    resume_study(path("a.h5"), catalogues(), {.generations = 5, .evaluations = {}}, {}, silent);
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(),
+                 "--generations: found an optimiser 'sweep' as the last stage; expected one that has a limit on "
+                 "generations");
+  }
+}
+
+TEST_F(RunStudy, ASweepGoesThroughTheBaseline) {
+  const Study study = read_study_toml(R"([mechanism]
+type = "4ppa-2par"
+[variables]
+a = { min = 0.15, max = 0.95 }
+L0 = { min = 0, max = 5 }
+[baseline]
+a = 0.2
+L0 = 2.5
+[workspace]
+method = "columns"
+[[objective]]
+type = "workspace-volume"
+[[stage]]
+optimiser = "sweep"
+points = 9
+)",
+                                      "s.toml", catalogues());
+  Progress silent;
+  const auto c = run_study(study, path("a.h5"), false, {}, silent).contents;
+  EXPECT_NEAR(c.stages[0].table.objective_row(0)[0], 0.550157374606, 1e-9);
+  // the document's values over a: 0.510, 0.621, 0.597, 0.285 at 0.15, 0.3, 0.5, 0.95
+  const auto volume_at = [&](double a) {
+    for (std::size_t r = 0; r < c.stages[0].table.size(); ++r)
+      if (std::fabs(c.stages[0].table.design(r)[0] - a) < 1e-9 && c.stages[0].table.design(r)[1] == 2.5)
+        return c.stages[0].table.objective_row(r)[0];
+    return -1.0;
+  };
+  EXPECT_NEAR(volume_at(0.15), 0.510, 5e-4);
+  EXPECT_NEAR(volume_at(0.95), 0.285, 5e-4);
+}
+
+}  // namespace
+}  // namespace pkm::testing
