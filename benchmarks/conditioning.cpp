@@ -1,0 +1,62 @@
+// Conditioning: one pose, and the surveys that average it over the workspace.
+#include <benchmark/benchmark.h>
+
+#include "benchmarks/inputs.hpp"
+#include "engine/math/random.hpp"
+#include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
+
+namespace pkm::benchmarks {
+namespace {
+
+using namespace four_ppa_two_par;
+
+void pose(benchmark::State& state) {
+  const auto all = original_design();
+  const auto g = geometry(std::span<const double>(all));
+  struct Sample {
+    double sin, cos;
+    std::array<double, 2> x, sigma, z_c;
+  };
+  std::vector<Sample> samples(4096);
+  Stream stream(1, 0, 0, Stream::Use::start);
+  for (Sample& sample : samples) {
+    const auto [s, c] = sincos(kPi * (stream.u01() - 0.5));
+    sample.sin = s;
+    sample.cos = c;
+    for (std::size_t j = 0; j < 2; ++j) {
+      sample.x[j] = g.l_d * (0.02 + 0.96 * stream.u01());
+      sample.sigma[j] = std::sqrt((g.l_d - sample.x[j]) * (g.l_d + sample.x[j]));
+      sample.z_c[j] = -g.l_u * (0.02 + 0.96 * stream.u01());
+    }
+  }
+  for (auto _ : state) {
+    double sum = 0;
+    for (const Sample& p : samples) sum += conditioning(g, p.sin, p.cos, p.x, p.sigma, p.z_c, 1.0);
+    benchmark::DoNotOptimize(sum);
+  }
+  const auto poses = static_cast<double>(samples.size());
+  state.counters["poses"] = benchmark::Counter(poses, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(pose)->Name("conditioning/pose")->Unit(benchmark::kMicrosecond);
+
+void survey(benchmark::State& state, SurveyPlan plan) {
+  Demand demand;
+  demand.conditioning = true;
+  const auto surveyor = four_ppa().prepare(plan, demand);
+  const auto all = original_design();
+  Survey<double> result;
+  for (auto _ : state) {
+    surveyor->survey(all, result);
+    benchmark::DoNotOptimize(result.conditioning.data());
+  }
+  const auto poses = static_cast<double>(result.conditioning.size());
+  state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["poses"] = benchmark::Counter(poses, benchmark::Counter::kIsIterationInvariantRate);
+}
+void survey_voxels(benchmark::State& state) { survey(state, voxel_plan(without_limits())); }
+void survey_columns(benchmark::State& state) { survey(state, column_plan(without_limits())); }
+BENCHMARK(survey_voxels)->Name("conditioning/voxel_survey")->Unit(benchmark::kMicrosecond);
+BENCHMARK(survey_columns)->Name("conditioning/column_survey")->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace pkm::benchmarks

@@ -1,0 +1,47 @@
+// One generation of designs on one and on two threads.
+#include <benchmark/benchmark.h>
+
+#include "benchmarks/inputs.hpp"
+#include "benchmarks/timing.hpp"
+#include "engine/problem/evaluator.hpp"
+
+namespace pkm::benchmarks {
+namespace {
+
+// A table with one generation evaluated and room for the next, as an optimiser would have it.
+EvaluationTable two_generations(const Problem& problem, std::size_t population) {
+  EvaluationTable table(problem.shape());
+  table.extend(population);
+  for (std::size_t row = 0; row < population; ++row)
+    random_design(problem.space(), 1, static_cast<std::uint32_t>(row), table.design(row));
+  SerialEvaluator().evaluate(problem, table, 0);
+  table.extend(population);
+  for (std::size_t row = population; row < 2 * population; ++row)
+    random_design(problem.space(), 1, static_cast<std::uint32_t>(row), table.design(row));
+  return table;
+}
+
+void generation(benchmark::State& state, Study (*make_study)(), std::size_t population) {
+  const Study study = make_study();
+  const Problem& problem = *study.problem;
+  EvaluationTable table = two_generations(problem, population);
+  ParallelEvaluator one(1), two(2);
+  const Duel duel = take_turns(
+      state, "one_thread_s", [&] { one.evaluate(problem, table, population); }, "two_threads_s",
+      [&] { two.evaluate(problem, table, population); });
+  const double designs = static_cast<double>(population) * static_cast<double>(state.iterations());
+  state.counters["designs_per_s_on_one"] = designs / duel.first;
+  state.counters["designs_per_s_on_two"] = designs / duel.second;
+  state.counters["efficiency_percent"] = 100 * duel.ratio() / 2;
+}
+void voxels_1000(benchmark::State& state) { generation(state, paper_study, 1000); }
+void voxels_20(benchmark::State& state) { generation(state, paper_study, 20); }
+void columns_1000(benchmark::State& state) { generation(state, wide_study, 1000); }
+void columns_20(benchmark::State& state) { generation(state, wide_study, 20); }
+BENCHMARK(voxels_1000)->Name("generation/voxels_1000_designs")->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(voxels_20)->Name("generation/voxels_20_designs")->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(columns_1000)->Name("generation/columns_1000_designs")->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(columns_20)->Name("generation/columns_20_designs")->Unit(benchmark::kMicrosecond)->UseRealTime();
+
+}  // namespace
+}  // namespace pkm::benchmarks

@@ -1,0 +1,95 @@
+#include "benchmarks/inputs.hpp"
+
+#include <stdexcept>
+
+#include "constraints/all.hpp"
+#include "engine/math/random.hpp"
+#include "objectives/all.hpp"
+
+namespace pkm::benchmarks {
+namespace {
+
+using namespace four_ppa_two_par;
+
+const Catalogues& catalogues() {
+  static const Catalogues all{all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()};
+  return all;
+}
+
+Study experiment(const std::string& name) {
+  return load_study_toml(std::string(PKM_EXPERIMENTS) + "/4ppa-2par/" + name, catalogues());
+}
+
+double volume(const Surveyor& surveyor, std::span<const double> parameters) {
+  Survey<double> survey;
+  surveyor.survey(parameters, survey);
+  return survey.volume;
+}
+
+}  // namespace
+
+const Mechanism& four_ppa() {
+  for (const auto& mechanism : all_mechanisms())
+    if (mechanism->info().name == "4ppa-2par") return *mechanism;
+  throw std::out_of_range("4ppa-2par is not in the catalogue");
+}
+
+std::vector<double> design(double a, double b, double l_u, double l_d) {
+  std::vector<double> all;
+  for (const Parameter& parameter : four_ppa().info().parameters) all.push_back(parameter.nominal);
+  all[kA] = a;
+  all[kB] = b;
+  all[kLu] = l_u;
+  all[kLd] = l_d;
+  all[kD] = 0.15;
+  all[kL0] = 2.5;
+  return all;
+}
+
+std::vector<double> original_design() { return design(0.2, 0.8, 0.6, 0.55); }
+std::vector<double> optimal_design() { return design(0.3, 1.0, 0.7, 0.7); }
+
+LimitSpec without_limits() { return no_limits(four_ppa().info()); }
+LimitSpec with_limits() { return wide_study().problem->parts().plan.limits; }
+
+std::vector<std::vector<double>> designs_with_active_limits(std::size_t count) {
+  const Study study = wide_study();
+  const auto limited = four_ppa().prepare(column_plan(with_limits()), {});
+  const auto free = four_ppa().prepare(column_plan(without_limits()), {});
+  std::vector<std::vector<double>> designs;
+  std::vector<double> variables(study.problem->space().dimension());
+  for (std::uint32_t row = 0; designs.size() < count; ++row) {
+    random_design(study.problem->space(), 1, row, variables);
+    auto all = study.problem->parameters(variables);
+    const double value = volume(*limited, all);
+    if (value > 0.05 && value < 0.99 * volume(*free, all)) designs.push_back(std::move(all));
+  }
+  return designs;
+}
+
+SurveyPlan voxel_plan(const LimitSpec& limits) {
+  SurveyPlan plan;
+  plan.method = Method::voxels;
+  plan.limits = limits;
+  plan.cells = {32, 34, 60};
+  return plan;
+}
+
+SurveyPlan column_plan(const LimitSpec& limits, HeldCoordinate held, double tolerance) {
+  SurveyPlan plan;
+  plan.method = Method::columns;
+  plan.limits = limits;
+  plan.held = held;
+  plan.tolerance = tolerance;
+  return plan;
+}
+
+Study paper_study() { return experiment("paper-problem.toml"); }
+Study wide_study() { return experiment("wide-bounds.toml"); }
+
+void random_design(const DesignSpace& space, std::uint64_t seed, std::uint32_t row, std::span<double> values) {
+  Stream stream(seed, 0, row, Stream::Use::start);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = space.from_unit(i, stream.u01());
+}
+
+}  // namespace pkm::benchmarks

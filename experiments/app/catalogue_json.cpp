@@ -1,0 +1,175 @@
+#include "experiments/app/catalogue_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pkm {
+namespace {
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json word_of(OptionKind kind) {
+  switch (kind) {
+    case OptionKind::number:
+      return "number";
+    case OptionKind::integer:
+      return "integer";
+    case OptionKind::flag:
+      return "flag";
+    case OptionKind::word:
+      return "word";
+    case OptionKind::named_numbers:
+      return "named numbers";
+  }
+  return nullptr;
+}
+
+Json options_json(const std::vector<OptionSpec>& specs) {
+  Json list = Json::array();
+  for (const auto& spec : specs) {
+    const bool number = spec.kind == OptionKind::number;
+    list.push_back({{"name", spec.name},
+                    {"kind", word_of(spec.kind)},
+                    {"unit", number ? Json(spec.unit) : Json()},
+                    {"default", spec.initial ? to_json(*spec.initial) : Json()},
+                    {"required", spec.required},
+                    {"min", finite(spec.lower)},
+                    {"max", finite(spec.upper)},
+                    {"choices", spec.choices.empty() ? Json() : Json(spec.choices)},
+                    {"meaning", spec.meaning}});
+  }
+  return list;
+}
+
+/// Whether an objective or a design-level constraint serves a mechanism: with its unit, or the reason why not.
+template <class Entry>
+Json service_json(const Entry& entry, const std::vector<OptionSpec>& specs, const Mechanism& mechanism) {
+  const std::string refusal = entry.refusal(mechanism.info());
+  Json json = {{"name", mechanism.info().name}, {"serves", refusal.empty()}, {"unit", nullptr}, {"reason", nullptr}};
+  if (!refusal.empty()) {
+    json["reason"] = refusal;
+  } else if (entry.unit && !needs_options(specs)) {  // otherwise the unit depends on what the study gives
+    SurveyPlan plan;
+    plan.limits = no_limits(mechanism.info());
+    const Options options = default_options(specs);
+    json["unit"] = entry.unit({mechanism, plan, options});
+  }
+  return json;
+}
+
+Json limits_json(const MechanismInfo& info, const std::string& group) {
+  Json list = Json::array();
+  for (const auto& limit : info.limits)
+    if (group.empty() || limit.group == group)
+      list.push_back({{"name", limit.name},
+                      {"unit", limit.unit},
+                      {"inactive", limit.inactive},
+                      {"min", limit.lower},
+                      {"max", limit.upper},
+                      {"constraint", limit.group},
+                      {"derivation", limit.derivation.empty() ? Json() : Json(limit.derivation)},
+                      {"meaning", limit.meaning}});
+  return list;
+}
+
+/// Names of the entries that serve a mechanism.
+template <class List>
+Json serving(const List& entries, const MechanismInfo& info) {
+  Json names = Json::array();
+  for (const auto& entry : entries)
+    if (entry.refusal(info).empty()) names.push_back(entry.name);
+  return names;
+}
+
+Json mechanism_json(const MechanismInfo& info, const Catalogues& catalogues) {
+  const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
+  Json json = {{"name", info.name}, {"meaning", info.title}, {"source", info.source}};
+  json["coordinates"] = info.coordinates;
+  json["joints"] = info.joints;
+  json["modes"] = info.modes;
+  json["default_mode"] = info.modes.front();
+  for (const int swept : info.swept) json["swept"].push_back(coordinate(swept));
+  json["columns_along"] = coordinate(info.column);
+  json["held"] = coordinate(info.held);
+  json["volume_unit"] = info.volume_unit;
+  json["integrated_unit"] = info.held_can_integrate ? Json(info.integrated_unit) : Json();
+  json["size"] = info.size_unit.empty() ? Json() : Json(info.size_meaning);
+  json["size_unit"] = info.size_unit.empty() ? Json() : Json(info.size_unit);
+  json["characteristic_length"] = info.characteristic_length.empty() ? Json() : Json(info.characteristic_length);
+  json["objectives"] = serving(catalogues.objectives, info);
+  json["constraints"] = serving(catalogues.constraints, info);
+  json["parameters"] = Json::array();
+  for (const auto& p : info.parameters)
+    json["parameters"].push_back({{"name", p.name},
+                                  {"unit", p.unit},
+                                  {"default", p.nominal},
+                                  {"min", p.lower},
+                                  {"max", p.upper},
+                                  {"meaning", p.meaning}});
+  json["limits"] = limits_json(info, "");
+  json["design_tests"] = Json::array();
+  for (const auto& test : info.design_margins)
+    json["design_tests"].push_back({{"name", test.name}, {"unit", test.unit}, {"meaning", test.meaning}});
+  return json;
+}
+
+Json objective_json(const ObjectiveEntry& entry, const Catalogues& catalogues) {
+  Json json = {{"name", entry.name},
+               {"meaning", entry.meaning},
+               {"direction", entry.direction == Direction::maximise ? "maximise" : "minimise"},
+               {"mechanisms", Json::array()},
+               {"options", options_json(entry.options)}};
+  for (const auto& mechanism : catalogues.mechanisms)
+    json["mechanisms"].push_back(service_json(entry, entry.options, *mechanism));
+  return json;
+}
+
+Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues) {
+  Json json = {
+      {"name", entry.name},          {"meaning", entry.meaning},  {"level", entry.pose_level ? "pose" : "design"},
+      {"mechanisms", Json::array()}, {"options", Json::object()}, {"limits", Json::object()}};
+  for (const auto& mechanism : catalogues.mechanisms) {
+    const MechanismInfo& info = mechanism->info();
+    const auto specs = entry.options(info);
+    json["mechanisms"].push_back(service_json(entry, specs, *mechanism));
+    if (!entry.refusal(info).empty()) continue;
+    json["options"][info.name] = options_json(specs);
+    if (entry.pose_level) json["limits"][info.name] = limits_json(info, entry.name);
+  }
+  return json;
+}
+
+Json optimiser_json(const OptimiserEntry& entry) {
+  const Capabilities& can = entry.capabilities;
+  const bool many = can.max_objectives == std::numeric_limits<std::size_t>::max();
+  return {{"name", entry.name},
+          {"meaning", entry.meaning},
+          {"capabilities",
+           {{"max_objectives", many ? Json() : Json(can.max_objectives)},
+            {"constraints", can.constraints},
+            {"discrete", can.discrete},
+            {"needs_gradient", can.needs_gradient},
+            {"needs_objective", can.needs_objective}}},
+          {"options", options_json(entry.options)}};
+}
+
+}  // namespace
+
+bool needs_options(const std::vector<OptionSpec>& specs) {
+  return std::any_of(specs.begin(), specs.end(), [](const OptionSpec& spec) { return spec.required; });
+}
+
+Json catalogues_json(const Catalogues& catalogues) {
+  Json json = {{"mechanisms", Json::array()},
+               {"objectives", Json::array()},
+               {"constraints", Json::array()},
+               {"optimisers", Json::array()}};
+  for (const auto& m : catalogues.mechanisms) json["mechanisms"].push_back(mechanism_json(m->info(), catalogues));
+  for (const auto& entry : catalogues.objectives) json["objectives"].push_back(objective_json(entry, catalogues));
+  for (const auto& entry : catalogues.constraints) json["constraints"].push_back(constraint_json(entry, catalogues));
+  for (const auto& entry : catalogues.optimisers) json["optimisers"].push_back(optimiser_json(entry));
+  return json;
+}
+
+}  // namespace pkm

@@ -1,0 +1,136 @@
+// `pkmopt list`: the catalogues. The text shows what the JSON holds: a value per line, a table per list.
+
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/app/catalogue_json.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/print.hpp"
+
+namespace pkm {
+namespace {
+
+struct ListArguments {
+  std::string kind, name;
+  bool json = false;
+};
+
+std::string cell(const Json& value) {
+  if (value.is_null()) return "-";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_float()) return shortest(value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::vector<std::string> words;
+  for (const auto& element : value) words.push_back(cell(element));
+  return words.empty() ? "none" : join(words, "; ");
+}
+
+/// One row per object, one column per key; columns in which nothing stands are left out.
+std::vector<Row> table(const Json& list) {
+  std::vector<Row> rows(list.size() + 1);
+  for (const auto& [key, unused] : list.front().items()) {
+    bool any = false;
+    for (const auto& object : list) any = any || !object[key].is_null();
+    if (!any) continue;
+    rows[0].push_back(key);
+    for (std::size_t i = 0; i < list.size(); ++i) rows[i + 1].push_back(cell(list[i][key]));
+  }
+  return rows;
+}
+
+void print_details(const Json& entry) {
+  std::vector<Row> head;
+  std::vector<std::pair<std::string, const Json*>> tables;
+  const auto is_list = [](const Json& value) { return value.is_array() && !value.empty() && value[0].is_object(); };
+  for (const auto& [key, value] : entry.items()) {
+    if (is_list(value)) {
+      tables.emplace_back(key, &value);
+    } else if (value.is_object()) {
+      for (const auto& [inner, content] : value.items()) {
+        if (is_list(content))
+          tables.emplace_back(key + " for " + inner, &content);
+        else
+          head.push_back({inner, content.is_array() ? "no " + key : content.is_null() ? "no limit" : cell(content)});
+      }
+    } else {
+      head.push_back({key, cell(value)});
+    }
+  }
+  std::cout << aligned(head);
+  for (const auto& [title, list] : tables) print_section(std::cout, title, table(*list));
+}
+
+void print_overview(const Json& catalogues) {
+  bool first = true;
+  for (const auto& [kind, entries] : catalogues.items()) {
+    std::cout << (first ? "" : "\n") << kind << '\n';
+    std::vector<Row> rows;
+    for (const auto& entry : entries) rows.push_back({cell(entry["name"]), cell(entry["meaning"])});
+    std::cout << aligned(rows);
+    if (kind == "constraints") std::cout << "  or any objective, with min = .. or max = ..\n";
+    first = false;
+  }
+  std::cout << "\n'pkmopt list KIND NAME' tells everything of one entry.\n";
+}
+
+std::vector<std::string> entry_names(const Json& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry["name"].get<std::string>());
+  return names;
+}
+
+/// The entry of one catalogue called `name`.
+const Json& find_entry(const Json& entries, const std::string& kind, const std::string& name) {
+  for (const auto& entry : entries)
+    if (entry["name"] == name) return entry;
+  const auto known = entry_names(entries);
+  throw ConfigError({"", 0, "list " + kind}, "the unknown name '" + name + "'", "one of " + join(known),
+                    nearest_name(name, known));
+}
+
+/// The first entry of any catalogue called `word`, where a catalogue's name was expected.
+const Json& find_anywhere(const Json& catalogues, const std::string& word) {
+  std::vector<std::string> known;
+  for (const auto& [kind, entries] : catalogues.items()) {
+    known.push_back(kind);
+    for (const auto& entry : entries)
+      if (entry["name"] == word) return entry;
+  }
+  const std::string expected = "one of " + join(known) + ", or the name of an entry";
+  for (const auto& [kind, entries] : catalogues.items())
+    for (const auto& name : entry_names(entries)) known.push_back(name);
+  throw ConfigError({"", 0, "list"}, "the unknown word '" + word + "'", expected, nearest_name(word, known));
+}
+
+int list(const Catalogues& catalogues, const ListArguments& arguments) {
+  const auto& [kind, name, json] = arguments;
+  const Json all = catalogues_json(catalogues);
+  if (kind.empty() || (name.empty() && all.contains(kind))) {
+    const Json listed = kind.empty() ? all : Json{{kind, all[kind]}};
+    json ? print_json(std::cout, listed) : print_overview(listed);
+  } else {
+    const Json& entry = all.contains(kind) ? find_entry(all[kind], kind, name) : find_anywhere(all, kind);
+    json ? print_json(std::cout, entry) : print_details(entry);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<ListArguments>();
+  CLI::App* command =
+      app.add_subcommand("list", "What a study may name: mechanisms, objectives, constraints, optimisers.");
+  command->add_option("KIND", arguments->kind, "mechanisms, objectives, constraints or optimisers (default: all)")
+      ->type_name("");
+  command
+      ->add_option("NAME", arguments->name, "One entry, with everything known of it: parameters, limits, options, ...")
+      ->type_name("");
+  command->add_flag("--json", arguments->json, "Print one JSON object, with everything known of each entry");
+  command->footer("Example: pkmopt list mechanisms 4ppa-2par");
+  command->callback([&session, arguments] { session.exit_code = list(session.catalogues, *arguments); });
+}
+
+}  // namespace pkm

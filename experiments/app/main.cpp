@@ -1,0 +1,71 @@
+// pkmopt: the command-line program.
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include <CLI/CLI.hpp>
+
+#include "constraints/all.hpp"
+#include "experiments/app/command_line.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/version.hpp"
+#include "objectives/all.hpp"
+
+namespace {
+
+int complain(const std::string& sentence, int exit_code) {
+  std::cerr << "pkmopt: " << sentence << '\n';
+  return exit_code;
+}
+
+int run(int argc, char** argv) {
+  pkm::Session session{{pkm::all_mechanisms(), pkm::all_objectives(), pkm::all_constraints(), pkm::all_optimisers()}};
+  CLI::App app("Design-space optimisation of parallel kinematic machines.", "pkmopt");
+  app.set_version_flag("--version", "pkmopt " + pkm::program_version() + " (" + pkm::program_revision() + ")");
+  app.get_formatter()->column_width(36);
+  app.get_formatter()->label("REQUIRED", "(required)");
+  app.require_subcommand(1);
+  app.footer(
+      "'pkmopt COMMAND --help' tells more of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
+      "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint to go on from.\n"
+      "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml");
+  pkm::add_run(app, session);
+  pkm::add_resume(app, session);
+  pkm::add_check(app, session);
+  pkm::add_evaluate(app, session);
+  pkm::add_pose(app, session);
+  pkm::add_forward(app, session);
+  pkm::add_show(app, session);
+  pkm::add_list(app, session);
+  if (!pkm::parse_command_line(app, {argv + 1, argv + argc})) return pkm::kDone;
+  std::cout.flush();
+  if (!std::cout) return complain("the results cannot be written to the standard output", pkm::kFailure);
+  return session.exit_code;
+}
+
+/// libgomp's threads spin while they wait, which stalls a run by orders of magnitude where other programs use the
+/// cores. It reads its settings before main, so the program starts itself once more with waiting threads put to sleep.
+void start_with_sleeping_threads(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  setenv("OMP_WAIT_POLICY", "passive", 0);
+  execv("/proc/self/exe", argv);  // returns only where there is no /proc; the run is then merely slower
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  start_with_sleeping_threads(argv);
+  try {
+    return run(argc, argv);
+  } catch (const pkm::ConfigError& error) {
+    return complain(error.what(), pkm::kBadInput);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory", pkm::kFailure);
+  } catch (const std::exception& error) {
+    return complain(error.what(), pkm::kFailure);
+  }
+}

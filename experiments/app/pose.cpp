@@ -1,0 +1,150 @@
+// `pkmopt pose`: inverse kinematics, Jacobians and limits at one pose.
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/setup/assignments.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/print.hpp"
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+namespace {
+
+struct PoseArguments : DesignArguments {
+  std::vector<std::string> at;
+  std::string mode;
+};
+
+/// Refuses a mode that the mechanism does not have; none given: its default.
+std::string known_mode(const MechanismInfo& info, const std::string& mode) {
+  if (mode.empty()) return info.modes.front();
+  if (std::find(info.modes.begin(), info.modes.end(), mode) != info.modes.end()) return mode;
+  throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),
+                    nearest_name(mode, info.modes));
+}
+
+template <class T>
+Json json_or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json matrix_json(const std::optional<Eigen::Matrix4d>& matrix) {
+  if (!matrix) return {};
+  Json rows = Json::array();
+  for (int i = 0; i < 4; ++i) {
+    rows.push_back(Json::array());
+    for (int j = 0; j < 4; ++j) rows.back().push_back((*matrix)(i, j));
+  }
+  return rows;
+}
+
+Json named_json(const NamedValues& values) {
+  Json object = Json::object();
+  for (const auto& [name, value] : values) object[name] = value;
+  return object;
+}
+
+Json pose_json(const MechanismInfo& info, const std::string& mode, const std::vector<double>& at,
+               const PoseReport& report) {
+  Json pose = Json::object(), joints;
+  for (std::size_t i = 0; i < 4; ++i) pose[info.coordinates[i]] = at[i];
+  if (report.joints)
+    for (std::size_t i = 0; i < 4; ++i) joints[info.joints[i]] = (*report.joints)[i];
+  return {{"mechanism", info.name},
+          {"mode", mode},
+          {"pose", pose},
+          {"feasible", report.feasible},
+          {"assembles", report.assembles},
+          {"reason", report.reason.empty() ? Json() : Json(report.reason)},
+          {"joints", joints},
+          {"J", matrix_json(report.J)},
+          {"Jq", matrix_json(report.Jq)},
+          {"G", matrix_json(report.G)},
+          {"det_Jq", json_or_null(report.det_Jq)},
+          {"det_G", json_or_null(report.det_G)},
+          {"conditioning", json_or_null(report.conditioning)},
+          {"angles", named_json(report.angles)},
+          {"margins", named_json(report.margins)}};
+}
+
+void print_matrix(const std::string& title, const std::optional<Eigen::Matrix4d>& matrix) {
+  std::cout << '\n' << title << (matrix ? "" : ": does not exist") << '\n';
+  for (int i = 0; matrix && i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      std::array<char, 32> cell{};
+      std::snprintf(cell.data(), cell.size(), "%18.11g", (*matrix)(i, j));
+      std::cout << cell.data();
+    }
+    std::cout << '\n';
+  }
+}
+
+void print_pose(const MechanismInfo& info, const std::string& mode, const std::vector<double>& at,
+                const PoseReport& report) {
+  std::string pose;
+  for (std::size_t i = 0; i < 4; ++i)
+    pose += (i == 0 ? "" : ", ") + info.coordinates[i] + " = " + number(at[i], i == 3 ? "rad" : "m");
+  std::cout << aligned({{"mechanism", info.name},
+                        {"mode", mode},
+                        {"pose", pose},
+                        {"assembles", report.assembles ? "yes" : "no: " + report.reason},
+                        {"feasible", report.feasible                              ? "yes"
+                                     : report.assembles && !report.reason.empty() ? "no: " + report.reason
+                                                                                  : "no"}});
+  std::vector<Row> joints, angles, margins, indices;
+  if (report.joints)
+    for (std::size_t i = 0; i < 4; ++i) joints.push_back({info.joints[i], number((*report.joints)[i], "m")});
+  for (const auto& [name, value] : report.angles) angles.push_back({name, number(value)});
+  for (const auto& [name, value] : report.margins)
+    margins.push_back({name, number(value), value >= 0 ? "holds" : "broken"});
+  if (report.det_Jq) indices.push_back({"det_Jq", number(*report.det_Jq)});
+  if (report.det_G) indices.push_back({"det_G", number(*report.det_G)});
+  if (report.conditioning) indices.push_back({"conditioning", number(*report.conditioning)});
+  print_section(std::cout, "joints", joints);
+  if (report.assembles) {
+    print_matrix("Jq, where Jq qdot = G V", report.Jq);
+    print_matrix("G", report.G);
+    print_matrix("J = Jq^-1 G, where qdot = J V", report.J);
+  }
+  print_section(std::cout, "indices", indices);
+  print_section(std::cout, "angles and lengths (rad, m)", angles);
+  print_section(std::cout, "margins (>= 0 holds)", margins);
+}
+
+int pose(const Catalogues& catalogues, const PoseArguments& arguments) {
+  const Target target = find_target(catalogues, arguments);
+  const MechanismInfo& info = target.info();
+  const std::string mode = known_mode(info, arguments.mode);
+  const auto at = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
+  const PoseReport report =
+      target.mechanism->inspect(target.parameters, {at[0], at[1], at[2], at[3]}, mode, target.limits);
+  if (arguments.json)
+    print_json(std::cout, pose_json(info, mode, at, report));
+  else
+    print_pose(info, mode, at, report);
+  if (!report.assembles) throw std::runtime_error("the pose does not assemble in mode " + mode + ": " + report.reason);
+  return kDone;
+}
+
+}  // namespace
+
+void add_pose(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<PoseArguments>();
+  CLI::App* command = app.add_subcommand("pose", "One pose: joints, Jacobians, singularity indices, limits.");
+  add_design_arguments(*command, *arguments);
+  add_list_option(*command, "--at", arguments->at, "The pose: every coordinate", true);
+  command->add_option("--mode", arguments->mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
+      ->type_name("MODE");
+  command->footer(
+      "The limits are those of the study; a bare mechanism has none. A pose that breaks a limit is computed all the\n"
+      "same (exit code 0); one that does not assemble gives its reason and exit code 1.\n"
+      "Example: pkmopt pose 4ppa-2par --at x=0.25,y=0.85,z=-0.8,theta=30deg");
+  command->callback([&session, arguments] { session.exit_code = pose(session.catalogues, *arguments); });
+}
+
+}  // namespace pkm

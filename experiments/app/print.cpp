@@ -1,0 +1,32 @@
+#include "experiments/app/print.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace pkm {
+
+std::string number(double value, std::string_view unit) {
+  if (std::isnan(value)) return "not computed";
+  std::array<char, 40> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.12g", value);
+  std::string text = buffer.data();
+  if (unit != "1" && !unit.empty()) text += " " + std::string(unit);
+  return text;
+}
+
+void print_section(std::ostream& out, std::string_view title, const std::vector<Row>& rows) {
+  if (rows.empty()) return;
+  out << '\n' << title << '\n' << aligned(rows);
+}
+
+void print_json(std::ostream& out, const Json& json) {
+  // Names and file names may hold bytes that are no UTF-8; JSON may not.
+  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+Json to_json(const OptionValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+}  // namespace pkm

@@ -1,0 +1,37 @@
+// Printing of results: numbers with a useful number of digits, aligned columns, JSON.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/options.hpp"
+#include "engine/core/text_table.hpp"
+
+namespace pkm {
+
+/// Keeps the order in which keys are added. Numbers that are not finite are printed as null.
+using Json = nlohmann::ordered_json;
+using Row = std::vector<std::string>;
+
+/// A number with its unit, 12 significant digits; "not computed" for NaN.
+std::string number(double value, std::string_view unit = "1");
+
+/// Aligned rows under a title on a line of its own; nothing when there are none.
+void print_section(std::ostream& out, std::string_view title, const std::vector<Row>& rows);
+
+void print_json(std::ostream& out, const Json& json);
+Json to_json(const OptionValue& value);
+
+/// {name: value, ...} of things with a name and their values, in one order.
+template <class Named>
+Json values_by_name(const Named& named, const std::vector<double>& values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < values.size(); ++i) object[named[i].name] = values[i];
+  return object;
+}
+
+}  // namespace pkm

@@ -1,0 +1,35 @@
+// What `run` and `resume` have in common.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/study/run_study.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace pkm {
+
+struct RunningArguments {
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// Declares --threads and --quiet.
+void add_running_options(CLI::App& command, RunningArguments& arguments);
+
+RunOptions run_options(const RunningArguments& arguments);
+/// The number of threads that 0 stands for.
+int threads_of(const RunningArguments& arguments);
+/// A bar or lines on stderr; nothing when quiet.
+std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
+
+/// "stopped by SIGINT ...; go on with: pkmopt resume F.h5"
+void print_stop(const RunOutcome& outcome, const std::string& file);
+/// The end of a run; returns the exit code.
+int print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
+                  const RunningArguments& arguments);
+
+}  // namespace pkm

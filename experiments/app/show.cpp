@@ -1,0 +1,65 @@
+// pkmopt show: what a study found, from its file.
+
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/core/text_table.hpp"
+#include "engine/storage/study_file.hpp"
+#include "engine/study/progress.hpp"
+#include "engine/study/run_study.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/summary.hpp"
+
+namespace pkm {
+namespace {
+
+/// The history in brief: about ten generations of each stage.
+std::string history(const StudyContents& contents) {
+  std::string text;
+  for (const StageRecord& stage : contents.stages) {
+    const auto& list = stage.generations;
+    if (list.size() == 0 || contents.problem.objectives.empty()) continue;
+    std::vector<std::vector<std::string>> rows = {
+        {"generation", "evaluations", contents.problem.objectives[0].name, "feasible", "diversity", "time"}};
+    const std::size_t step = std::max<std::size_t>(1, (list.size() - 1 + 9) / 10);
+    for (std::size_t g = 0; g < list.size();
+         g = g + step < list.size() || g == list.size() - 1 ? g + step : list.size() - 1) {
+      const std::size_t rows_so_far =
+          g + 1 < list.size() ? static_cast<std::size_t>(list.first_row[g + 1]) : stage.table.size();
+      char best[40] = "-", share[16], spread[16];
+      if (list.best_row[g] >= 0)
+        std::snprintf(best, sizeof best, "%.10g",
+                      stage.table.objective_row(static_cast<std::size_t>(list.best_row[g]))[0]);
+      std::snprintf(share, sizeof share, "%.0f %%", 100 * list.feasible_share[g]);
+      std::snprintf(spread, sizeof spread, "%.2g", list.diversity[g]);
+      rows.push_back(
+          {std::to_string(g), std::to_string(rows_so_far), best, share, spread, duration_text(list.seconds[g])});
+    }
+    text += '\n' + stage.optimiser + '\n' + aligned(rows);
+  }
+  return text;
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, Session& session) {
+  struct Arguments {
+    std::string file;
+    bool json = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("show", "Shows what a study found: best design, margins, history in brief.");
+  command->add_option("file", arguments->file, "The study file")->required()->type_name("F.h5");
+  command->add_flag("--json", arguments->json, "One JSON object, numbers in full precision");
+  command->footer("Example: pkmopt show paper-problem.h5");
+  command->callback([arguments, &session] {
+    const StudyContents contents = read_study(arguments->file);
+    if (arguments->json)
+      print_json(std::cout, summary_json(contents));
+    else
+      std::cout << summary_text(contents, study_of(contents, session.catalogues)) << history(contents);
+  });
+}
+
+}  // namespace pkm

@@ -1,0 +1,72 @@
+#include "experiments/app/target.hpp"
+
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/setup/assignments.hpp"
+
+namespace pkm {
+namespace {
+
+Target bare_mechanism(std::shared_ptr<const Mechanism> mechanism) {
+  Target target;
+  target.limits = no_limits(mechanism->info());
+  for (const auto& parameter : mechanism->info().parameters) target.parameters.push_back(parameter.nominal);
+  target.mechanism = std::move(mechanism);
+  return target;
+}
+
+Target of_study(Study study) {
+  const ProblemParts& parts = study.problem->parts();
+  Target target;
+  target.mechanism = parts.mechanism;
+  target.limits = parts.plan.limits;
+  target.parameters = study.baseline.value_or(parts.parameters);
+  target.study = std::move(study);
+  return target;
+}
+
+Target named_target(const Catalogues& catalogues, const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& mechanism : catalogues.mechanisms) {
+    known.push_back(mechanism->info().name);
+    if (known.back() == name) return bare_mechanism(mechanism);
+  }
+  std::error_code unreadable;  // is told by the attempt to read
+  if (name.ends_with(".toml") || std::filesystem::exists(name, unreadable))
+    return of_study(load_study_toml(name, catalogues));
+  throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",
+                    "a study in TOML, or one of the mechanisms " + join(known), nearest_name(name, known));
+}
+
+}  // namespace
+
+void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
+                     const std::string& meaning, bool required) {
+  command.add_option(option, lists, meaning + "; separated by commas or repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)
+      ->required(required);
+}
+
+void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
+  command.add_option("MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path")
+      ->type_name("")
+      ->required();
+  add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults",
+                  false);
+  command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
+}
+
+Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {
+  Target target = named_target(catalogues, arguments.target);
+  const auto given = parse_assignments(arguments.set, "--set", assignable_parameters(target.info()));
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (given[i]) target.parameters[i] = *given[i];
+  if (const std::string reason = target.mechanism->refuse(target.parameters); !reason.empty())
+    throw ConfigError({"", 0, "--set"}, reason);
+  return target;
+}
+
+}  // namespace pkm

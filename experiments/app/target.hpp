@@ -1,0 +1,44 @@
+// What the commands that look at one design have in common: MECHANISM|STUDY.toml, --set and --json.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/setup/study.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace pkm {
+
+struct DesignArguments {
+  std::string target;            ///< a mechanism's name or the path of a study
+  std::vector<std::string> set;  ///< lists of name=value
+  bool json = false;
+};
+
+/// Declares the arguments above; what is parsed goes to `arguments`, which must outlive `command`.
+void add_design_arguments(CLI::App& command, DesignArguments& arguments);
+
+/// Declares a list option such as --at: name=value, separated by commas, repeatable.
+void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
+                     const std::string& meaning, bool required);
+
+/// One design of a mechanism, and the study that it comes from, if it does.
+struct Target {
+  std::shared_ptr<const Mechanism> mechanism;
+  std::optional<Study> study;
+  LimitSpec limits;  ///< the study's; none for a bare mechanism
+  /// The study's baseline, else its parameters, else the mechanism's defaults; then what --set names.
+  std::vector<double> parameters;
+
+  const MechanismInfo& info() const { return mechanism->info(); }
+};
+
+/// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
+Target find_target(const Catalogues& catalogues, const DesignArguments& arguments);
+
+}  // namespace pkm

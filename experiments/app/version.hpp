@@ -1,0 +1,11 @@
+// Which program this is. The definitions are written by version.cmake in every build.
+#pragma once
+
+#include <string>
+
+namespace pkm {
+
+std::string program_version();   ///< "0.1.0"
+std::string program_revision();  ///< "f6d30b4a1c22", "f6d30b4a1c22+changes", or "unknown" outside git
+
+}  // namespace pkm

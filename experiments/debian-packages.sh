@@ -1,0 +1,41 @@
+# Debian 12 packages that pkmopt needs, and how the scripts get those that are missing. To be sourced.
+
+pkm_build_packages=(
+  g++ cmake ninja-build pkg-config  # tools
+  libeigen3-dev                     # linear algebra
+  libhdf5-dev libxxhash-dev         # study files and their checksum
+  libtomlplusplus-dev               # studies
+  libcli11-dev nlohmann-json3-dev   # command line, --json
+  librandom123-dev                  # counter-based random numbers
+)
+pkm_test_packages=(
+  libgtest-dev libgmock-dev libbenchmark-dev
+  libceres-dev                          # derivatives to compare ours with
+  python3 python3-numpy python3-h5py    # reads study files independently of us
+  clang-14 libomp-14-dev clang-format-14  # second compiler, ThreadSanitizer, formatting
+)
+
+# Installs those of the named packages that are missing. Does nothing, and needs no rights, when none is.
+pkm_install_missing() {
+  if ! command -v apt-get >/dev/null; then
+    echo "No apt-get here. What is needed is called in Debian 12: $*"
+    return 0
+  fi
+  local package missing=() as_root=()
+  for package in "$@"; do
+    [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null) == installed ]] ||
+      missing+=("$package")
+  done
+  ((${#missing[@]})) || return 0
+  if ((EUID != 0)); then
+    if ! command -v sudo >/dev/null; then
+      echo "Missing packages, and neither root nor sudo to install them: ${missing[*]}" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  echo "Installing ${missing[*]}"
+  "${as_root[@]}" apt-get update -q
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -q --yes --no-install-recommends "${missing[@]}"
+}

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian 12 packages), builds the program, runs the paper's study and prints the result.
+# Works from any folder and may be run again.
+set -euo pipefail
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+source experiments/debian-packages.sh
+
+pkm_install_missing "${pkm_build_packages[@]}"
+
+build=build/quickstart
+cmake --preset quickstart --log-level=WARNING
+cmake --build --preset quickstart --parallel "$(nproc)"
+
+study=$build/paper-problem.h5
+"$build/bin/pkmopt" run experiments/4ppa-2par/paper-problem.toml --output "$study" --force
+
+echo
+printf 'Look at it again with:  %q show %q\n' "$PWD/$build/bin/pkmopt" "$PWD/$study"

@@ -1,0 +1,86 @@
+// Runs a program to its end and keeps what it printed.
+#pragma once
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace pkm::testing {
+
+struct ProgramResult {
+  int exit_code = -1;  ///< 128 + the signal's number where a signal ended the program; -1 when it was out of time
+  std::string out, err;
+
+  /// What --json printed. Throws when stdout is no JSON.
+  nlohmann::json json() const { return nlohmann::json::parse(out); }
+};
+
+/// A file without a name that a child writes into.
+class Capture {
+ public:
+  Capture() : file_(std::tmpfile()) {
+    if (!file_) throw std::runtime_error("no temporary file");
+  }
+  ~Capture() { std::fclose(file_); }
+  Capture(const Capture&) = delete;
+  Capture& operator=(const Capture&) = delete;
+
+  int descriptor() const { return fileno(file_); }
+  std::string text() const {
+    std::rewind(file_);
+    std::string all;
+    for (int c; (c = std::fgetc(file_)) != EOF;) all += static_cast<char>(c);
+    return all;
+  }
+
+ private:
+  std::FILE* file_;
+};
+
+/// @param command  path of the program and its arguments
+/// @param folder   working folder of the program
+inline ProgramResult run_program(const std::vector<std::string>& command, const std::string& folder = ".",
+                                 std::chrono::seconds time_limit = std::chrono::seconds(60)) {
+  std::vector<char*> argv;
+  for (const auto& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const Capture out, err;
+  const pid_t child = fork();
+  if (child == 0) {  // system calls only
+    if (chdir(folder.c_str()) != 0 || dup2(out.descriptor(), 1) < 0 || dup2(err.descriptor(), 2) < 0) _exit(126);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  ProgramResult result;
+  int status = 0;
+  const auto deadline = std::chrono::steady_clock::now() + time_limit;
+  bool ended = false;
+  while (!(ended = waitpid(child, &status, WNOHANG) == child) && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (ended) {
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  } else {
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+  }
+  result.out = out.text();
+  result.err = err.text();
+  return result;
+}
+
+/// The pkmopt of this build.
+inline ProgramResult pkmopt(std::vector<std::string> arguments, const std::string& folder = ".") {
+  arguments.insert(arguments.begin(), PKM_PROGRAM);
+  return run_program(arguments, folder);
+}
+
+}  // namespace pkm::testing

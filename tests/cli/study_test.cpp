@@ -1,0 +1,305 @@
+// Studies through the built program: killed at random instants and resumed, stopped by signals, on any number of
+// threads, extended, locked, refused, on a full disk.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+#include "engine/storage/study_file.hpp"
+#include "tests/cli/child_process.hpp"
+
+namespace pkm::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A fresh folder with a study in it, removed at the end.
+class StudyProgram : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "pkmopt-study-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// @param generations  of 40 designs on exact columns with active constraints
+  void write_toml(int generations, const std::string& more = "[checkpoint]\nevery = 0\n") const {
+    std::ofstream(folder_ + "/study.toml") << R"([study]
+name = "kill me"
+seed = 7
+[mechanism]
+type = "4ppa-2par"
+[variables]
+a   = { min = 0.15, max = 0.95 }
+b   = { min = 0.35, max = 1.55 }
+l_u = { min = 0.25, max = 1.5 }
+l_d = { min = 0.25, max = 1.5, step = 0.001 }
+[workspace]
+method = "columns"
+limits = { alpha_min = 0.1, h_min = 0.06, beta_min = 0.1, beta_max = 1.3, sin_par_min = 0.1, cos_theta_min = 0.1 }
+[[objective]]
+type = "workspace-ratio"
+[[constraint]]
+type = "workspace-shape"
+[[constraint]]
+type = "linear"
+coefficients = { a = 1, b = -1 }
+[[stage]]
+optimiser = "ga"
+population = 40
+generations = )" << generations << "\n[[stage]]\noptimiser = \"ga\"\npopulation = 20\ngenerations = 20\n"
+                                           << more;
+  }
+
+  int run(const std::vector<std::string>& arguments, ChildProcess::Settings settings = {}) {
+    ChildProcess child(command(arguments), folder_, settings);
+    const int code = child.wait();
+    output_ = child.output();
+    return code;
+  }
+  static std::vector<std::string> command(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), PKM_PROGRAM);
+    return arguments;
+  }
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  StudyContents read(const std::string& name) const { return read_study(path(name)); }
+
+  std::string folder_, output_;
+};
+
+TEST_F(StudyProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
+  write_toml(100);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  const double straight_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  const StudyContents straight = read("straight.h5");
+  ASSERT_EQ(straight.state, StudyState::finished);
+
+  std::mt19937 engine(20);
+  int killed_while_running = 0, identical = 0;
+  constexpr int kKills = 20;
+  for (int i = 0; i < kKills; ++i) {
+    const std::string file = "killed-" + std::to_string(i) + ".h5";
+    {
+      ChildProcess child(command({"run", "study.toml", "--output", file, "--quiet"}), folder_);
+      const double wait_ms = straight_ms * static_cast<double>(engine() % 1000) / 1000;
+      std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(wait_ms));
+      child.signal(SIGKILL);
+      child.wait();
+    }
+    if (fs::exists(path(file))) {
+      const StudyContents left = read(file);  // throws if the file is not complete
+      if (left.state == StudyState::running) ++killed_while_running;
+      ASSERT_EQ(run({"resume", file, "--quiet"}), 0) << output_;
+    } else {
+      ASSERT_EQ(run({"run", "study.toml", "--output", file, "--quiet"}), 0)
+          << output_;  // killed before the first write
+    }
+    const std::string difference = first_difference(straight, read(file));
+    EXPECT_EQ(difference, "") << "kill " << i;
+    identical += difference.empty();
+  }
+  std::cout << kKills << " runs killed by SIGKILL, " << killed_while_running << " of them with a study on its way, "
+            << identical << " ended bit-identical after resuming\n";
+  EXPECT_GE(killed_while_running, kKills / 2);
+}
+
+TEST_F(StudyProgram, AChainOfKillsEndsTheSame) {
+  write_toml(120);
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  std::mt19937 engine(21);
+  int kills = 0;
+  std::vector<std::string> next = {"run", "study.toml", "--output", "chain.h5", "--quiet"};
+  for (; kills < 30; ++kills) {
+    ChildProcess child(command(next), folder_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20 + engine() % 60));
+    child.signal(SIGKILL);
+    if (child.wait() == 0) break;
+    if (fs::exists(path("chain.h5"))) next = {"resume", "chain.h5", "--quiet"};
+  }
+  if (kills == 30) {
+    ASSERT_EQ(run({"resume", "chain.h5", "--quiet"}), 0) << output_;
+  }
+  EXPECT_GT(kills, 2);
+  EXPECT_EQ(first_difference(read("straight.h5"), read("chain.h5")), "");
+}
+
+TEST_F(StudyProgram, OneTwoAndSevenThreadsAreTheSame) {
+  write_toml(40);
+  for (const char* threads : {"1", "2", "7"})
+    ASSERT_EQ(run({"run", "study.toml", "--output", std::string(threads) + ".h5", "--threads", threads, "--quiet"}), 0)
+        << output_;
+  EXPECT_EQ(first_difference(read("1.h5"), read("2.h5")), "");
+  EXPECT_EQ(first_difference(read("1.h5"), read("7.h5")), "");
+}
+
+TEST_F(StudyProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
+  write_toml(300, "");
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  int stopped = 0;
+  for (const int number : {SIGINT, SIGTERM}) {
+    const std::string file = number == SIGINT ? "int.h5" : "term.h5";
+    int code = 0;
+    std::string output;
+    {
+      ChildProcess child(command({"run", "study.toml", "--output", file}), folder_);
+      while (!fs::exists(path(file))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      child.signal(number);
+      code = child.wait();
+      output = child.output();
+    }
+    if (code == 3) {
+      ++stopped;
+      EXPECT_EQ(read(file).state, StudyState::interrupted);
+      EXPECT_NE(output.find(number == SIGINT ? "stopped by SIGINT after" : "stopped by SIGTERM after"),
+                std::string::npos);
+      EXPECT_NE(output.find("go on with: pkmopt resume " + file), std::string::npos) << output;
+      ASSERT_EQ(run({"resume", file}), 0) << output_;
+    }
+    EXPECT_EQ(first_difference(read("straight.h5"), read(file)), "");
+  }
+  EXPECT_GT(stopped, 0) << "the study ended before either signal";
+}
+
+TEST_F(StudyProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
+  write_toml(300, "");
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  {
+    ChildProcess child(command({"run", "study.toml", "--output", "t.h5", "--quiet"}), folder_);
+    while (!fs::exists(path("t.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    child.signal(SIGKILL);
+    child.wait();
+  }
+  EXPECT_EQ(run({"resume", "t.h5", "--time", "5 ms"}), 3) << output_;
+  EXPECT_NE(output_.find("stopped by time limit after"), std::string::npos) << output_;
+  EXPECT_EQ(run({"resume", "t.h5", "--quiet"}), 0) << output_;
+  EXPECT_EQ(first_difference(read("straight.h5"), read("t.h5")), "");
+}
+
+TEST_F(StudyProgram, AnExtendedStudyEqualsALongOne) {
+  std::ofstream(folder_ + "/short.toml") << R"([mechanism]
+type = "4ppa-2par"
+[variables]
+a = { min = 0.15, max = 0.3 }
+b = { min = 1.0, max = 1.5 }
+[workspace]
+method = "voxels"
+[[objective]]
+type = "workspace-ratio"
+[[stage]]
+optimiser = "ga"
+population = 12
+generations = 10
+)";
+  ASSERT_EQ(run({"run", "short.toml", "--output", "a.h5", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"run", "short.toml", "--output", "b.h5", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"resume", "a.h5", "--generations", "30"}), 0) << output_;
+  ASSERT_EQ(run({"resume", "b.h5", "--generations", "17", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"resume", "b.h5", "--generations", "30", "--quiet"}), 0) << output_;
+  EXPECT_EQ(read("a.h5").stages[0].generations.size(), 31u);
+  EXPECT_EQ(first_difference(read("a.h5"), read("b.h5")), "");
+  // plain resume of a finished study changes nothing
+  const auto before = fs::last_write_time(path("a.h5"));
+  ASSERT_EQ(run({"resume", "a.h5"}), 0) << output_;
+  EXPECT_NE(output_.find("nothing is left to do"), std::string::npos);
+  EXPECT_EQ(fs::last_write_time(path("a.h5")), before);
+}
+
+TEST_F(StudyProgram, ExistingFilesAreNotOverwritten) {
+  write_toml(2);
+  ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
+  ASSERT_TRUE(fs::exists(path("study.h5")));
+  EXPECT_EQ(run({"run", "study.toml", "--quiet"}), 1);
+  EXPECT_EQ(output_, "pkmopt: study.h5 exists already; resume it with --resume, or overwrite it with --force\n");
+  EXPECT_EQ(run({"run", "study.toml", "--quiet", "--force"}), 0) << output_;
+  EXPECT_EQ(run({"run", "study.toml", "--quiet", "--resume"}), 0) << output_;
+  write_toml(3);
+  EXPECT_EQ(run({"run", "study.toml", "--quiet", "--resume"}), 1);
+  EXPECT_NE(output_.find("study.h5 holds another text of the study than study.toml"), std::string::npos) << output_;
+}
+
+TEST_F(StudyProgram, ASecondProcessIsTurnedAway) {
+  write_toml(100000, "");
+  ChildProcess first(command({"run", "study.toml", "--quiet"}), folder_);
+  while (!fs::exists(path("study.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  fs::create_directory(folder_ + "/elsewhere");
+  ChildProcess second(command({"resume", path("study.h5"), "--quiet"}), folder_ + "/elsewhere");
+  EXPECT_EQ(second.wait(), 1);
+  EXPECT_NE(second.output().find("in use by process"), std::string::npos) << second.output();
+  first.signal(SIGTERM);
+  EXPECT_EQ(first.wait(), 3);
+}
+
+TEST_F(StudyProgram, AFullDiskIsAnErrorAndTheLastCheckpointStays) {
+  write_toml(120);
+  ChildProcess::Settings small;
+  small.file_size = 110'000;  // the first checkpoints fit, later ones do not
+  EXPECT_EQ(run({"run", "study.toml", "--quiet"}, small), 1);
+  EXPECT_NE(output_.find("study.h5"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("the previous state is kept (File too large)"), std::string::npos) << output_;
+  const StudyContents left = read("study.h5");
+  EXPECT_GT(left.evaluations(), 0);
+  EXPECT_FALSE(fs::exists(path("study.h5.part")));
+  ASSERT_EQ(run({"resume", "study.h5", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  EXPECT_EQ(first_difference(read("straight.h5"), read("study.h5")), "");
+}
+
+TEST_F(StudyProgram, UnusableFilesAreErrors) {
+  write_toml(2);
+  ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
+  EXPECT_EQ(run({"resume", "none.h5"}), 1);
+  EXPECT_NE(output_.find("none.h5"), std::string::npos);
+  EXPECT_EQ(run({"run", "study.toml", "--output", "study.toml/x.h5"}), 1) << output_;
+  std::ofstream(folder_ + "/text.h5") << "not a study";
+  EXPECT_EQ(run({"show", "text.h5"}), 1);
+  EXPECT_NE(output_.find("text.h5"), std::string::npos);
+  fs::copy(path("study.h5"), path("cut.h5"));
+  fs::resize_file(path("cut.h5"), fs::file_size(path("cut.h5")) / 2);
+  EXPECT_EQ(run({"resume", "cut.h5"}), 1);
+  EXPECT_NE(output_.find("cut.h5"), std::string::npos);
+  EXPECT_EQ(fs::file_size(path("cut.h5")), fs::file_size(path("study.h5")) / 2) << "left untouched";
+}
+
+TEST_F(StudyProgram, ReportsTheBlockingConstraintWhenNothingIsFeasible) {
+  std::ofstream(folder_ + "/no.toml") << R"([mechanism]
+type = "4ppa-2par"
+[variables]
+a = { min = 0.2, max = 0.3 }
+[workspace]
+method = "columns"
+[[objective]]
+type = "workspace-volume"
+[[constraint]]
+type = "conditioning"
+min = 0.9
+[[stage]]
+optimiser = "ga"
+population = 8
+generations = 3
+)";
+  ASSERT_EQ(run({"run", "no.toml"}), 0) << output_;
+  EXPECT_NE(
+      output_.find("nothing feasible was found; this is the least infeasible design: conditioning blocks, margin -0."),
+      std::string::npos)
+      << output_;
+}
+
+TEST_F(StudyProgram, SeedsAreRepeatedIntoFilesOfTheirOwn) {
+  write_toml(5);
+  ASSERT_EQ(run({"run", "study.toml", "--seeds", "3"}), 0) << output_;
+  for (const char* name : {"study-seed-7.h5", "study-seed-8.h5", "study-seed-9.h5"})
+    EXPECT_TRUE(fs::exists(path(name)));
+  EXPECT_NE(output_.find("median"), std::string::npos);
+  EXPECT_NE(output_.find("3 of 3 seeds ended feasible"), std::string::npos) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--seed", "8", "--output", "eight.h5", "--quiet"}), 0) << output_;
+  EXPECT_EQ(first_difference(read("eight.h5"), read("study-seed-8.h5")), "");
+  EXPECT_NE(first_difference(read("eight.h5"), read("study-seed-9.h5")), "");
+}
+
+}  // namespace
+}  // namespace pkm::testing

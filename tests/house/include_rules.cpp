@@ -1,0 +1,116 @@
+#include "tests/house/include_rules.hpp"
+
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
+namespace pkm::house {
+namespace {
+
+using Words = std::vector<std::string>;
+
+// A folder of engine/ may include itself and those before it.
+const Words kOrder = {"core",    "math",       "model",   "motion", "dynamics", "workspace", "mechanisms",
+                      "problem", "optimisers", "storage", "setup",  "study",    "report"};
+
+// Where the headers of a library may be included.
+struct Library {
+  std::string start;  // of its headers' names
+  Words folders;
+};
+const std::vector<Library> kLibraries = {
+    {"hdf5", {"engine/storage"}},
+    {"H5", {"engine/storage"}},
+    {"xxh", {"engine/storage"}},
+    {"Random123/", {"engine/math"}},
+    {"toml++/", {"engine/setup"}},
+    {"muParser", {"engine/setup", "engine/motion"}},
+    {"omp.h", {"engine/problem"}},
+    {"mpi.h", {"engine/problem"}},
+    {"nlopt", {"engine/optimisers"}},
+    {"coin", {"engine/optimisers"}},
+    {"Ip", {"engine/optimisers"}},
+    {"spdlog/", {"engine/study"}},
+    {"nlohmann/", {"engine/report", "experiments/app"}},
+    {"CLI/", {"experiments/app"}},
+};
+// May be included everywhere.
+const Words kSystem = {"Eigen/", "unsupported/Eigen/", "sys/",      "unistd.h",   "fcntl.h",
+                       "poll.h", "termios.h",          "pthread.h", "immintrin.h"};
+
+bool one_of(const std::string& word, const Words& words) { return std::ranges::find(words, word) != words.end(); }
+bool starts_with_one_of(const std::string& word, const Words& starts) {
+  return std::ranges::any_of(starts, [&](const std::string& start) { return word.starts_with(start); });
+}
+
+/// "engine/core" of "engine/core/error.hpp", "objectives" of "objectives/all.hpp".
+std::string folder_of(const std::string& path) {
+  const auto first = path.find('/');
+  if (first == std::string::npos) return "";
+  const bool deep = path.starts_with("engine/") || path.starts_with("experiments/");
+  const auto second = deep ? path.find('/', first + 1) : std::string::npos;
+  return path.substr(0, second == std::string::npos ? first : second);
+}
+
+/// Place of an engine folder in the order; -1 for every other folder.
+int place(const std::string& folder) {
+  if (!folder.starts_with("engine/")) return -1;
+  const auto found = std::ranges::find(kOrder, folder.substr(7));
+  return found == kOrder.end() ? -1 : static_cast<int>(found - kOrder.begin());
+}
+
+/// "" or why a file of `from` may not include one of `to`.
+std::string refuse_own(const std::string& from, const std::string& to) {
+  if (to.empty() ||
+      !starts_with_one_of(to, {"engine", "objectives", "constraints", "experiments", "tests", "benchmarks"}))
+    return "headers are named from the repository's root";
+  if (from == to || from == "experiments/app" || from == "tests" || from == "benchmarks") {
+    const bool climbs = from == "experiments/app" && (to == "tests" || to == "benchmarks");
+    return climbs ? "nothing includes " + to : "";
+  }
+  if (from == "objectives" || from == "constraints")
+    return place(to) >= 0 && place(to) <= place("engine/problem")
+               ? ""
+               : from + " may include engine/core to engine/problem only";
+  if (place(from) < 0) return from + " is no folder of the house";
+  if (place(to) < 0) return "engine includes nothing but engine";
+  if (from == "engine/report" && to == "engine/study") return "study and report do not include each other";
+  return place(to) <= place(from) ? "" : from + " comes before " + to;
+}
+
+/// "" or why the file may not include an outside header.
+std::string refuse_outside(const std::string& path, const std::string& header) {
+  const std::string folder = folder_of(path);
+  if (folder == "tests" || folder == "benchmarks") return "";
+  if (starts_with_one_of(header, kSystem)) return "";
+  const auto library =
+      std::ranges::find_if(kLibraries, [&](const Library& each) { return header.starts_with(each.start); });
+  if (library == kLibraries.end())
+    return header.find_first_of("/.") == std::string::npos ? "" : "is in no list of tests/house/include_rules.cpp";
+  if (!one_of(folder, library->folders)) {
+    std::string folders;
+    for (const auto& each : library->folders) folders += (folders.empty() ? "" : " or ") + each;
+    return "belongs to " + folders;
+  }
+  // The program's headers are its own affair: nobody includes them.
+  return path.ends_with(".cpp") || folder == "experiments/app" ? "" : "may appear in .cpp files only";
+}
+
+}  // namespace
+
+std::vector<std::string> broken_rules(const std::string& path, const std::string& text) {
+  static const std::regex pattern(R"(^\s*#\s*include\s*(["<])([^">]+)[">].*$)");
+  std::vector<std::string> broken;
+  std::istringstream lines(text);
+  std::string line;
+  for (std::smatch match; std::getline(lines, line);) {
+    if (!std::regex_match(line, match, pattern)) continue;
+    const std::string header = match[2];
+    const std::string reason =
+        match[1] == "<" ? refuse_outside(path, header) : refuse_own(folder_of(path), folder_of(header));
+    if (!reason.empty()) broken.push_back(path + " includes " + header + ": " + reason);
+  }
+  return broken;
+}
+
+}  // namespace pkm::house

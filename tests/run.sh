@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian 12 packages), builds everything and runs every test; the last lines are CTest's.
+# In this order: formatting; a GCC build with address and undefined-behaviour sanitizers; a Clang build, whose thread
+# sanitizer watches the tests that use threads; the release build. Warnings are errors in all three builds.
+set -euo pipefail
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+source experiments/debian-packages.sh
+
+summary=()
+step() {  # step NAME COMMAND...: runs the command, remembers its time
+  local name=$1 begin=$SECONDS
+  shift
+  echo "== $name"
+  "$@"
+  summary+=("$(printf '%5d s  %s' $((SECONDS - begin)) "$name")")
+}
+build() {  # build PRESET
+  cmake --preset "$1" --log-level=WARNING
+  cmake --build --preset "$1" --parallel "$(nproc)"
+}
+check_format() {
+  find engine objectives constraints experiments tests benchmarks -name '*.[ch]pp' -print0 |
+    xargs -0 clang-format-14 --dry-run --Werror
+}
+
+step "packages" pkm_install_missing "${pkm_build_packages[@]}" "${pkm_test_packages[@]}"
+step "formatting" check_format
+step "build with address and undefined-behaviour sanitizers" build asan
+step "its tests" ctest --preset asan
+step "build with Clang and the thread sanitizer" build tsan
+step "its tests" ctest --preset tsan
+step "release build" build ci
+
+printf '== so far\n'
+printf '%s\n' "${summary[@]}"
+echo "== tests of the release build"
+ctest --preset ci
