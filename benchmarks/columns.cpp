@@ -1,9 +1,9 @@
 // Exact columns: one survey to 1e-8 in every situation that costs differently, and its derivative.
 #include <benchmark/benchmark.h>
-#include <ceres/jet.h>
 
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/timing.hpp"
+#include "engine/math/dual.hpp"
 #include "engine/mechanisms/four_ppa_two_par_columns.hpp"
 
 namespace pkm::benchmarks {
@@ -58,7 +58,7 @@ BENCHMARK(limits_off_plane)->Name("column_survey/original_with_limits_off_plane"
 BENCHMARK(over_y)->Name("column_survey/original_over_y")->Unit(benchmark::kMicrosecond);
 BENCHMARK(limits_over_y)->Name("column_survey/original_with_limits_over_y")->Unit(benchmark::kMicrosecond);
 
-// Volume of a design on the middle plane; with Jets also its derivatives by a, b, l_u and l_d.
+// Volume of a design on the middle plane; with duals also its derivatives by a, b, l_u and l_d.
 template <class S>
 S volume(std::span<const S> parameters, const LimitSpec& spec, ColumnScratch<S>& scratch) {
   const Geometry<S> g = geometry(parameters);
@@ -66,18 +66,18 @@ S volume(std::span<const S> parameters, const LimitSpec& spec, ColumnScratch<S>&
 }
 
 void value_and_gradient(benchmark::State& state, const Designs& designs, const LimitSpec& spec) {
-  using Jet = ceres::Jet<double, 4>;
-  std::vector<std::vector<Jet>> jets;
+  std::vector<std::vector<Dual4>> moving;
   for (const auto& all : designs) {
-    auto& jet = jets.emplace_back();
-    for (std::size_t i = 0; i < all.size(); ++i) jet.push_back(i < 4 ? Jet(all[i], static_cast<int>(i)) : Jet(all[i]));
+    auto& duals = moving.emplace_back(all.begin(), all.end());
+    for (int i = 0; i < 4; ++i) duals[static_cast<std::size_t>(i)].v[i] = 1;
   }
   ColumnScratch<double> plain;
-  ColumnScratch<Jet> derivative;
+  ColumnScratch<Dual4> derivative;
   const Duel duel = take_turns(
       state, "value_and_gradient_s",
       [&] {
-        for (const auto& jet : jets) benchmark::DoNotOptimize(volume(std::span<const Jet>(jet), spec, derivative));
+        for (const auto& duals : moving)
+          benchmark::DoNotOptimize(volume(std::span<const Dual4>(duals), spec, derivative));
       },
       "value_s",
       [&] {

@@ -10,9 +10,9 @@ pkm_build_packages=(
 )
 pkm_test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
-  libceres-dev                          # derivatives to compare ours with
-  python3 python3-numpy python3-h5py    # reads study files independently of us
-  clang-14 libomp-14-dev clang-format-14  # second compiler, ThreadSanitizer, formatting
+  python3 python3-numpy python3-h5py          # reads study files independently of us
+  clang-14 libomp-14-dev libclang-rt-14-dev   # second compiler, its thread sanitizer
+  clang-format-14
 )
 
 # Installs those of the named packages that are missing. Does nothing, and needs no rights, when none is.

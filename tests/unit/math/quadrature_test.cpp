@@ -1,9 +1,9 @@
 // Rules against integrals with closed forms; pieces with root-like ends; derivatives through moving ends.
 #include "engine/math/quadrature.hpp"
 
-#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "engine/math/dual.hpp"
 #include "engine/math/statistics.hpp"
 
 namespace pkm::testing {
@@ -52,12 +52,12 @@ TEST(Quadrature, AKinkIsFoundByHalving) {
 }
 
 TEST(Quadrature, DerivativesMoveWithTheEnds) {
-  using Dual = ceres::Jet<double, 1>;
-  const Dual end(0.7, 0);
-  std::vector<Integral<Dual>> scratch;
+  using Scalar = Dual<1>;
+  const Scalar end = Scalar::variable(0.7, 0);
+  std::vector<Integral<Scalar>> scratch;
   // integral of sqrt(end - x) over [0, end] is (2/3) end^(3/2); its derivative is sqrt(end)
-  const auto result = integrate<Dual>([&](const Dual& x) { return root_or_zero(Dual(end - x)); },
-                                      {{Dual(0.0), end, false, true}}, 1e-12, scratch);
+  const auto result = integrate<Scalar>([&](const Scalar& x) { return root_or_zero(Scalar(end - x)); },
+                                        {{Scalar(0.0), end, false, true}}, 1e-12, scratch);
   EXPECT_NEAR(result.value.a, 2.0 / 3 * std::pow(0.7, 1.5), 1e-13);
   EXPECT_NEAR(result.value.v[0], std::sqrt(0.7), 1e-12);
 }

@@ -2,7 +2,6 @@
 // random designs with and without limits, on and off the middle plane.
 #include <cmath>
 
-#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
 #include "engine/math/statistics.hpp"

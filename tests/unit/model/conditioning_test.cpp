@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include <ceres/jet.h>
 #include <gtest/gtest.h>
 #include <Eigen/QR>
 
+#include "engine/math/dual.hpp"
 #include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
 
 namespace pkm::testing {
@@ -95,7 +95,7 @@ TEST(Conditioning, ClosedFormKeepsTheDigitsOfJacobiOnTheMechanism) {
 }
 
 TEST(Conditioning, DerivativeEqualsDifferences) {
-  using Jet = ceres::Jet<double, 1>;
+  using Scalar = Dual<1>;
   Uniform uniform;
   for (int i = 0; i < 300; ++i) {
     Rows3<double> at, slope;
@@ -111,10 +111,10 @@ TEST(Conditioning, DerivativeEqualsDifferences) {
       return inverse_condition(m);
     };
     if (moved(0) < 0.02) continue;  // the differences need a smooth neighbourhood
-    Rows3<Jet> m;
+    Rows3<Scalar> m;
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 3; ++c) {
-        m[r][c] = Jet(at[r][c]);
+        m[r][c] = Scalar(at[r][c]);
         m[r][c].v[0] = slope[r][c];
       }
     const double h = 1e-5;
