@@ -7,10 +7,13 @@
 namespace pkm {
 namespace {
 
-std::unique_ptr<const Quantity> make(const EntryContext& context) {
+/// The coefficients in the order of the mechanism's parameters. Refuses unknown names and a relation of nothing.
+std::vector<double> coefficients(const EntryContext& context) {
   const auto& parameters = context.mechanism.info().parameters;
-  std::vector<double> coefficients(parameters.size(), 0.0);
-  for (const auto& [name, coefficient] : context.options.numbers("coefficients")) {
+  const NamedNumbers& given = context.options.numbers("coefficients");
+  if (given.empty()) throw std::invalid_argument("coefficients = {} relates nothing; name at least one parameter");
+  std::vector<double> values(parameters.size(), 0.0);
+  for (const auto& [name, coefficient] : given) {
     std::size_t i = 0;
     while (i < parameters.size() && parameters[i].name != name) ++i;
     if (i == parameters.size()) {
@@ -21,24 +24,30 @@ std::unique_ptr<const Quantity> make(const EntryContext& context) {
                                   context.mechanism.info().name + "; expected one of " + join(known) +
                                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
-    coefficients[i] = coefficient;
+    values[i] = coefficient;
   }
-  return make_quantity([coefficients, bound = context.options.number("bound")](const auto& design) {
-    auto margin = design.parameters[0] * 0.0 + bound;
-    for (std::size_t i = 0; i < coefficients.size(); ++i) margin = margin - design.parameters[i] * coefficients[i];
-    return margin;
-  });
+  return values;
+}
+
+std::unique_ptr<const Quantity> make(const EntryContext& context) {
+  return make_quantity(
+      [coefficient = coefficients(context), bound = context.options.number("bound")](const auto& design) {
+        auto margin = design.parameters[0] * 0.0 + bound;
+        for (std::size_t i = 0; i < coefficient.size(); ++i) margin = margin - design.parameters[i] * coefficient[i];
+        return margin;
+      });
 }
 
 /// The unit that all parameters with a coefficient share; "1" when they differ.
 std::string unit(const EntryContext& context) {
+  coefficients(context);  // refuses what has no unit, before the bound is read in it
   std::string shared;
   for (const auto& parameter : context.mechanism.info().parameters) {
     if (!context.options.numbers("coefficients").contains(parameter.name)) continue;
     if (!shared.empty() && shared != parameter.unit) return "1";
     shared = parameter.unit;
   }
-  return shared.empty() ? "1" : shared;
+  return shared;
 }
 
 }  // namespace
@@ -55,7 +64,11 @@ ConstraintEntry linear() {
                  .kind = OptionKind::named_numbers,
                  .required = true,
                  .meaning = "one number per parameter that takes part, such as { a = 1, b = -1 }"},
-                {.name = "bound", .kind = OptionKind::number, .initial = 0.0, .meaning = "greatest value of the sum"},
+                {.name = "bound",
+                 .kind = OptionKind::number,
+                 .unit = kUnitOfEntry,
+                 .initial = 0.0,
+                 .meaning = "greatest value of the sum, in the unit that the parameters share"},
             };
           },
       .unit = unit,

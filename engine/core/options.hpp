@@ -17,6 +17,10 @@ using OptionValue = std::variant<double, std::int64_t, bool, std::string, NamedN
 
 enum class OptionKind { number, integer, flag, word, named_numbers };
 
+/// As the unit of a number: the unit of what the entry itself computes (a constraint's margin) or works on (an
+/// optimiser's objective). It is known only once the study is, so the study's reader puts it in.
+inline constexpr const char* kUnitOfEntry = "";
+
 /// One option. A `number` carries a unit ("m", "rad", "s", ... or "1"), in which the value is held (always SI).
 struct OptionSpec {
   std::string name;

@@ -10,7 +10,7 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<do
   const double h[2] = {(q[1] - q[0]) / 2, (q[3] - q[2]) / 2};
   const double sine = (q[2] + q[3] - q[0] - q[1]) / (2 * g.a);
   constexpr double kRoundoff = 1e-12;
-  if (!(std::fabs(sine) <= 1 + kRoundoff)) return modes;
+  if (!(std::fabs(sine) <= 1 + kRoundoff) || h[0] < 0 || h[1] < 0) return modes;  // sliders do not pass each other
   double z_c[2];
   for (int j = 0; j < 2; ++j) {
     const double under = (g.l_u - h[j]) * (g.l_u + h[j]);

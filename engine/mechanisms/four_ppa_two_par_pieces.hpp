@@ -137,6 +137,8 @@ void find_pieces(const Frame<S>& f, std::vector<Break<S>>& breaks, std::vector<P
     const double low = value_of(from.theta), high = value_of(to.theta);
     if (high - low < kNear) {
       from.root_above = from.root_above || to.root_above;
+      if (!pieces.empty() && value_of(pieces.back().upper) == low)
+        pieces.back().root_upper = pieces.back().root_upper || to.root_below;
       continue;
     }
     const auto add = [&](const Break<S>& start, const Break<S>& stop, const Signature& now) {

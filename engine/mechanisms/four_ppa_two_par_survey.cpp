@@ -139,8 +139,12 @@ class VoxelSurveyor final : public Surveyor {
 }  // namespace
 
 std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Demand& demand) {
+  const bool over_y = plan.held.kind == HeldCoordinate::Kind::integrated;
+  if (plan.method == Method::columns && over_y && plan.nodes[0] > 0)
+    throw std::invalid_argument(
+        "nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance instead");
   if (plan.method == Method::columns) return std::make_unique<ColumnSurveyor>(plan, demand);
-  if (plan.held.kind == HeldCoordinate::Kind::integrated && plan.held_cells < 1)
+  if (over_y && plan.held_cells < 1)
     throw std::invalid_argument("voxels integrated over y need a number of cells for y");
   return std::make_unique<VoxelSurveyor>(plan, demand);
 }

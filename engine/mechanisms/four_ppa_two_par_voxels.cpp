@@ -107,7 +107,7 @@ std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>
   touches = false;
   for (std::int64_t k = 0; k < rows; ++k) {
     fill_row(g, l, y, grid, k, columns, row);
-    std::int32_t sum = 0;
+    std::int64_t sum = 0;  // of a large grid, a row alone may exceed 32 bits
     std::int32_t lowest = top, highest = 0;
     for (std::int64_t i = 0; i < columns; ++i) {
       const auto at = static_cast<std::size_t>(i);

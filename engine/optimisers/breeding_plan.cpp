@@ -43,11 +43,18 @@ std::vector<OptionSpec> breeding_options() {
   };
 }
 
-BreedingPlan breeding_plan(const Options& options, const DesignSpace& space) {
+void resolve_breeding(Options& options, const DesignSpace& space) {
+  const auto n = static_cast<std::int64_t>(space.dimension());
+  if (!options.has("population")) options.set("population", std::max<std::int64_t>(20, 5 * n));
+  if (options.has("mutation_probability")) return;
+  const bool differential = choice<Crossover::Kind>(options, "crossover", kCrossovers) == Crossover::Kind::differential;
+  options.set("mutation_probability", (differential ? 0.2 : 1.0) / static_cast<double>(n));
+}
+
+BreedingPlan breeding_plan(Options options, const DesignSpace& space) {
+  resolve_breeding(options, space);
   BreedingPlan plan;
-  const std::size_t n = space.dimension();
-  plan.population = options.has("population") ? static_cast<std::size_t>(options.integer("population"))
-                                              : std::max<std::size_t>(20, 5 * n);
+  plan.population = static_cast<std::size_t>(options.integer("population"));
   plan.start = choice<Start>(options, "start", kStarts);
   plan.selection.kind = choice<Selection::Kind>(options, "selection", kSelections);
   plan.selection.tournament_size = options.integer("tournament_size");
@@ -58,9 +65,7 @@ BreedingPlan breeding_plan(const Options& options, const DesignSpace& space) {
   plan.mutation.kind = choice<Mutation::Kind>(options, "mutation", kMutations);
   plan.mutation.sigma = options.number("mutation_sigma");
   plan.mutation.eta = options.number("mutation_eta");
-  const bool differential = plan.crossover.kind == Crossover::Kind::differential;
-  plan.mutation_probability = options.has("mutation_probability") ? options.number("mutation_probability")
-                                                                  : (differential ? 0.2 : 1.0) / static_cast<double>(n);
+  plan.mutation_probability = options.number("mutation_probability");
   plan.unique = options.flag("unique");
   return plan;
 }

@@ -26,6 +26,9 @@ struct BreedingPlan {
 
 /// The options that `breeding_plan` reads: for the catalogue entries of population-based optimisers.
 std::vector<OptionSpec> breeding_options();
-BreedingPlan breeding_plan(const Options& options, const DesignSpace& space);
+BreedingPlan breeding_plan(Options options, const DesignSpace& space);
+
+/// Fills in the options whose default depends on the variables: population and mutation_probability.
+void resolve_breeding(Options& options, const DesignSpace& space);
 
 }  // namespace pkm

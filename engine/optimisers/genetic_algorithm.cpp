@@ -159,13 +159,15 @@ std::vector<OptionSpec> options() {
           number_option("target", {}, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
                         "stop when a feasible design reaches this objective, in its unit (default: never)"),
       });
+  specs.back().unit = kUnitOfEntry;
   return specs;
 }
 
 }  // namespace
 
 OptimiserEntry genetic_algorithm() {
-  return {"ga", "genetic algorithm for one objective with constraints", Capabilities{}, options(), make};
+  return {
+      "ga", "genetic algorithm for one objective with constraints", Capabilities{}, options(), make, resolve_breeding};
 }
 
 }  // namespace pkm

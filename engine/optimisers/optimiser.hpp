@@ -76,6 +76,9 @@ struct OptimiserEntry {
   Capabilities capabilities;
   std::vector<OptionSpec> options;
   std::unique_ptr<Optimiser> (*make)(const Options&, const DesignSpace&);
+  /// Fills in the options without value whose default depends on the variables, so that listings show what `make` would
+  /// take. Null: there are none.
+  void (*resolve)(Options&, const DesignSpace&) = nullptr;
 };
 
 /// Every optimiser there is, in the order in which `pkmopt list` shows them.

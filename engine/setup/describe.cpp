@@ -145,7 +145,7 @@ std::string describe(const Study& study) {
   for (std::size_t i = 0; i < study.stages.size(); ++i) {
     const Stage& stage = study.stages[i];
     out << "  " << i + 1 << ". " << stage.entry->name << ": " << stage.entry->meaning << '\n';
-    write_options(out, stage.entry->options, stage.options);
+    write_options(out, stage.specs, stage.options);
   }
   std::string round = "best design as it is";
   if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";

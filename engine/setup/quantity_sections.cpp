@@ -1,6 +1,7 @@
 // [[objective]], [[constraint]], [[report]]: entries of the catalogues become named quantities of the problem.
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "engine/core/unit.hpp"
@@ -96,17 +97,23 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
 }
 
 void read_design_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
-  const auto specs = entry.options(draft.info());
+  auto specs = entry.options(draft.info());
   allow_options(table, {"type", "name"}, specs);
   if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
     throw table.find("type")->refusal(reason);
-  const Options options = read_options(table, specs);
+  // The margin's unit may follow from some options and be that of others, which are read after it is known.
+  std::vector<OptionSpec> first;
+  std::copy_if(specs.begin(), specs.end(), std::back_inserter(first),
+               [](const OptionSpec& spec) { return spec.unit != kUnitOfEntry; });
+  Options options = read_options(table, first);
   const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options};
   NamedQuantity made;
   made.name = entry_name(table, entry.name, draft.study.constraints);
   made.meaning = entry.meaning;
   try {
     made.unit = entry.unit(context);
+    specs = with_entry_unit(std::move(specs), made.unit);
+    options = read_options(table, specs);
     made.quantity = entry.make(context);
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());

@@ -3,6 +3,17 @@
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
+namespace {
+
+/// The unit of an objective or report; of one name in both, the objective's.
+std::string unit_of(const std::string& name, const ProblemParts& parts) {
+  for (const auto* list : {&parts.objectives, &parts.reports})
+    for (const auto& quantity : *list)
+      if (quantity.name == name) return quantity.unit;
+  return "1";
+}
+
+}  // namespace
 
 void read_references(const ConfigValue& root, StudyDraft& draft) {
   std::vector<std::string> variables = names_of(draft.parts.space.variables());
@@ -21,7 +32,8 @@ void read_references(const ConfigValue& root, StudyDraft& draft) {
     }
     if (const auto list = table.find("values")) {
       list->expect_table("a table of objectives and reports").allow(values, "objective or report");
-      for (const auto& name : list->keys()) reference.values.emplace_back(name, list->find(name)->number("1"));
+      for (const auto& name : list->keys())
+        reference.values.emplace_back(name, list->find(name)->number(unit_of(name, draft.parts)));
     }
     if (const auto seconds = table.find("seconds")) reference.seconds = seconds->number("s", 0);
     draft.study.references.push_back(std::move(reference));

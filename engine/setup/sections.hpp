@@ -41,6 +41,8 @@ std::vector<ConfigValue> tables_of(const ConfigValue& root, const std::string& n
 /// The value of `key` ("type", "optimiser"), which must be one of `choices`. It is read before the other keys are
 /// checked, since it decides which are allowed; a key that looks like it is named in the message.
 const std::string& type_of(const ConfigValue& table, const std::string& key, const std::vector<std::string>& choices);
+/// The options with kUnitOfEntry replaced by `unit`.
+std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std::string& unit);
 /// Refuses keys that are neither in `keys` nor the name of one of `specs`.
 void allow_options(const ConfigValue& table, std::vector<std::string> keys, const std::vector<OptionSpec>& specs);
 

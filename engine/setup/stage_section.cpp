@@ -41,7 +41,14 @@ void read_stages(const ConfigValue& root, StudyDraft& draft) {
     allow_options(table, {"optimiser"}, entry.options);
     if (const std::string reason = refusal_of(entry, draft.parts); !reason.empty())
       throw table.find("optimiser")->refusal(reason);
-    Stage stage{&entry, read_options(table, entry.options), nullptr, table.place().line};
+    // The unit of the objective that an optimiser works on; of several there is no one unit.
+    const auto& objectives = draft.parts.objectives;
+    auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");
+    Stage stage{&entry, read_options(table, specs), nullptr, table.place().line, {}};
+    if (entry.resolve) entry.resolve(stage.options, draft.parts.space);
+    for (auto& spec : specs)
+      if (!table.has(spec.name) && stage.options.has(spec.name)) spec.initial = stage.options.values().at(spec.name);
+    stage.specs = std::move(specs);
     try {
       stage.optimiser = entry.make(stage.options, draft.parts.space);
     } catch (const std::invalid_argument& reason) {

@@ -1,16 +1,19 @@
 #include "engine/setup/study.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
+#include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
 namespace {
 
+constexpr std::int64_t kMostCellsOfACheck = 1'000'000;       // that are surveyed when a study is read
 constexpr std::size_t kLargestFile = std::size_t{16} << 20;  // bytes; a study takes a few thousand
 
 std::string stem(const std::string& file_name) { return std::filesystem::path(file_name).stem().string(); }
@@ -49,6 +52,40 @@ void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
   }
 }
 
+/// A plane off the rail or a wrong unit in a box leaves no pose; a run would only tell at its end.
+void warn_of_empty_workspace(Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const MechanismInfo& info = parts.mechanism->info();
+  SurveyPlan plan = parts.plan;
+  if (plan.method == Method::voxels) {
+    std::int64_t cells = std::max<std::int64_t>(1, plan.held_cells);
+    for (const std::int64_t n : plan.cells) cells *= n;  // at most 2^48
+    if (cells > kMostCellsOfACheck) return;
+  }
+  std::vector<double> design = parts.parameters;
+  std::string what = "the design";
+  if (study.baseline) {
+    design = *study.baseline;
+    what = "the baseline";
+  } else if (parts.space.dimension() > 0) {
+    what = "the middle of the variables' bounds";
+    for (std::size_t v = 0; v < parts.space.dimension(); ++v)
+      design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
+  }
+  if (!parts.mechanism->refuse(design).empty()) return;
+  Survey<double> survey;
+  parts.mechanism->prepare(plan, {})->survey(design, survey);
+  if (survey.volume > 0) return;
+  using Kind = HeldCoordinate::Kind;
+  const std::string& held = info.coordinates[static_cast<std::size_t>(info.held)];
+  const std::string where = plan.held.kind == Kind::value ? "on the plane " + held + " = " +
+                                                                with_unit(plan.held.value, info.held == 3 ? "rad" : "m")
+                            : plan.held.kind == Kind::middle ? "on its middle plane"
+                                                             : "at any " + held;
+  study.warnings.push_back("the workspace of " + what + " is empty: no pose " + where +
+                           (plan.box ? " in the box" : "") + " is feasible");
+}
+
 }  // namespace
 
 std::string Study::output_file() const { return output ? *output : stem(file_name) + ".h5"; }
@@ -74,6 +111,12 @@ const std::string& type_of(const ConfigValue& table, const std::string& key, con
 void allow_options(const ConfigValue& table, std::vector<std::string> keys, const std::vector<OptionSpec>& specs) {
   for (const auto& name : names_of(specs)) keys.push_back(name);
   table.allow(keys);
+}
+
+std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std::string& unit) {
+  for (auto& spec : specs)
+    if (spec.unit == kUnitOfEntry) spec.unit = unit;
+  return specs;
 }
 
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues) {
@@ -103,6 +146,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   } catch (const std::invalid_argument& reason) {
     throw root.find("workspace").value_or(*root.find("mechanism")).refusal(reason.what());
   }
+  warn_of_empty_workspace(draft.study);
   return std::move(draft.study);
 }
 

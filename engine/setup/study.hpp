@@ -28,9 +28,10 @@ struct Catalogues {
 
 struct Stage {
   const OptimiserEntry* entry = nullptr;
-  Options options;  ///< defaults filled in
+  Options options;  ///< defaults filled in, also those that depend on the variables
   std::shared_ptr<const Optimiser> optimiser;
-  int line = 0;  ///< of its [[stage]]
+  int line = 0;                   ///< of its [[stage]]
+  std::vector<OptionSpec> specs;  ///< the entry's, completed for this study: units, and defaults as in `options`
 };
 
 /// An [[objective]], [[constraint]] or [[report]] as it was understood, for listings.
@@ -45,9 +46,9 @@ struct StudyEntry {
 /// A published result to compare with: [[reference]].
 struct Reference {
   std::string name;
-  std::vector<std::optional<double>> design;              ///< per variable; empty where the source gives no design
-  std::vector<std::pair<std::string, double>> values;     ///< objectives and reports by name
-  std::optional<double> seconds;                          ///< computing time
+  std::vector<std::optional<double>> design;           ///< per variable; empty where the source gives no design
+  std::vector<std::pair<std::string, double>> values;  ///< objectives and reports by name
+  std::optional<double> seconds;                       ///< computing time
 };
 
 struct Study {

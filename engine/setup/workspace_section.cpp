@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/portable.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
@@ -11,9 +12,9 @@ namespace {
 constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid: the one of the 4PPa-2PaR paper
 constexpr std::int64_t kHeldCells = 32;  // and its default where the held coordinate is integrated over
 constexpr std::int64_t kMostCellsPerAxis = 1 << 20;
-constexpr std::int64_t kMostCells = std::int64_t{1} << 31;  // a voxel map takes a byte per cell
+constexpr std::int64_t kMostCells = std::int64_t{1} << 28;  // a voxel map takes a byte per cell
 constexpr double kFinestTolerance = 1e-13, kCoarsestTolerance = 0.1;
-constexpr std::int64_t kMostNodes = 1024;
+constexpr std::int64_t kMostNodes = 200;
 
 std::string unit_of_coordinate(int coordinate) { return coordinate == 3 ? "rad" : "m"; }
 
@@ -40,6 +41,12 @@ void read_cells(const ConfigValue& table, const MechanismInfo& info, SurveyPlan&
                          "at most " + std::to_string(kMostCells) + " (a voxel map takes a byte of memory per cell)");
 }
 
+/// A bare number beyond pi was most likely meant in degrees.
+std::string angle_expectation(const ConfigValue& written, double value) {
+  const std::string range = "an angle in [-pi, pi] rad";
+  return written.is_text() ? range : range + "; write \"" + shortest(value) + " deg\" for degrees";
+}
+
 void read_box(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
   const auto names = swept_names(info);
   const std::vector<std::string> known(names.begin(), names.end());
@@ -50,7 +57,11 @@ void read_box(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& p
     const ConfigValue range = table.at(names[k], expected);
     const auto ends = range.elements(expected);
     if (ends.size() != 2) throw range.error(expected);
-    (*plan.box)[k] = {ends[0].number(unit), ends[1].number(unit)};
+    for (std::size_t end = 0; end < 2; ++end) {
+      const double value = ends[end].number(unit);
+      if (unit == "rad" && std::fabs(value) > kPi) throw ends[end].error(angle_expectation(ends[end], value));
+      (*plan.box)[k][end] = value;
+    }
     if (!((*plan.box)[k][0] < (*plan.box)[k][1])) throw range.error("a range whose first end is the lower one");
   }
 }

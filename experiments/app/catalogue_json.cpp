@@ -31,7 +31,7 @@ Json options_json(const std::vector<OptionSpec>& specs) {
     const bool number = spec.kind == OptionKind::number;
     list.push_back({{"name", spec.name},
                     {"kind", word_of(spec.kind)},
-                    {"unit", number ? Json(spec.unit) : Json()},
+                    {"unit", number && spec.unit != kUnitOfEntry ? Json(spec.unit) : Json()},
                     {"default", spec.initial ? to_json(*spec.initial) : Json()},
                     {"required", spec.required},
                     {"min", finite(spec.lower)},

@@ -45,6 +45,7 @@ stages
     population  40       (default)
     rate        0.5      (default)
     target      not set  (default)
+    width       3        (default)
 
 run
   checkpoint  adapts: at most 2 % of the run time
@@ -84,9 +85,9 @@ constraints
   gap: cuts the workspace by gap_min
     angle_max  not set  (default)
   big-enough (volume): >= 0.5 m^2 rad
-  linear: margin >= 0, dimensionless
+  linear: margin >= 0, in m
     coefficients  { a = 1, b = -1 }
-    bound         0
+    bound         0 m
 
 reports
   shape: dimensionless
@@ -101,8 +102,9 @@ stages
   1. sweep: tries all
   2. ga: evolves
     population  10
-    rate        0.5  (default)
-    target      2
+    rate        0.5        (default)
+    target      2 m^2 rad
+    width       6          (default)
 
 run
   checkpoint  every 60 s

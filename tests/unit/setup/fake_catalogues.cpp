@@ -7,7 +7,15 @@ namespace {
 
 class IdleSurveyor final : public Surveyor {
  public:
-  void survey(std::span<const double>, Survey<double>& survey) const override { survey.clear(); }
+  explicit IdleSurveyor(double plane) : plane_(plane) {}
+  void survey(std::span<const double>, Survey<double>& survey) const override {
+    survey.clear();
+    // The made-up rail ends at y = 2 m.
+    survey.volume = plane_ <= 2 ? 1 : 0;
+  }
+
+ private:
+  double plane_;
 };
 
 class Slider final : public Mechanism {
@@ -32,7 +40,7 @@ class Slider final : public Mechanism {
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand&) const override {
     if (plan.held.kind == HeldCoordinate::Kind::integrated && plan.box)
       throw std::invalid_argument("the slider cannot integrate inside a given box");
-    return std::make_unique<IdleSurveyor>();
+    return std::make_unique<IdleSurveyor>(plan.held.value);
   }
   VoxelMap voxel_map(std::span<const double>, const SurveyPlan&) const override { return {}; }
   void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
@@ -93,6 +101,7 @@ std::vector<OptionSpec> linear_options(const MechanismInfo&) {
   coefficients.required = true;
   bound.name = "bound";
   bound.required = true;
+  bound.unit = kUnitOfEntry;
   return {coefficients, bound};
 }
 /// gap_min follows from the parameters, angle_max if given.
@@ -109,11 +118,14 @@ std::unique_ptr<const Quantity> make_linear(const EntryContext& context) {
     if (name != "a" && name != "b") throw std::invalid_argument("coefficients name no parameter '" + name + "'");
   return make_zero(context);
 }
+std::string linear_unit(const EntryContext& context) {
+  return context.options.numbers("coefficients").contains("a") ? "m" : "1";
+}
 
 std::vector<ConstraintEntry> make_constraints() {
   return {{"gap", "parts stay apart", true, gap_options, nullptr, serves_all, gap_limits, nullptr},
           {"reach", "long enough", false, no_options, metre, serves_all, nullptr, make_zero},
-          {"linear", "sum <= bound", false, linear_options, no_unit, serves_all, nullptr, make_linear}};
+          {"linear", "sum <= bound", false, linear_options, linear_unit, serves_all, nullptr, make_linear}};
 }
 
 class Idle final : public Optimiser {
@@ -127,14 +139,20 @@ std::unique_ptr<Optimiser> make_broken(const Options&, const DesignSpace&) {
   throw std::invalid_argument("elite must be smaller than population");
 }
 
+void resolve_width(Options& options, const DesignSpace& space) {
+  if (!options.has("width")) options.set("width", static_cast<std::int64_t>(3 * space.dimension()));
+}
+
 std::vector<OptimiserEntry> make_optimisers() {
   OptionSpec target;
   target.name = "target";
+  target.unit = kUnitOfEntry;
   const std::vector<OptionSpec> options = {
       {"population", OptionKind::integer, "1", std::int64_t{40}, false, 2, 1e6, {}, "designs per generation"},
       {"rate", OptionKind::number, "1", 0.5, false, 0, 1, {}, "mutation rate"},
-      target};
-  return {{"ga", "evolves", {}, options, make_idle},
+      target,
+      {"width", OptionKind::integer, "1", {}, false, 1, 100, {}, "starts per variable (default: 3 per variable)"}};
+  return {{"ga", "evolves", {}, options, make_idle, resolve_width},
           {"simple", "unconstrained, continuous", {1, false, false, false, true}, {}, make_idle},
           {"newton", "by derivatives", {1, true, true, true, true}, {}, make_idle},
           {"sweep", "tries all", {9, true, true, false, false}, {}, make_idle},

@@ -29,7 +29,7 @@ TEST(ProblemErrors, Workspace) {
           {"nodes = { x = 4 }", "s.toml:4: workspace.nodes.theta: found nothing; expected a number of nodes"},
           {"nodes = { x = 4, z = 4 }",
            "s.toml:4: workspace.nodes.z: found an unknown coordinate; expected one of x, theta; did you mean 'x'?"},
-          {"nodes = { x = 0, theta = 4 }", "s.toml:4: workspace.nodes.x: found 0; expected an integer in [1, 1024]"},
+          {"nodes = { x = 0, theta = 4 }", "s.toml:4: workspace.nodes.x: found 0; expected an integer in [1, 200]"},
           {"cells = { x = 1, z = 1, theta = 1 }",
            "s.toml:4: workspace.cells: this key belongs to method = \"voxels\", but the study's method is \"columns\""},
           {"method = \"columns\"\nbox = {}",
@@ -42,7 +42,7 @@ TEST(ProblemErrors, Workspace) {
           {"method = \"voxels\"\ncells = { x = 3.0, z = 1, theta = 1 }",
            "s.toml:5: workspace.cells.x: found 3.0; expected an integer in [1, 1048576]"},
           {"method = \"voxels\"\ncells = { x = 2000, z = 2000, theta = 2000 }",
-           "s.toml:5: workspace.cells: found 8000000000 cells; expected at most 2147483648 (a voxel map takes a byte "
+           "s.toml:5: workspace.cells: found 8000000000 cells; expected at most 268435456 (a voxel map takes a byte "
            "of "
            "memory per cell)"},
           {"method = \"voxels\"\ncells = 32",
@@ -55,6 +55,11 @@ TEST(ProblemErrors, Workspace) {
            "s.toml:5: workspace.box.theta: found nothing; expected a range [from, to]"},
           {"method = \"voxels\"\nbox = { x = [1, 0], z = [0, 1], theta = [0, 1] }",
            "s.toml:5: workspace.box.x: found [1, 0]; expected a range whose first end is the lower one"},
+          {"method = \"voxels\"\nbox = { x = [0, 9], z = [0, 1], theta = [-90, 90] }",
+           "s.toml:5: workspace.box.theta[1]: found -90; expected an angle in [-pi, pi] rad; write \"-90 deg\" for "
+           "degrees"},
+          {"method = \"voxels\"\nbox = { x = [0, 1], z = [0, 1], theta = [0, \"270 deg\"] }",
+           "s.toml:5: workspace.box.theta[2]: found \"270 deg\"; expected an angle in [-pi, pi] rad"},
           {"method = \"voxels\"\nbox = { x = [1], z = [0, 1], theta = [0, 1] }",
            "s.toml:5: workspace.box.x: found [1]; expected a range [from, to]"},
           {"method = \"voxels\"\nbox = { x = [0, \"9 deg\"], z = [0, 1], theta = [0, 1] }",
@@ -143,6 +148,10 @@ TEST(ProblemErrors, Constraints) {
            "s.toml:7: constraint[1].coefficients: found nothing; expected a table of numbers, { name = number, ... }"},
           {"[[constraint]]\ntype = \"linear\"\ncoefficients = { q = 1 }\nbound = 1",
            "s.toml:7: constraint[1]: coefficients name no parameter 'q'"},
+          {"[[constraint]]\ntype = \"linear\"\ncoefficients = { a = 1 }\nbound = \"2 rad\"",
+           "s.toml:10: constraint[1].bound: found \"2 rad\"; expected a number in m, or text with a unit made of um, "
+           "mm, "
+           "cm, dm, m, km, in"},
           {"[[constraint]]\ntype = \"reach\"\n[[constraint]]\ntype = \"reach\"",
            "s.toml:9: constraint[2]: there is already one called 'reach'; tell them apart with name = \"...\""},
           {"[[constraint]]\ntype = \"volume\"",
@@ -189,11 +198,16 @@ TEST(ProblemErrors, Stages) {
            "mean "
            "'sweep'?"},
           {(kVolume + "[[stage]]\noptimiser = \"ga\"\npopulaton = 3"),
-           "s.toml:9: stage[1].populaton: found an unknown key; expected one of optimiser, population, rate, target; "
+           "s.toml:9: stage[1].populaton: found an unknown key; expected one of optimiser, population, rate, target, "
+           "width; "
            "did "
            "you mean 'population'?"},
           {(kVolume + "[[stage]]\noptimiser = \"ga\"\npopulation = 1"),
            "s.toml:9: stage[1].population: found 1; expected an integer in [2, 1e+06]"},
+          {(kVolume + "[[stage]]\noptimiser = \"ga\"\ntarget = \"2 m\""),
+           "s.toml:9: stage[1].target: found \"2 m\"; expected a number in m^2 rad, or text with a unit made of um, "
+           "mm, "
+           "cm, dm, m, km, in, mrad, rad, deg"},
           {(kVolume + "[[stage]]\noptimiser = \"broken\""),
            "s.toml:7: stage[1]: elite must be smaller than population"},
           {(two + "[[stage]]\noptimiser = \"ga\""),
@@ -222,6 +236,10 @@ TEST(ProblemErrors, References) {
        {"[[reference]]\nname = \"p\"\nvalues = { volumme = 1 }",
         "s.toml:9: reference[1].values.volumme: found an unknown objective or report; expected one of volume; "
         "did you mean 'volume'?"},
+       {"[[reference]]\nname = \"p\"\nvalues = { volume = \"1 m\" }",
+        "s.toml:9: reference[1].values.volume: found \"1 m\"; expected a number in m^2 rad, or text with a unit made "
+        "of "
+        "um, mm, cm, dm, m, km, in, mrad, rad, deg"},
        {"[[reference]]\nname = \"p\"\ndesign = { b = 1 }",
         "s.toml:9: reference[1].design.b: found an unknown variable; expected one of a; did you mean 'a'?"},
        {"[[reference]]\nname = \"p\"\nseconds = -1",

@@ -62,12 +62,47 @@ TEST(Study, ReadsParametersVariablesAndBaseline) {
               ElementsAre("variable a never takes its max 0.72 m: the last value that min + k step reaches is 0.65 m"));
 }
 
+TEST(Study, BoundsAndTargetsTakeTheUnitOfTheirEntry) {
+  std::string text = kFull;
+  const auto put = [&text](const std::string& was, const std::string& is) {
+    text.replace(text.find(was), was.size(), is);
+  };
+  put("bound = 0", "bound = \"200 mm\"");
+  put("target = 2", "target = \"20000 cm^2 rad\"");
+  const Study study = read_right(text);
+  EXPECT_EQ(study.constraints.back().options.number("bound"), 0.2);
+  EXPECT_EQ(study.problem->parts().design_margins[0].unit, "m");
+  EXPECT_EQ(study.stages[1].options.number("target"), 2);
+}
+
+TEST(Study, DefaultsThatDependOnTheVariablesAreFilledIn) {
+  EXPECT_EQ(read_right(kSmallest).stages[0].options.integer("width"), 3);
+  EXPECT_EQ(read_right(kFull).stages[1].options.integer("width"), 6);
+  EXPECT_EQ(read_right(kSmallest + "width = 8\n").stages[0].options.integer("width"), 8);
+}
+
+TEST(Study, WarnsOfAnEmptyWorkspace) {
+  const auto warnings = [](const std::string& more) { return read_right(kSmallest + more).warnings; };
+  EXPECT_THAT(warnings("[workspace]\ny = 2\n"), ElementsAre());
+  EXPECT_THAT(
+      warnings("[workspace]\ny = 2.5\n"),
+      ElementsAre("the workspace of the middle of the variables' bounds is empty: no pose on the plane y = 2.5 m "
+                  "is feasible"));
+  EXPECT_THAT(
+      warnings("[baseline]\na = 1\n[workspace]\nmethod = \"voxels\"\ny = 2.5\n"
+               "box = { x = [0, 1], z = [0, 1], theta = [\"-180 deg\", \"180 deg\"] }\n"),
+      ElementsAre("the workspace of the baseline is empty: no pose on the plane y = 2.5 m in the box is feasible"));
+  EXPECT_THAT(warnings("[workspace]\nmethod = \"voxels\"\ny = 2.5\ncells = { x = 101, z = 100, theta = 100 }\n"),
+              ElementsAre())
+      << "too many cells to survey while reading";
+}
+
 TEST(Study, ReadsReferences) {
   const Study study = read_right(std::string(kFull) + R"(
 [[reference]]
 name = "a paper"
 design = { a = "300 mm" }
-values = { volume = 0.5, shape = 2 }
+values = { volume = "5000 cm^2 rad", shape = 2 }
 seconds = "2 min"
 )");
   ASSERT_EQ(study.references.size(), 1U);
@@ -102,8 +137,8 @@ TEST(Study, WorkspaceVariants) {
   EXPECT_EQ(plan("method = \"voxels\"\ny = \"integrated\"").held_cells, 32);
   EXPECT_EQ(plan("method = \"voxels\"\ny = \"integrated\"\ncells = { x = 1, y = 9, z = 1, theta = 1 }").held_cells, 9);
   EXPECT_THAT(plan("nodes = { theta = 9, x = 12 }").nodes, ElementsAre(12, 9));
-  EXPECT_THAT(plan("method = \"voxels\"\ncells = { x = 1024, z = 1024, theta = 1024 }").cells,
-              ElementsAre(1024, 1024, 1024));
+  EXPECT_THAT(plan("method = \"voxels\"\ncells = { x = 512, z = 512, theta = 1024 }").cells,
+              ElementsAre(512, 512, 1024));
   EXPECT_THAT(plan("limits = { gap_min = \"10 mm\" }").limits.given, ElementsAre(0.01, std::nullopt));
 }
 
