@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 
 #include "engine/core/error.hpp"
 
@@ -71,8 +72,26 @@ void sync_folder(const std::string& path) {
 
 }  // namespace
 
+std::string link_target(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr int kMostLinks = 40;  // as Linux
+  fs::path target = path;
+  for (int links = 0; links <= kMostLinks; ++links) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target.string();
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) fail(path, "is a symbolic link that cannot be read", error.value());
+    target = target.parent_path() / next;  // an absolute `next` replaces all
+  }
+  fail(path, "cannot be opened", ELOOP);
+}
+
 void replace_file(const std::string& path, const std::string& bytes) {
-  const std::string part = path + ".part";
+  const std::string target = link_target(path), part = target + ".part";
+  struct stat status {};
+  if (::stat(target.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    throw StorageError(path + ": is " + (S_ISDIR(status.st_mode) ? "a folder" : "no regular file") +
+                       " and is not replaced");
   Descriptor fd(::open(part.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (fd.get() < 0) fail(path, "cannot be written, its folder does not take a new file", errno);
   try {
@@ -80,12 +99,12 @@ void replace_file(const std::string& path, const std::string& bytes) {
     verify(fd.get(), bytes, path);
     if (::fsync(fd.get()) != 0) fail(path, "cannot be synced, the previous state is kept", errno);
     if (fd.close() != 0) fail(path, "cannot be closed, the previous state is kept", errno);
-    if (std::rename(part.c_str(), path.c_str()) != 0) fail(path, "cannot be replaced", errno);
+    if (std::rename(part.c_str(), target.c_str()) != 0) fail(path, "cannot be replaced", errno);
   } catch (...) {
     ::unlink(part.c_str());
     throw;
   }
-  sync_folder(path);
+  sync_folder(target);
 }
 
 std::string read_file(const std::string& path) {

@@ -208,7 +208,6 @@ void describe(Archive& archive, Study& study) {
   archive.attribute("/", "machine", study.machine, Repeats::no);
   archive.attribute("/", "created", study.created, Repeats::no);
   archive.attribute("/", "updated", study.updated, Repeats::no);
-  archive.attribute("/", "reproducible", study.reproducible);
   choice(archive, "/", "state", study.state, kStateWords);
   archive.attribute("/", "seconds", study.seconds, Repeats::no);
 

@@ -77,7 +77,7 @@ struct DesignRecord {
   std::vector<double> margins;
   std::vector<double> reports;
   Status status = Status::failed;
-  std::string reason;  ///< why it failed; "" otherwise
+  std::string reason;  ///< why it failed, or what else is wrong with it (rounded out of its bounds); "" otherwise
   double volume = 0;   ///< in FinalRecord::volume_unit
   std::int64_t cells = 0;
   std::int64_t feasible_cells = 0;
@@ -126,7 +126,6 @@ struct StudyContents {
   std::string machine;          ///< processor, cores, system
   std::string created;          ///< ISO 8601, UTC
   std::string updated;
-  bool reproducible = true;  ///< false: a time limit decided something
   ProblemRecord problem;
   std::vector<Extension> extensions;
   // what happened

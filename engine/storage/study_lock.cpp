@@ -11,13 +11,14 @@
 #include <string_view>
 
 #include "engine/core/error.hpp"
+#include "engine/storage/safe_file.hpp"
 
 namespace pkm {
 namespace {
 
 bool switched_off() {
-  const char* value = std::getenv("HDF5_USE_FILE_LOCKING");
-  return value && std::string_view(value) == "FALSE";
+  const char* value = std::getenv("PKMOPT_LOCK");
+  return value && std::string_view(value) == "off";
 }
 
 std::string holder(int fd) {
@@ -42,7 +43,7 @@ bool still_named(int fd, const std::string& path) {
 
 }  // namespace
 
-StudyLock::StudyLock(const std::string& study_path) : lock_path_(study_path + ".lock") {
+StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(study_path) + ".lock") {
   if (switched_off()) return;
   for (;;) {
     const int fd = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -56,7 +57,7 @@ StudyLock::StudyLock(const std::string& study_path) : lock_path_(study_path + ".
       if (error == EINTR) continue;
       if (error == EWOULDBLOCK) throw StorageError(study_path + ": in use by " + by + " (it holds " + lock_path_ + ")");
       throw StorageError(study_path + ": cannot be locked (" + std::strerror(error) +
-                         "); on a file system without locks set HDF5_USE_FILE_LOCKING=FALSE");
+                         "); on a file system without locks set PKMOPT_LOCK=off");
     }
     if (still_named(fd, lock_path_)) {
       fd_ = fd;

@@ -10,8 +10,9 @@ namespace pkm {
 
 class StudyLock {
  public:
+  /// A symbolic link locks what it points to, so all names of a study share a lock.
   /// Throws StorageError naming the process that holds the lock, or the system's reason. With
-  /// HDF5_USE_FILE_LOCKING=FALSE in the environment nothing is locked (for file systems without locks).
+  /// PKMOPT_LOCK=off in the environment nothing is locked (for file systems without locks).
   explicit StudyLock(const std::string& study_path);
   ~StudyLock();
   StudyLock(const StudyLock&) = delete;

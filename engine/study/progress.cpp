@@ -1,9 +1,11 @@
 #include "engine/study/progress.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace pkm {
 namespace {
@@ -15,22 +17,47 @@ std::string format(const char* pattern, Arguments... arguments) {
   return text;
 }
 
-std::string bar(double share) {
-  constexpr int kWidth = 20;
-  const int full = static_cast<int>(std::lround(kWidth * std::clamp(share, 0.0, 1.0)));
+std::string bar(double share, int width) {
+  const int full = static_cast<int>(std::lround(width * std::clamp(share, 0.0, 1.0)));
   return '[' + std::string(static_cast<std::size_t>(full), '#') +
-         std::string(static_cast<std::size_t>(kWidth - full), '.') + ']';
+         std::string(static_cast<std::size_t>(width - full), '.') + "] ";
 }
 
-std::string state(const ProgressReport& r) {
-  std::string text = r.optimiser + " generation " + std::to_string(r.generation) + ", " +
-                     std::to_string(r.evaluations) + " evaluations";
-  if (r.evaluations_per_second > 0) text += format(" (%.3g/s)", r.evaluations_per_second);
+/// Share of the stage that is done, by evaluations; 0 when it has no limit.
+double share_done(const ProgressReport& r) {
+  return r.evaluation_limit > 0 ? double(r.evaluations) / double(r.evaluation_limit) : 0;
+}
+
+/// What a line shows.
+struct Layout {
+  int bar = 0;  ///< width; 0: none
+  bool evaluations = true, full_words = true, share = true, rate = true, stage = true, left = true;
+};
+
+std::string line(const ProgressReport& r, const Layout& layout) {
+  std::string text = layout.bar > 0 ? bar(share_done(r), layout.bar) : "";
+  if (layout.stage && r.stages > 1)
+    text += "stage " + std::to_string(r.stage + 1) + " of " + std::to_string(r.stages) + ": ";
+  text += (layout.full_words ? r.optimiser + " " : "") + "generation " + std::to_string(r.generation);
+  if (layout.evaluations) text += ", " + std::to_string(r.evaluations) + " evaluations";
+  if (layout.rate && r.evaluations_per_second > 0) text += format(", %.3g/s", r.evaluations_per_second);
   if (r.has_best)
-    text += ", " + r.objective + format(" %.8g", r.best);
+    text += layout.full_words ? ", " + r.objective + format(" %.8g", r.best) : format(", best %.6g", r.best);
   else if (!r.objective.empty())
     text += format(", nothing feasible yet (violation %.3g)", r.violation);
-  return text + format(", %.0f %% feasible", 100 * r.feasible_share);
+  if (layout.share) text += format(", %.0f %% feasible", 100 * r.feasible_share);
+  // The rate of the first moments is that of starting up and says nothing about the rest.
+  constexpr double kSettled = 1;  // s
+  if (layout.left && r.seconds >= kSettled && share_done(r) > 0 && share_done(r) < 1 && r.evaluations_per_second > 0)
+    text += std::string(layout.full_words ? ", at most " : ", ") +
+            duration_text(double(r.evaluation_limit - r.evaluations) / r.evaluations_per_second) + " left";
+  return text;
+}
+
+std::size_t terminal_width(std::FILE* out) {
+  constexpr std::size_t kUsual = 80;
+  winsize size{};
+  return ::ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
 }  // namespace
@@ -44,24 +71,41 @@ std::string duration_text(double seconds) {
   return format("%ld h %02ld min", whole / 3600, whole / 60 % 60);
 }
 
+std::string progress_line(const ProgressReport& r) { return line(r, {}); }
+
+std::string progress_bar_line(const ProgressReport& r, std::size_t width) {
+  Layout layout{.bar = 20};
+  // One after the other, until the line fits.
+  const std::function<void()> cuts[] = {[&] { layout.evaluations = false; }, [&] { layout.bar = 8; },
+                                        [&] { layout.full_words = false; },  [&] { layout.bar = 0; },
+                                        [&] { layout.share = false; },       [&] { layout.rate = false; },
+                                        [&] { layout.stage = false; },       [&] { layout.left = false; }};
+  std::string text = line(r, layout);
+  for (const auto& cut : cuts) {
+    if (text.size() <= width) break;
+    cut();
+    text = line(r, layout);
+  }
+  if (text.size() > width) text.resize(width);
+  return text;
+}
+
 ScreenProgress::ScreenProgress(std::FILE* out) : out_(out), terminal_(isatty(fileno(out)) == 1) {}
+
+ScreenProgress::~ScreenProgress() { ScreenProgress::finish(); }
 
 void ScreenProgress::generation(const ProgressReport& r) {
   const double pause = terminal_ ? 0.1 : 10;
   if (last_ < 0 && !terminal_) last_ = 0;
   if (last_ >= 0 && r.seconds - last_ < pause) return;
   last_ = r.seconds;
-  const double share = r.evaluation_limit > 0 ? double(r.evaluations) / double(r.evaluation_limit) : 0;
-  std::string line = state(r);
-  if (r.stages > 1) line = "stage " + std::to_string(r.stage + 1) + " of " + std::to_string(r.stages) + ": " + line;
-  if (share > 0 && share < 1 && r.evaluations_per_second > 0)
-    line +=
-        ", at most " + duration_text(double(r.evaluation_limit - r.evaluations) / r.evaluations_per_second) + " left";
   if (terminal_) {
-    std::fprintf(out_, "\r\033[K%s %s", bar(share).c_str(), line.c_str());
+    // The last column stays free: some terminals start a new line as soon as it is written. A window may be resized at
+    // any time, so its width is asked for again.
+    std::fprintf(out_, "\r\033[K%s", progress_bar_line(r, terminal_width(out_) - 1).c_str());
     open_ = true;
   } else {
-    std::fprintf(out_, "%s\n", line.c_str());
+    std::fprintf(out_, "%s\n", progress_line(r).c_str());
   }
   std::fflush(out_);
 }

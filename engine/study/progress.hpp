@@ -35,6 +35,10 @@ class Progress {
 class ScreenProgress final : public Progress {
  public:
   explicit ScreenProgress(std::FILE* out);
+  /// Leaves the line, so that what follows (an error, say) has a line of its own.
+  ~ScreenProgress() override;
+  ScreenProgress(const ScreenProgress&) = delete;
+  ScreenProgress& operator=(const ScreenProgress&) = delete;
   void generation(const ProgressReport& report) override;
   void finish() override;
 
@@ -44,6 +48,12 @@ class ScreenProgress final : public Progress {
   double last_ = -1;   ///< seconds of the report shown last
   bool open_ = false;  ///< a line without its end stands on the terminal
 };
+
+/// The report in one line.
+std::string progress_line(const ProgressReport& report);
+
+/// The report with a bar, in at most `width` columns: what matters least is left out first.
+std::string progress_bar_line(const ProgressReport& report, std::size_t width);
 
 /// "1 h 02 min", "3 min 20 s", "12.3 s", "45 ms", "4.5 us".
 std::string duration_text(double seconds);

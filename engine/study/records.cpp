@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/core/unit.hpp"
@@ -24,6 +25,35 @@ DesignRecord evaluated(const DesignProblem& problem, std::span<const double> par
           r.survey.feasible_cells,
           r.survey.cell_volume,
           box_matters && r.survey.touches_box};
+}
+
+/// Rounding may leave the bounds, or what the mechanism is defined for: said in `reason`, and in the latter case
+/// nothing is evaluated.
+DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters) {
+  const ProblemParts& parts = problem.parts();
+  const std::string refusal = parts.mechanism->refuse(parameters);
+  if (!refusal.empty()) {
+    const auto nothing = [](std::size_t size) {
+      return std::vector<double>(size, std::numeric_limits<double>::quiet_NaN());
+    };
+    DesignRecord refused;
+    refused.parameters = parameters;
+    refused.objectives = nothing(problem.objectives().size());
+    refused.margins = nothing(problem.margins().size());
+    refused.reports = nothing(problem.reports().size());
+    refused.status = Status::failed;
+    refused.reason = refusal;
+    return refused;
+  }
+  DesignRecord record = evaluated(problem, parameters);
+  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    const Variable& v = parts.space[i];
+    const double value = parameters[parts.varies[i]], roundoff = 1e-12 * std::fabs(value);
+    if (value >= v.lower - roundoff && value <= v.upper + roundoff) continue;
+    record.reason +=
+        (record.reason.empty() ? "" : "; ") + v.name + " = " + with_unit(value, v.unit) + " lies outside its bounds";
+  }
+  return record;
 }
 
 /// The same problem on exact columns, or null where the mechanism has none.
@@ -102,6 +132,14 @@ std::vector<std::string> option_lines(const Options& options) {
   return lines;
 }
 
+double rounded_to(double value, double step) {
+  // Dividing by a whole number rounds once; multiplying by a step such as 0.1, itself rounded, would round twice.
+  const double per_unit = std::nearbyint(1 / step);
+  if (per_unit >= 1 && std::fabs(1 / step - per_unit) <= 1e-9 * per_unit)
+    return std::nearbyint(value * per_unit) / per_unit;
+  return std::nearbyint(value / step) * step;
+}
+
 FinalRecord final_record(const Study& study, const StudyContents& contents) {
   const DesignProblem& problem = *study.problem;
   const ProblemParts& parts = problem.parts();
@@ -122,8 +160,8 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
   f.active = active_sentences(problem, *f.best);
   if (study.round) {
     auto rounded = best;
-    for (const std::size_t i : parts.varies) rounded[i] = std::nearbyint(best[i] / *study.round) * *study.round;
-    f.rounded = evaluated(problem, rounded);
+    for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
+    f.rounded = evaluated_rounded(problem, rounded);
   }
   MapRecord map;
   map.voxels = parts.mechanism->voxel_map(best, picture_plan(parts.plan));

@@ -12,6 +12,9 @@ StudyContents new_contents(const Study& study);
 /// "name = value" per option.
 std::vector<std::string> option_lines(const Options& options);
 
+/// The multiple of `step` next to `value`, as the decimal number that a reader expects: 0.7, not 0.7000000000000001.
+double rounded_to(double value, double step);
+
 /// What is worked out at the end, from the best design so far. Empty records where nothing was evaluated.
 FinalRecord final_record(const Study& study, const StudyContents& contents);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 
 #include "engine/problem/replay.hpp"
@@ -66,7 +65,6 @@ class Run final : public Monitor {
   }
 
   RunOutcome run() {
-    StopRequest listen;
     clock_.first([&] {
       if (recorded_.empty()) write(StudyState::running);  // a new study's file precedes its first evaluation
     });
@@ -109,7 +107,7 @@ class Run final : public Monitor {
     report(g, stage.optimiser);
 
     if (const int signal = StopRequest::signal())
-      stopped_ = signal == SIGTERM ? "SIGTERM" : "SIGINT";
+      stopped_ = StopRequest::name(signal);
     else if (options_.time_limit && now() - start_ >= *options_.time_limit)
       stopped_ = "time limit";
     if (!stopped_.empty()) return false;
@@ -161,6 +159,10 @@ class Run final : public Monitor {
       result = stage.optimiser->minimise(input, record.table);
     }
     if (result.reason == StopReason::interrupted) return false;
+    if (index < recorded_.size() && record.table.size() < recorded_[index].table.size())
+      throw ReplayMismatch("stage " + std::to_string(index + 1) + " ended after " +
+                           std::to_string(record.table.size()) + " of " +
+                           std::to_string(recorded_[index].table.size()) + " recorded evaluations");
     stopped_.clear();  // the stage came to its own end in the same generation
     record.finished = true;
     record.stop = words(result.reason);
@@ -258,23 +260,43 @@ class Run final : public Monitor {
   std::string stopped_;
 };
 
-/// Changes the limits of the last stage, and remembers it for the next resume.
-void extend(Study& study, StudyContents& contents, const ExtensionRequest& request) {
+/// Throws ConfigError when the last stage has no such limit or the value does not fit it.
+void check_limit(const Stage& stage, const std::string& limit, double value) {
+  const auto option = std::ranges::find(stage.entry->options, limit, &OptionSpec::name);
+  const SourcePlace place{"", 0, "--" + limit};
+  if (option == stage.entry->options.end())
+    throw ConfigError(place, "an optimiser '" + stage.entry->name + "' as the last stage",
+                      "one that has a limit on " + limit);
+  if (!(value <= option->upper)) throw ConfigError(place, shortest(value), "at most " + shortest(option->upper));
+}
+
+/// Adds the extensions asked for to those that the file has; the new limits must not lie below what is done.
+void request_extension(const Study& study, StudyContents& contents, const ExtensionRequest& request) {
   const auto last = static_cast<std::int64_t>(study.stages.size()) - 1;
-  const auto set = [&](const std::string& limit, const std::optional<std::int64_t>& value) {
-    if (!value) return;
+  const bool begun = contents.stages.size() == study.stages.size();
+  const auto set = [&](const std::string& limit, double value, double done) {
+    check_limit(study.stages.back(), limit, value);
+    if (value < done)
+      throw ConfigError({"", 0, "--" + limit}, shortest(value),
+                        "at least " + shortest(done) + ", which the study has already");
     std::erase_if(contents.extensions, [&](const Extension& e) { return e.stage == last && e.limit == limit; });
-    contents.extensions.push_back({last, limit, static_cast<double>(*value)});
+    contents.extensions.push_back({last, limit, value});
   };
-  set("generations", request.generations);
-  set("evaluations", request.evaluations);
-  for (const Extension& e : contents.extensions) {
+  const double generations = begun ? static_cast<double>(contents.stages.back().generations.size()) - 1 : 0;
+  const double evaluations = begun ? static_cast<double>(contents.stages.back().table.size()) : 0;
+  if (request.evaluations) set("evaluations", static_cast<double>(*request.evaluations), evaluations);
+  if (request.generations) set("generations", static_cast<double>(*request.generations), generations);
+  // More evaluations alone: the limit on generations must not stand in their way.
+  const auto& options = study.stages.back().entry->options;
+  const auto option = std::ranges::find(options, "generations", &OptionSpec::name);
+  if (request.evaluations && !request.generations && option != options.end())
+    set("generations", option->upper, generations);
+}
+
+/// Gives the study's stages the limits that the file's extensions name.
+void apply_extensions(Study& study, const std::vector<Extension>& extensions) {
+  for (const Extension& e : extensions) {
     Stage& stage = study.stages.at(static_cast<std::size_t>(e.stage));
-    const bool known =
-        std::ranges::any_of(stage.entry->options, [&](const OptionSpec& o) { return o.name == e.limit; });
-    if (!known)
-      throw ConfigError({"", 0, "--" + e.limit}, "an optimiser '" + stage.entry->name + "' as the last stage",
-                        "one that has a limit on " + e.limit);
     stage.options.set(e.limit, static_cast<std::int64_t>(e.value));
     stage.optimiser = stage.entry->make(stage.options, study.problem->space());
   }
@@ -290,6 +312,7 @@ Study study_of(const StudyContents& contents, const Catalogues& catalogues) {
 
 RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
                      Progress& progress) {
+  const StopRequest listen;
   const StudyLock lock(path);
   if (!overwrite && std::filesystem::exists(path))
     throw StorageError(path + " exists already; resume it with --resume, or overwrite it with --force");
@@ -298,6 +321,7 @@ RunOutcome run_study(const Study& study, const std::string& path, bool overwrite
 
 RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
                         const RunOptions& options, Progress& progress) {
+  const StopRequest listen;
   const StudyLock lock(path);
   StudyContents contents = read_study(path);
   if (contents.algorithms != kAlgorithms)
@@ -305,7 +329,13 @@ RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, c
                        "), whose algorithms have version " + std::to_string(contents.algorithms) +
                        "; this program has version " + std::to_string(kAlgorithms) + " and would not repeat it");
   Study study = study_of(contents, catalogues);
-  extend(study, contents, extension);
+  if (extension.generations || extension.evaluations) {
+    request_extension(study, contents, extension);
+    contents.state = StudyState::interrupted;
+    contents.final.reset();
+    write_study(path, contents);  // so that the extension survives a stop while the past is replayed
+  }
+  apply_extensions(study, contents.extensions);
   try {
     return Run(study, std::move(contents), path, options, progress).run();
   } catch (const ReplayMismatch& mismatch) {

@@ -1,10 +1,12 @@
-// Ctrl-C and SIGTERM ask a running study to stop after the generation at hand.
+// Ctrl-C, SIGTERM and a closed terminal ask a running study to stop after the generation at hand.
 #pragma once
 
 namespace pkm {
 
-/// While it lives, SIGINT and SIGTERM set a flag instead of ending the process; a second one ends it at once. SIGXFSZ
-/// is ignored, so that a file-size limit is an error that can be told. The previous handlers come back afterwards.
+/// While one lives, SIGINT, SIGTERM and SIGHUP set a flag instead of ending the process. A further signal ends it at
+/// once, but only a second after the first: `timeout` and shells send theirs twice. SIGXFSZ and SIGPIPE are ignored, so
+/// that a file-size limit or a closed pipe is an error that can be told. May be nested: the flag is cleared and the
+/// previous handlers come back with the outermost one.
 class StopRequest {
  public:
   StopRequest();
@@ -14,6 +16,8 @@ class StopRequest {
 
   /// The signal received, or 0.
   static int signal();
+  /// "SIGINT", ...
+  static const char* name(int signal);
 };
 
 }  // namespace pkm

@@ -44,7 +44,8 @@ Json workspace_json(const DesignProblem& problem, const Survey<double>& survey) 
     json["cells"] = survey.cells;
     json["feasible_cells"] = survey.feasible_cells;
     json["cell_volume"] = survey.cell_volume;
-    json["touches_box"] = survey.touches_box;
+    // The default box ends where the mechanism does, so touching it says nothing.
+    json["touches_box"] = plan.box ? Json(survey.touches_box) : Json();
   } else {
     json["columns"] = survey.columns;
     // Fixed nodes come without an estimate.

@@ -4,11 +4,13 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 
 #include <CLI/CLI.hpp>
 
 #include "engine/core/text_table.hpp"
 #include "engine/storage/study_file.hpp"
+#include "engine/study/stop_request.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/running.hpp"
 
@@ -19,13 +21,13 @@ struct RunArguments {
   std::string study;
   std::string output;
   bool resume = false, force = false;
-  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> seed;
   int seeds = 1;
   RunningArguments common;
 };
 
-/// What the run will cost at most, from a timed evaluation of the middle of the design space.
-void print_estimate(const Study& study, int threads) {
+/// What the evaluations will cost at most, from a timed one in the middle of the design space.
+void print_estimate(const Study& study, int seeds, int threads) {
   const DesignProblem& problem = *study.problem;
   EvaluationTable table(problem.shape());
   table.extend(1);
@@ -39,9 +41,11 @@ void print_estimate(const Study& study, int threads) {
   }
   std::int64_t limit = 0;
   for (const auto& stage : study.stages) limit += stage.optimiser->evaluation_limit(problem);
-  std::cout << study.name << ": at most " << limit << " evaluations of about " << duration_text(seconds) << ", on "
-            << threads << (threads == 1 ? " thread" : " threads") << " at most "
-            << duration_text(seconds * static_cast<double>(limit) / threads) << '\n';
+  std::cout << study.name << ": at most " << limit << " evaluations";
+  if (seeds > 1) std::cout << " for each of " << seeds << " seeds";
+  std::cout << " of about " << duration_text(seconds) << ", together about "
+            << duration_text(seconds * static_cast<double>(limit) * seeds / threads) << " on " << threads
+            << (threads == 1 ? " thread" : " threads") << std::endl;  // at once, also into a pipe
 }
 
 /// A given voxel box that cuts the workspace makes it look smaller than it is.
@@ -58,9 +62,19 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
                    Progress& progress) {
   const RunOptions options = run_options(arguments.common);
   if (arguments.resume && std::filesystem::exists(output)) {
-    if (read_study(output).toml != study.text)
-      throw StorageError(output + " holds another text of the study than " + study.file_name +
-                         "; go on with it by 'pkmopt resume " + output + "', or overwrite it with --force");
+    StudyContents contents = read_study(output);
+    const std::string way_out =
+        "; go on with it by 'pkmopt resume " + quoted(output) + "', or overwrite it with --force";
+    if (contents.toml != study.text)
+      throw StorageError(output + " holds another text of the study than " + study.file_name + way_out);
+    if (contents.seed != study.seed)
+      throw StorageError(output + " holds the study with seed " + std::to_string(contents.seed) + ", not " +
+                         std::to_string(study.seed) + way_out);
+    if (contents.state == StudyState::finished) {
+      RunOutcome outcome;
+      outcome.contents = std::move(contents);
+      return outcome;
+    }
     return resume_study(output, session.catalogues, {}, options, progress);
   }
   return run_study(study, output, arguments.force, options, progress);
@@ -78,47 +92,88 @@ std::string digits(double value) {
   return text;
 }
 
-/// The same study over several seeds: a file and a line each, then the spread.
-void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, Session& session) {
+/// Says which of the seeds is under way.
+class SeedProgress final : public Progress {
+ public:
+  SeedProgress(Progress& screen, int seeds) : screen_(screen), seeds_(seeds) {}
+  void next() { ++seed_; }
+  void generation(const ProgressReport& report) override {
+    ProgressReport named = report;
+    named.optimiser = "seed " + std::to_string(seed_) + " of " + std::to_string(seeds_) + ", " + report.optimiser;
+    screen_.generation(named);
+  }
+
+ private:
+  Progress& screen_;
+  int seeds_, seed_ = 0;
+};
+
+/// What came of the seeds: a row each, and the numbers of the spread.
+struct SeedTable {
   std::vector<std::vector<std::string>> rows = {{"seed", "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best, exact, seconds;
-  const std::uint64_t first = study.seed;
-  Progress silent;
-  for (int i = 0; i < arguments.seeds; ++i) {
-    study.seed = first + static_cast<std::uint64_t>(i);
-    const std::string file = seed_file(output, study.seed);
-    const RunOutcome outcome = run_one(study, file, arguments, session, silent);
-    if (!outcome.stopped.empty()) {
-      print_stop(outcome, file);
-      session.exit_code = kStoppedEarly;
-      return;
-    }
-    const auto& final = outcome.contents.final;
+
+  void add(const StudyContents& contents, const std::string& file) {
+    const auto& final = contents.final;
     const auto objective = [](const std::optional<DesignRecord>& r) { return r && !r->objectives.empty(); };
     const bool feasible = final && objective(final->best) && final->best->status == Status::feasible;
+    const bool has_exact = feasible && objective(final->best_exact);
     if (feasible) best.push_back(final->best->objectives[0]);
-    const bool has_exact = final && objective(final->best_exact);
-    if (feasible && has_exact) exact.push_back(final->best_exact->objectives[0]);
-    seconds.push_back(outcome.contents.seconds);
-    rows.push_back({std::to_string(study.seed), feasible ? digits(best.back()) : "nothing feasible",
-                    feasible && has_exact ? digits(exact.back()) : "", std::to_string(outcome.contents.evaluations()),
-                    duration_text(outcome.contents.seconds), file});
+    if (has_exact) exact.push_back(final->best_exact->objectives[0]);
+    seconds.push_back(contents.seconds);
+    rows.push_back({std::to_string(contents.seed), feasible ? digits(best.back()) : "nothing feasible",
+                    has_exact ? digits(exact.back()) : "", std::to_string(contents.evaluations()),
+                    duration_text(contents.seconds), file});
   }
-  if (arguments.common.quiet) return;
-  const auto spread = [&](const char* name, auto pick) {
-    const auto of = [&](std::vector<double> values) {
-      if (values.empty()) return std::string();
-      std::sort(values.begin(), values.end());
-      return digits(pick(values));
+
+  void add_spread() {
+    const auto row = [&](const char* name, auto pick) {
+      const auto of = [&](std::vector<double> values) -> std::optional<double> {
+        if (values.empty()) return {};
+        std::sort(values.begin(), values.end());
+        return pick(values);
+      };
+      const auto text = [](std::optional<double> value) { return value ? digits(*value) : std::string(); };
+      const auto time = of(seconds);
+      rows.push_back({name, text(of(best)), text(of(exact)), "", time ? duration_text(*time) : "", ""});
     };
-    const std::string time = of(seconds);
-    rows.push_back({name, of(best), of(exact), "", time.empty() ? "" : duration_text(std::stod(time)), ""});
-  };
-  spread("least", [](const std::vector<double>& v) { return v.front(); });
-  spread("median", [](const std::vector<double>& v) { return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]); });
-  spread("greatest", [](const std::vector<double>& v) { return v.back(); });
-  std::cout << study.name << ", " << arguments.seeds << " seeds\n"
-            << aligned(rows) << static_cast<int>(best.size()) << " of " << arguments.seeds << " seeds ended feasible\n";
+    row("least", [](const std::vector<double>& v) { return v.front(); });
+    row("median", [](const std::vector<double>& v) { return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]); });
+    row("greatest", [](const std::vector<double>& v) { return v.back(); });
+  }
+};
+
+/// The same study over several seeds: a file and a line each, then the spread.
+void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, Session& session) {
+  const StopRequest listen;  // one for all, so that a signal between two seeds counts
+  const std::uint64_t first = study.seed;
+  if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(arguments.seeds))
+    throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "one that leaves room for them");
+  const auto file_of = [&](int i) { return seed_file(output, first + static_cast<std::uint64_t>(i)); };
+  for (int i = 0; i < arguments.seeds && !arguments.force && !arguments.resume; ++i)
+    if (std::filesystem::exists(file_of(i)))
+      throw StorageError(file_of(i) + " exists already; resume it with --resume, or overwrite it with --force");
+
+  SeedTable table;
+  const auto screen = make_progress(arguments.common);
+  SeedProgress progress(*screen, arguments.seeds);
+  for (int i = 0; i < arguments.seeds && session.exit_code == kDone; ++i) {
+    study.seed = first + static_cast<std::uint64_t>(i);
+    progress.next();
+    const RunOutcome outcome = run_one(study, file_of(i), arguments, session, progress);
+    if (outcome.stopped.empty()) table.add(outcome.contents, file_of(i));
+    const bool last = i == arguments.seeds - 1;
+    if (!outcome.stopped.empty() || (StopRequest::signal() != 0 && !last)) session.exit_code = kStoppedEarly;
+  }
+  screen->finish();
+  table.add_spread();
+  if (!arguments.common.quiet)
+    std::cout << study.name << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
+              << aligned(table.rows) << table.best.size() << " of " << table.seconds.size()
+              << " seeds ended feasible\n";
+  if (session.exit_code == kStoppedEarly)
+    std::cout << "stopped; go on with: pkmopt run " << quoted(arguments.study) << " --seeds " << arguments.seeds
+              << " --seed " << first << " --resume --output " << quoted(output) << '\n';
 }
 
 }  // namespace
@@ -131,7 +186,9 @@ void add_run(CLI::App& app, Session& session) {
       ->type_name("F.h5");
   command->add_flag("--resume", arguments->resume, "Go on with the study file if it exists");
   command->add_flag("--force", arguments->force, "Overwrite the study file if it exists")->excludes("--resume");
-  command->add_option("--seed", arguments->seed, "Seed, instead of the study's own")->type_name("N");
+  command->add_option("--seed", arguments->seed, "Seed, instead of the study's own")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
   command->add_option("--seeds", arguments->seeds, "Repeat the study over N seeds, a file each, and print the spread")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
@@ -139,11 +196,11 @@ void add_run(CLI::App& app, Session& session) {
   command->footer("Example: pkmopt run experiments/4ppa-2par/paper-problem.toml --threads 2");
   command->callback([arguments, &session] {
     Study study = load_study_toml(arguments->study, session.catalogues);
-    if (arguments->seed) study.seed = *arguments->seed;
+    if (arguments->seed) study.seed = static_cast<std::uint64_t>(*arguments->seed);
     const std::string output = arguments->output.empty() ? study.output_file() : arguments->output;
     for (const auto& warning : study.warnings) std::cerr << "pkmopt: warning: " << warning << '\n';
     warn_of_box(study);
-    if (!arguments->common.quiet) print_estimate(study, threads_of(arguments->common));
+    if (!arguments->common.quiet) print_estimate(study, arguments->seeds, threads_of(arguments->common));
     if (arguments->seeds > 1) {
       run_seeds(study, output, *arguments, session);
       return;

@@ -1,5 +1,8 @@
 #include "experiments/app/running.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
@@ -31,15 +34,24 @@ std::unique_ptr<Progress> make_progress(const RunningArguments& arguments) {
   return std::make_unique<ScreenProgress>(stderr);
 }
 
-void print_stop(const RunOutcome& outcome, const std::string& file) {
+std::string quoted(const std::string& word) {
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-./+=,:@%", c); };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+void print_stop(const RunOutcome& outcome, const std::string& command) {
   std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations()
-            << " evaluations; go on with: pkmopt resume " << file << '\n';
+            << " evaluations; go on with: " << command << '\n';
 }
 
 int print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
                   const RunningArguments& arguments) {
   if (!outcome.stopped.empty()) {
-    print_stop(outcome, file);  // also when quiet: the one thing that must not be missed
+    if (!arguments.quiet) std::cout << summary_text(outcome.contents, study);
+    print_stop(outcome, "pkmopt resume " + quoted(file));  // also when quiet: it must not be missed
     return kStoppedEarly;
   }
   if (arguments.quiet) return kDone;
@@ -48,7 +60,7 @@ int print_outcome(const RunOutcome& outcome, const Study& study, const std::stri
   std::snprintf(line, sizeof line, "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %d threads\n",
                 static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
                 100 * outcome.parallel_efficiency, threads_of(arguments));
-  if (outcome.evaluations > 0) std::cout << line;
+  std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
   std::cout << "written to " << file << '\n';
   return kDone;
 }

@@ -26,8 +26,10 @@ int threads_of(const RunningArguments& arguments);
 /// A bar or lines on stderr; nothing when quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
-/// "stopped by SIGINT ...; go on with: pkmopt resume F.h5"
-void print_stop(const RunOutcome& outcome, const std::string& file);
+/// "stopped by SIGINT ...; go on with: COMMAND"
+void print_stop(const RunOutcome& outcome, const std::string& command);
+/// A word for a shell: quoted where it needs to be.
+std::string quoted(const std::string& word);
 /// The end of a run; returns the exit code.
 int print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
                   const RunningArguments& arguments);

@@ -41,6 +41,19 @@ std::string history(const StudyContents& contents) {
   return text;
 }
 
+/// References are in the study's text only; a file whose text this program no longer reads is shown without them.
+std::string text(const StudyContents& contents, const Catalogues& catalogues) {
+  Study study;
+  std::string note;
+  try {
+    study = study_of(contents, catalogues);
+  } catch (const std::exception& error) {
+    note = "note: this program cannot read the study's text, so references are left out (" + std::string(error.what()) +
+           ")\n";
+  }
+  return summary_text(contents, study) + history(contents) + note;
+}
+
 }  // namespace
 
 void add_show(CLI::App& app, Session& session) {
@@ -58,7 +71,7 @@ void add_show(CLI::App& app, Session& session) {
     if (arguments->json)
       print_json(std::cout, summary_json(contents));
     else
-      std::cout << summary_text(contents, study_of(contents, session.catalogues)) << history(contents);
+      std::cout << text(contents, session.catalogues);
   });
 }
 

@@ -113,7 +113,7 @@ std::string status_word(Status status) {
   return "failed";
 }
 
-/// Which constraint keeps the least infeasible design from being feasible.
+/// Which constraint keeps a design from being feasible.
 std::string blocking(const StudyContents& contents, const DesignRecord& best) {
   std::size_t worst = 0;
   for (std::size_t i = 1; i < best.margins.size(); ++i)
@@ -121,6 +121,15 @@ std::string blocking(const StudyContents& contents, const DesignRecord& best) {
   if (best.margins.empty() || !(best.margins[worst] < 0)) return "";
   return contents.problem.margins[worst].name + " blocks, margin " + digits(best.margins[worst]) + " " +
          contents.problem.margins[worst].unit;
+}
+
+/// What is wrong with the rounded design, as far as it is known.
+std::string rounded_remarks(const StudyContents& contents, const DesignRecord& rounded) {
+  std::vector<std::string> remarks;
+  for (const std::string& remark : {rounded.reason, blocking(contents, rounded)})
+    if (!remark.empty()) remarks.push_back(remark);
+  if (remarks.empty()) return "";
+  return (rounded.status == Status::feasible ? ", but " : ": ") + join(remarks, "; ");
 }
 
 std::int64_t generation_of(const StageRecord& stage, std::int64_t row) {
@@ -141,12 +150,14 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
   Json design = Json::object();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i)
     if (problem.parameters[i].variable >= 0) design[problem.parameters[i].name] = record.parameters[i];
-  return {{"design", design},
-          {"objectives", named(problem.objectives, record.objectives)},
-          {"constraints", named(problem.margins, record.margins)},
-          {"reports", named(problem.reports, record.reports)},
-          {"status", status_word(record.status)},
-          {"volume", record.volume}};
+  Json object = {{"design", design},
+                 {"objectives", named(problem.objectives, record.objectives)},
+                 {"constraints", named(problem.margins, record.margins)},
+                 {"reports", named(problem.reports, record.reports)},
+                 {"status", status_word(record.status)},
+                 {"volume", record.volume}};
+  if (!record.reason.empty()) object["reason"] = record.reason;
+  return object;
 }
 
 }  // namespace
@@ -158,13 +169,14 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
     out << "stage " << i + 1 << ": " << stage.optimiser << ", " << stage.generations.size() << " generations, "
-        << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", stopped by " + stage.stop) << '\n';
+        << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", ended: " + stage.stop) << '\n';
   }
   if (!contents.final) {
     if (contents.best.row >= 0 && !contents.problem.objectives.empty()) {
       const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
       const auto row = static_cast<std::size_t>(contents.best.row);
-      out << "best so far:";
+      const Status status = stage.table.status[row];
+      out << (status == Status::feasible ? "best so far:" : "best so far, which is " + status_word(status) + ":");
       for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
         out << ' ' << contents.problem.variables[i].name << " = " << digits(stage.table.design(row)[i]);
       out << ", " << contents.problem.objectives[0].name << " = " << digits(stage.table.objective_row(row)[0]) << '\n';
@@ -182,6 +194,9 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
     out << "nothing feasible was found; this is the least infeasible design: " << blocking(contents, *final.best)
         << '\n';
   out << '\n' << aligned(table(contents, study)) << '\n';
+  if (final.rounded && (final.rounded->status != Status::feasible || !final.rounded->reason.empty()))
+    out << "the rounded design is " << status_word(final.rounded->status) << rounded_remarks(contents, *final.rounded)
+        << '\n';
   if (!final.active.empty()) out << "active: " << join(final.active, "; ") << '\n';
   if (final.best->touches_box)
     out << "warning: feasible cells of the best design touch the box; a larger box may hold more workspace\n";

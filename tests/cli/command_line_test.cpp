@@ -80,7 +80,7 @@ TEST(CliErrors, AWrongStudyIsNamedWithFileLineAndKey) {
 }
 
 TEST(CliErrors, ResultsThatCannotBeWrittenAreAFailure) {
-  const auto result = run_program({"/bin/sh", "-c", PKM_PROGRAM " list > /dev/full"});
+  const auto result = run_program({"/bin/sh", "-c", "'" PKM_PROGRAM "' list > /dev/full"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err, "pkmopt: the results cannot be written to the standard output\n");
 }

@@ -80,6 +80,8 @@ TEST(CliEvaluate, WarnsWhereTheFeasibleSetTouchesTheGivenBox) {
                                                         "[-1.0, -0.5], theta = [-0.5, 0.5] }"));
   EXPECT_EQ(pkmopt({"evaluate", file, "--json"}).json()["workspace"]["touches_box"], true);
   EXPECT_THAT(pkmopt({"evaluate", file}).out, HasSubstr("warning         the feasible set touches the box"));
+  const auto own = folder.write("own.toml", study_with("[workspace]\nmethod = \"voxels\""));
+  EXPECT_TRUE(pkmopt({"evaluate", own, "--json"}).json()["workspace"]["touches_box"].is_null());  // no box given
 }
 
 TEST(CliPose, LimitsAreThoseOfTheStudy) {

@@ -115,10 +115,11 @@ TEST_F(StudyProgram, AChainOfKillsEndsTheSame) {
   std::vector<std::string> next = {"run", "study.toml", "--output", "chain.h5", "--quiet"};
   for (; kills < 30; ++kills) {
     ChildProcess child(command(next), folder_);
+    while (!fs::exists(path("chain.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(20 + engine() % 60));
     child.signal(SIGKILL);
     if (child.wait() == 0) break;
-    if (fs::exists(path("chain.h5"))) next = {"resume", "chain.h5", "--quiet"};
+    next = {"resume", "chain.h5", "--quiet"};
   }
   if (kills == 30) {
     ASSERT_EQ(run({"resume", "chain.h5", "--quiet"}), 0) << output_;
@@ -163,6 +164,58 @@ TEST_F(StudyProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
     EXPECT_EQ(first_difference(read("straight.h5"), read(file)), "");
   }
   EXPECT_GT(stopped, 0) << "the study ended before either signal";
+}
+
+TEST_F(StudyProgram, ASignalSentTwiceAtOnceStillStopsWithACheckpoint) {
+  write_toml(100000, "");  // `timeout` signals the child and then its group
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
+    const std::string file = "twice-" + std::to_string(number) + ".h5";
+    ChildProcess child(command({"run", "study.toml", "--output", file, "--quiet"}), folder_);
+    while (!fs::exists(path(file))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    child.signal(number);
+    child.signal(number);
+    EXPECT_EQ(child.wait(), 3) << number << child.output();
+    EXPECT_EQ(read(file).state, StudyState::interrupted);
+  }
+}
+
+TEST_F(StudyProgram, ASignalStopsAllSeeds) {
+  write_toml(60, "");
+  ChildProcess child(command({"run", "study.toml", "--seeds", "1000"}), folder_);
+  while (!fs::exists(path("study-seed-9.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  child.signal(SIGINT);
+  EXPECT_EQ(child.wait(), 3) << child.output();
+  EXPECT_NE(child.output().find("go on with: pkmopt run study.toml --seeds 1000 --seed 7 --resume --output study.h5"),
+            std::string::npos)
+      << child.output();
+  EXPECT_NE(child.output().find("of 1000 seeds"), std::string::npos);
+  EXPECT_FALSE(fs::exists(path("study-seed-60.h5")));
+}
+
+TEST_F(StudyProgram, LimitsMayGrowOnly) {
+  write_toml(5);
+  ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
+  const StudyContents before = read("study.h5");
+  EXPECT_EQ(run({"resume", "study.h5", "--generations", "10"}), 2);
+  EXPECT_EQ(output_, "pkmopt: --generations: found 10; expected at least 20, which the study has already\n");
+  EXPECT_EQ(run({"resume", "study.h5", "--evaluations", "30"}), 2);
+  EXPECT_EQ(run({"resume", "study.h5", "--generations", "1000000000000"}), 2);
+  EXPECT_EQ(first_difference(before, read("study.h5")), "");
+  // evaluations alone lift the limit on generations
+  ASSERT_EQ(run({"resume", "study.h5", "--evaluations", "700", "--quiet"}), 0) << output_;
+  EXPECT_EQ(read("study.h5").stages[1].table.size(), 700u);
+  EXPECT_EQ(read("study.h5").stages[1].stop, "evaluation limit");
+}
+
+TEST_F(StudyProgram, AnExtensionSurvivesAStopInTheReplay) {
+  write_toml(40, "");
+  ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--output", "long.h5", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"resume", "long.h5", "--generations", "50", "--quiet"}), 0) << output_;
+  EXPECT_EQ(run({"resume", "study.h5", "--generations", "50", "--time", "1e-9"}), 3) << output_;
+  EXPECT_EQ(run({"resume", "study.h5", "--quiet"}), 0) << output_;
+  EXPECT_EQ(first_difference(read("long.h5"), read("study.h5")), "");
 }
 
 TEST_F(StudyProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
@@ -217,6 +270,9 @@ TEST_F(StudyProgram, ExistingFilesAreNotOverwritten) {
   EXPECT_EQ(output_, "pkmopt: study.h5 exists already; resume it with --resume, or overwrite it with --force\n");
   EXPECT_EQ(run({"run", "study.toml", "--quiet", "--force"}), 0) << output_;
   EXPECT_EQ(run({"run", "study.toml", "--quiet", "--resume"}), 0) << output_;
+  EXPECT_EQ(run({"run", "study.toml", "--quiet", "--resume", "--seed", "8"}), 1);
+  EXPECT_NE(output_.find("study.h5 holds the study with seed 7, not 8"), std::string::npos) << output_;
+  EXPECT_EQ(run({"run", "study.toml", "--seed", "-1"}), 2);
   write_toml(3);
   EXPECT_EQ(run({"run", "study.toml", "--quiet", "--resume"}), 1);
   EXPECT_NE(output_.find("study.h5 holds another text of the study than study.toml"), std::string::npos) << output_;

@@ -34,7 +34,7 @@ class H5py : public testing::Test {
     write_study(path_, test::sample_study());
   }
   std::string python(const std::string& command, const std::string& more = "") const {
-    return output_of("/usr/bin/python3 " + kTests + "/python/read_study.py " + command + " " + path_ + " " + more);
+    return output_of("/usr/bin/python3 '" + kTests + "/python/read_study.py' " + command + " '" + path_ + "' " + more);
   }
   void seal_again() const {
     std::string bytes = test::slurp(path_);
@@ -81,7 +81,7 @@ map (1, 2, 3) ['x', 'z', 'theta']
 TEST_F(H5py, FindsUnitDescriptionAndLayoutEverywhere) { EXPECT_THAT(python("labels"), HasSubstr(" datasets\n")); }
 
 TEST_F(H5py, RunsTheSnippetsOfTheDocumentation) {
-  EXPECT_THAT(python("snippets", kTests + "/../engine/storage/README.md"), testing::EndsWith("\n3 snippets\n"));
+  EXPECT_THAT(python("snippets", "'" + kTests + "/../engine/storage/README.md'"), testing::EndsWith("\n3 snippets\n"));
 }
 
 TEST_F(H5py, OpensEmptyStudies) {

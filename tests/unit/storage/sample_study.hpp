@@ -73,7 +73,6 @@ inline StudyContents sample_study() {
   study.machine = "a processor, 2 cores";
   study.created = "2026-01-02T03:04:05Z";
   study.updated = "2026-01-02T03:04:06Z";
-  study.reproducible = false;
   study.problem.mechanism = "4ppa-2par";
   study.problem.parameters = {{"a", "m", 0.2, 0}, {"b", "m", 0.8, 1}, {"L0", "m", 2.5, -1}};
   study.problem.variables = {{"a", "m", 0.1, 0.3, 0.001}, {"b", "m", 0.35, std::numeric_limits<double>::infinity(), 0}};

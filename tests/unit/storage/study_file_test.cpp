@@ -43,7 +43,6 @@ TEST(StudyFile, KeepsEverything) {
   EXPECT_EQ(read.updated, written.updated);
   EXPECT_EQ(read.seconds, 12.5);
   EXPECT_EQ(read.state, StudyState::interrupted);
-  EXPECT_FALSE(read.reproducible);
   EXPECT_EQ(read.problem.objectives[0].direction, Direction::maximise);
   EXPECT_EQ(read.problem.parameters[2].variable, -1);
   EXPECT_EQ(read.problem.shape(), written.problem.shape());

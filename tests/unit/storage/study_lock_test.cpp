@@ -116,12 +116,32 @@ TEST(StudyLock, NeedsAFolderThatTakesIt) {
 
 TEST(StudyLock, CanBeSwitchedOff) {
   const Folder folder;
-  ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
+  ::setenv("PKMOPT_LOCK", "off", 1);
   {
     const StudyLock a(folder / "s.h5"), b(folder / "s.h5");
     EXPECT_FALSE(std::filesystem::exists(folder / "s.h5.lock"));
   }
+  ::unsetenv("PKMOPT_LOCK");
+}
+
+TEST(StudyLock, IsNotSwitchedOffByHdf5sVariable) {
+  const Folder folder;
+  ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
+  {
+    const StudyLock a(folder / "s.h5");
+    EXPECT_TRUE(std::filesystem::exists(folder / "s.h5.lock"));
+    EXPECT_NE(storage_error([&] { const StudyLock b(folder / "s.h5"); }), "");
+  }
   ::unsetenv("HDF5_USE_FILE_LOCKING");
+}
+
+TEST(StudyLock, IsSharedByAllNamesOfAStudy) {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "there");
+  std::filesystem::create_symlink("there/s.h5", folder / "link.h5");
+  const StudyLock lock(folder / "link.h5");
+  EXPECT_THAT(storage_error([&] { const StudyLock second(folder / "there/s.h5"); }),
+              testing::StartsWith(folder / "there/s.h5: in use by process "));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -82,8 +83,42 @@ TEST(WriteFailure, NameOfAFolder) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   std::filesystem::create_directory(path);
-  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }), path + ": cannot be replaced (Is a directory)");
+  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }), path + ": is a folder and is not replaced");
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+}
+
+TEST(WriteFailure, NameOfADevice) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0666), 0);  // stands for a device, which only root may make
+  const std::string refusal = path + ": is no regular file and is not replaced";
+  EXPECT_EQ(storage_error([&] { write_study(path, StudyContents{}); }), refusal);
+  EXPECT_TRUE(std::filesystem::is_fifo(path));
+  std::filesystem::create_symlink("s.h5", folder / "link.h5");
+  EXPECT_EQ(storage_error([&] { write_study(folder / "link.h5", StudyContents{}); }),
+            folder / "link.h5" + ": is no regular file and is not replaced");
+}
+
+TEST(WriteFailure, SymbolicLinksStayAndTheirTargetIsReplaced) {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "there");
+  std::filesystem::create_symlink("there/s.h5", folder / "link.h5");  // points to nothing yet
+  std::filesystem::create_symlink(folder / "link.h5", folder / "second.h5");
+  StudyContents study;
+  for (study.seed = 5; study.seed < 7; ++study.seed) {
+    write_study(folder / "second.h5", study);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.h5"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "second.h5"));
+    EXPECT_EQ(read_study(folder / "there/s.h5").seed, study.seed);
+  }
+}
+
+TEST(WriteFailure, SymbolicLinksInACircle) {
+  const Folder folder;
+  std::filesystem::create_symlink("b.h5", folder / "a.h5");
+  std::filesystem::create_symlink("a.h5", folder / "b.h5");
+  EXPECT_EQ(storage_error([&] { write_study(folder / "a.h5", StudyContents{}); }),
+            folder / "a.h5" + ": cannot be opened (Too many levels of symbolic links)");
 }
 
 TEST(WriteFailure, WhatHdf5CannotHold) {

@@ -1,0 +1,52 @@
+// What the contract suites need of any mechanism, found without knowing it.
+#pragma once
+
+#include <cctype>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/mechanisms/all.hpp"
+
+namespace pkm::test {
+
+inline std::vector<double> nominal(const MechanismInfo& info) {
+  std::vector<double> values;
+  for (const Parameter& p : info.parameters) values.push_back(p.nominal);
+  return values;
+}
+
+/// A survey of the design's own middle plane without limits; voxels have `cells` per axis.
+inline SurveyPlan plan(const MechanismInfo& info, Method method, std::int64_t cells = 0) {
+  SurveyPlan plan;
+  plan.method = method;
+  plan.limits = no_limits(info);
+  plan.cells = {cells, cells, cells};
+  return plan;
+}
+
+inline Survey<double> survey(const Mechanism& mechanism, const std::vector<double>& parameters, const SurveyPlan& plan,
+                             const Demand& demand = {}) {
+  Survey<double> result;
+  mechanism.prepare(plan, demand)->survey(parameters, result);
+  return result;
+}
+
+/// Every limit at the end of its range that is farther from inactive: nothing passes.
+inline LimitSpec absurd_limits(const MechanismInfo& info) {
+  LimitSpec spec = no_limits(info);
+  for (std::size_t i = 0; i < info.limits.size(); ++i) {
+    const LimitInfo& l = info.limits[i];
+    spec.given[i] = std::fabs(l.upper - l.inactive) > std::fabs(l.inactive - l.lower) ? l.upper : l.lower;
+  }
+  return spec;
+}
+
+/// A name that googletest takes.
+inline std::string test_name(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+}  // namespace pkm::test

@@ -1,0 +1,207 @@
+// Laws that every objective and constraint of the catalogues obeys with every mechanism that it serves. A new entry is
+// tested without a change here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "constraints/all.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/math/random.hpp"
+#include "objectives/all.hpp"
+#include "tests/unit/contracts/nominal.hpp"
+
+namespace pkm {
+namespace {
+
+using test::nominal;
+using test::plan;
+using testing::HasSubstr;
+
+/// A mechanism that can do nothing beyond being surveyed.
+MechanismInfo stripped(const MechanismInfo& info) {
+  MechanismInfo bare = info;
+  bare.name = "bare-machine";
+  bare.limits.clear();
+  bare.design_margins.clear();
+  bare.size_unit = bare.size_meaning = bare.characteristic_length = "";
+  return bare;
+}
+
+/// All pairs of an entry and a mechanism that it serves.
+template <class List, class Do>
+void for_all_served(const List& entries, const Do& action) {
+  for (const auto& entry : entries) {
+    int served = 0;
+    for (const auto& mechanism : all_mechanisms()) {
+      SCOPED_TRACE(entry.name + " of " + mechanism->info().name);
+      if (!entry.refusal(mechanism->info()).empty()) continue;
+      ++served;
+      action(entry, *mechanism);
+    }
+    EXPECT_GT(served, 0) << entry.name << " serves no mechanism";
+  }
+}
+
+double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const SurveyPlan& plan) {
+  const Options options = default_options(entry.options);
+  const EntryContext context{mechanism, plan, options};
+  Demand demand;
+  entry.demand(context, demand);
+  const auto parameters = nominal(mechanism.info());
+  const auto survey = test::survey(mechanism, parameters, plan, demand);
+  return entry.make(context)->value({mechanism, parameters, &survey});
+}
+
+TEST(ObjectiveContract, IsDescribed) {
+  for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
+    const SurveyPlan p = plan(mechanism.info(), Method::columns);
+    const Options options = default_options(entry.options);
+    EXPECT_NE(entry.name, "");
+    EXPECT_NE(entry.meaning, "");
+    EXPECT_NE(entry.unit({mechanism, p, options}), "");
+    for (const OptionSpec& option : entry.options) EXPECT_NE(option.meaning, "") << option.name;
+  });
+}
+
+TEST(ObjectiveContract, VoxelsAndColumnsAgreeWithinTheGridsError) {
+  for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
+    const double columns = value(entry, mechanism, plan(mechanism.info(), Method::columns));
+    const double voxels = value(entry, mechanism, plan(mechanism.info(), Method::voxels, 40));
+    EXPECT_TRUE(std::isfinite(columns) && columns != 0);
+    EXPECT_NEAR(voxels / columns, 1, 0.05);
+  });
+}
+
+TEST(ObjectiveContract, IsDefinedOnAnEmptyWorkspace) {
+  for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
+    for (const auto method : {Method::voxels, Method::columns}) {
+      SurveyPlan p = plan(mechanism.info(), method, method == Method::voxels ? 10 : 0);
+      p.limits = test::absurd_limits(mechanism.info());
+      EXPECT_TRUE(std::isfinite(value(entry, mechanism, p)));
+    }
+  });
+}
+
+/// Either the entry serves a bare mechanism too, or it says in one sentence who lacks what.
+template <class Entry>
+void expect_both_sides_named(const Entry& entry, const Mechanism& mechanism) {
+  const std::string refusal = entry.refusal(stripped(mechanism.info()));
+  if (refusal.empty()) return;
+  EXPECT_THAT(refusal, HasSubstr(entry.name));
+  EXPECT_THAT(refusal, HasSubstr("bare-machine"));
+}
+
+TEST(ObjectiveContract, RefusalNamesBothSides) {
+  for_all_served(all_objectives(),
+                 [](const auto& entry, const auto& mechanism) { expect_both_sides_named(entry, mechanism); });
+  const MechanismInfo bare = stripped(all_mechanisms()[0]->info());
+  EXPECT_NE(find_named(all_objectives(), "workspace-ratio")->refusal(bare), "");
+  EXPECT_NE(find_named(all_objectives(), "conditioning")->refusal(bare), "");
+}
+
+TEST(ConstraintContract, RefusalNamesBothSides) {
+  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+    expect_both_sides_named(entry, mechanism);
+    EXPECT_TRUE(!entry.pose_level || !entry.refusal(stripped(mechanism.info())).empty());
+  });
+}
+
+/// Defaults, and something harmless for what must be given: the first parameter as it is nominally.
+Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
+  const auto specs = entry.options(info);
+  Options options = default_options(specs);
+  for (const OptionSpec& spec : specs) {
+    if (spec.kind == OptionKind::named_numbers) options.set(spec.name, NamedNumbers{{info.parameters[0].name, 1.0}});
+    if (spec.name == "bound") options.set(spec.name, info.parameters[0].nominal);
+  }
+  return options;
+}
+
+double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const std::vector<double>& parameters) {
+  const SurveyPlan p = plan(mechanism.info(), Method::columns);
+  const Options options = some_options(entry, mechanism.info());
+  return entry.make({mechanism, p, options})->value({mechanism, parameters, nullptr});
+}
+
+TEST(ConstraintContract, IsDescribed) {
+  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+    EXPECT_NE(entry.name, "");
+    EXPECT_NE(entry.meaning, "");
+    for (const OptionSpec& option : entry.options(mechanism.info())) EXPECT_NE(option.meaning, "") << option.name;
+    const SurveyPlan p = plan(mechanism.info(), Method::columns);
+    const Options options = some_options(entry, mechanism.info());
+    EXPECT_TRUE(entry.pose_level || !entry.unit({mechanism, p, options}).empty());
+  });
+}
+
+TEST(ConstraintContract, DesignLevelOnesHoldForSomeDesignsAndFailForOthers) {
+  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+    if (entry.pose_level) return;
+    int holds = 0, violated = 0;
+    Stream random(1, 0, 0, Stream::Use::start);
+    for (int i = 0; i < 200; ++i) {
+      auto design = nominal(mechanism.info());
+      for (double& p : design) p *= 0.4 + 1.6 * random.u01();
+      const double m = margin(entry, mechanism, design);
+      ASSERT_TRUE(std::isfinite(m));
+      ++(m >= 0 ? holds : violated);
+    }
+    EXPECT_GT(holds, 0);
+    EXPECT_GT(violated, 0);
+  });
+}
+
+/// Designs of 4ppa-2par made by hand: which side they lie on follows from the equations without a computer.
+TEST(ConstraintContract, SignsOnDesignsMadeByHand) {
+  const Mechanism& machine =
+      **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m->info().name == "4ppa-2par"; });
+  const auto with = [&](const std::string& name, double v) {
+    auto design = nominal(machine.info());
+    for (std::size_t i = 0; i < design.size(); ++i)
+      if (machine.info().parameters[i].name == name) design[i] = v;
+    return design;
+  };
+  const auto of = [&](const std::string& constraint, const std::vector<double>& design) {
+    return margin(*find_named(all_constraints(), constraint), machine, design);
+  };
+  EXPECT_NEAR(of("rail-length", with("L0", 1.3)), 0.1, 1e-12);  // L0 - 2 l_u, l_u = 0.6
+  EXPECT_NEAR(of("rail-length", with("L0", 1.1)), -0.1, 1e-12);
+  EXPECT_NEAR(of("workspace-shape", with("l_d", 0.6)), 0.1, 1e-12);  // 2 l_d against |(l_u, b)| = |(0.6, 0.8)| = 1
+  EXPECT_NEAR(of("workspace-shape", with("l_d", 0.4)), -0.1, 1e-12);
+  EXPECT_NEAR(of("linear", with("a", 0.1)), 0.1, 1e-12);  // a <= 0.2
+  EXPECT_NEAR(of("linear", with("a", 0.3)), -0.1, 1e-12);
+}
+
+TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
+  for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
+    if (!entry.pose_level) return;
+    const MechanismInfo& info = mechanism.info();
+    const auto volume = [&](const Options& options) {
+      SurveyPlan p = plan(info, Method::columns);
+      p.limits = entry.limits(info, options);
+      return test::survey(mechanism, nominal(info), p).volume;
+    };
+    const double free = test::survey(mechanism, nominal(info), plan(info, Method::columns)).volume;
+    const auto specs = entry.options(info);
+    EXPECT_TRUE(!specs.empty() || volume({}) < free);
+    for (const OptionSpec& spec : specs) {
+      const LimitInfo* limit = find_named(info.limits, spec.name);
+      if (!limit) continue;
+      // Where nothing, or little, is left; a length without a natural end counts up to 1 m.
+      const double end = limit->inactive == limit->lower ? std::min(limit->upper, 1.0) : limit->lower;
+      double before = free;
+      for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+        Options options = default_options(specs);
+        options.set(spec.name, (1 - share) * limit->inactive + share * end);
+        const double cut = volume(options);
+        EXPECT_LE(cut, before * (1 + 1e-8)) << spec.name << ", " << share;
+        before = cut;
+      }
+      EXPECT_LT(before, 0.5 * free) << spec.name;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace pkm
