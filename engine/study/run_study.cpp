@@ -9,6 +9,7 @@
 #include "engine/storage/checkpoint_clock.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/storage/study_lock.hpp"
+#include "engine/study/extension.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/study/records.hpp"
 #include "engine/study/stop_request.hpp"
@@ -80,6 +81,7 @@ class Run final : public Monitor {
     }
     outcome.contents = std::move(contents_);
     outcome.seconds = now() - start_;
+    outcome.checkpoint_share = clock_.share();
     outcome.evaluations = made_;
     outcome.parallel_efficiency = evaluator_.wall > 0 ? evaluator_.busy / (evaluator_.wall * evaluator_.threads()) : 0;
     return outcome;
@@ -259,48 +261,6 @@ class Run final : public Monitor {
   bool replaying_ = false;
   std::string stopped_;
 };
-
-/// Throws ConfigError when the last stage has no such limit or the value does not fit it.
-void check_limit(const Stage& stage, const std::string& limit, double value) {
-  const auto option = std::ranges::find(stage.entry->options, limit, &OptionSpec::name);
-  const SourcePlace place{"", 0, "--" + limit};
-  if (option == stage.entry->options.end())
-    throw ConfigError(place, "an optimiser '" + stage.entry->name + "' as the last stage",
-                      "one that has a limit on " + limit);
-  if (!(value <= option->upper)) throw ConfigError(place, shortest(value), "at most " + shortest(option->upper));
-}
-
-/// Adds the extensions asked for to those that the file has; the new limits must not lie below what is done.
-void request_extension(const Study& study, StudyContents& contents, const ExtensionRequest& request) {
-  const auto last = static_cast<std::int64_t>(study.stages.size()) - 1;
-  const bool begun = contents.stages.size() == study.stages.size();
-  const auto set = [&](const std::string& limit, double value, double done) {
-    check_limit(study.stages.back(), limit, value);
-    if (value < done)
-      throw ConfigError({"", 0, "--" + limit}, shortest(value),
-                        "at least " + shortest(done) + ", which the study has already");
-    std::erase_if(contents.extensions, [&](const Extension& e) { return e.stage == last && e.limit == limit; });
-    contents.extensions.push_back({last, limit, value});
-  };
-  const double generations = begun ? static_cast<double>(contents.stages.back().generations.size()) - 1 : 0;
-  const double evaluations = begun ? static_cast<double>(contents.stages.back().table.size()) : 0;
-  if (request.evaluations) set("evaluations", static_cast<double>(*request.evaluations), evaluations);
-  if (request.generations) set("generations", static_cast<double>(*request.generations), generations);
-  // More evaluations alone: the limit on generations must not stand in their way.
-  const auto& options = study.stages.back().entry->options;
-  const auto option = std::ranges::find(options, "generations", &OptionSpec::name);
-  if (request.evaluations && !request.generations && option != options.end())
-    set("generations", option->upper, generations);
-}
-
-/// Gives the study's stages the limits that the file's extensions name.
-void apply_extensions(Study& study, const std::vector<Extension>& extensions) {
-  for (const Extension& e : extensions) {
-    Stage& stage = study.stages.at(static_cast<std::size_t>(e.stage));
-    stage.options.set(e.limit, static_cast<std::int64_t>(e.value));
-    stage.optimiser = stage.entry->make(stage.options, study.problem->space());
-  }
-}
 
 }  // namespace
 

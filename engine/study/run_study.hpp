@@ -9,6 +9,7 @@
 
 #include "engine/setup/study.hpp"
 #include "engine/storage/study_contents.hpp"
+#include "engine/study/extension.hpp"
 #include "engine/study/progress.hpp"
 
 namespace pkm {
@@ -27,17 +28,13 @@ struct RunOptions {
   ProgramVersion program;
 };
 
-/// How a study file is to be extended.
-struct ExtensionRequest {
-  std::optional<std::int64_t> generations, evaluations;  ///< new limits of the last stage, totals
-};
-
 struct RunOutcome {
   StudyContents contents;
   /// Why the run stopped before the study's end ("SIGINT", "time limit"); "" when the study is finished.
   std::string stopped;
   double seconds = 0;              ///< of this run
   std::int64_t evaluations = 0;    ///< made by this run, replayed ones not counted
+  double checkpoint_share = 0;     ///< of the run time, first and final write not counted
   double parallel_efficiency = 0;  ///< evaluation time over threads times wall time of the evaluations
 };
 

@@ -56,10 +56,12 @@ int print_outcome(const RunOutcome& outcome, const Study& study, const std::stri
   }
   if (arguments.quiet) return kDone;
   std::cout << summary_text(outcome.contents, study);
-  char line[160];
-  std::snprintf(line, sizeof line, "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %d threads\n",
-                static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
-                100 * outcome.parallel_efficiency, threads_of(arguments));
+  char line[200];
+  std::snprintf(
+      line, sizeof line,
+      "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %d threads, checkpoints %.1f %% of the time\n",
+      static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
+      100 * outcome.parallel_efficiency, threads_of(arguments), 100 * outcome.checkpoint_share);
   std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
   std::cout << "written to " << file << '\n';
   return kDone;
