@@ -108,7 +108,7 @@ TEST_F(StudyProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
 }
 
 TEST_F(StudyProgram, AChainOfKillsEndsTheSame) {
-  write_toml(120);
+  write_toml(300);
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   std::mt19937 engine(21);
   int kills = 0;
@@ -138,7 +138,7 @@ TEST_F(StudyProgram, OneTwoAndSevenThreadsAreTheSame) {
 }
 
 TEST_F(StudyProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
-  write_toml(300, "");
+  write_toml(3000, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   int stopped = 0;
   for (const int number : {SIGINT, SIGTERM}) {
@@ -190,7 +190,7 @@ TEST_F(StudyProgram, ASignalStopsAllSeeds) {
             std::string::npos)
       << child.output();
   EXPECT_NE(child.output().find("of 1000 seeds"), std::string::npos);
-  EXPECT_FALSE(fs::exists(path("study-seed-60.h5")));
+  EXPECT_FALSE(fs::exists(path("study-seed-500.h5")));
 }
 
 TEST_F(StudyProgram, LimitsMayGrowOnly) {
@@ -219,7 +219,7 @@ TEST_F(StudyProgram, AnExtensionSurvivesAStopInTheReplay) {
 }
 
 TEST_F(StudyProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
-  write_toml(300, "");
+  write_toml(3000, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   {
     ChildProcess child(command({"run", "study.toml", "--output", "t.h5", "--quiet"}), folder_);
