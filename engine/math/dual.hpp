@@ -121,17 +121,8 @@ template <int N>
 Dual<N> acos(const Dual<N>& x) {
   return {portable::acos(x.a), x.v * (-1 / std::sqrt((1 - x.a) * (1 + x.a)))};
 }
-template <int N>
-Dual<N> exp(const Dual<N>& x) {
-  const double e = portable::exp(x.a);
-  return {e, x.v * e};
-}
-template <int N>
-Dual<N> log(const Dual<N>& x) {
-  return {portable::log(x.a), x.v * (1 / x.a)};
-}
 
-/// The derivative scalar that surveys are compiled for; more variables take several passes.
+/// Derivatives by four variables; more take several passes.
 using Dual4 = Dual<4>;
 
 }  // namespace pkm

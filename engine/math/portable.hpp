@@ -7,7 +7,6 @@
 // of 2^-53); the tests measure that.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
