@@ -11,6 +11,7 @@ namespace {
 class Silent final : public Monitor {
  public:
   bool generation(const Generation&) override { return true; }
+  void warn(const std::string&) override {}
 };
 
 // Sum of squares in four variables: evaluating it costs next to nothing.

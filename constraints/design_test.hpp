@@ -1,8 +1,10 @@
 // A design-level constraint whose formula belongs to the mechanism.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "engine/problem/quantity.hpp"
@@ -32,7 +34,7 @@ inline std::unique_ptr<const Quantity> make_design_test(const EntryContext& cont
   const auto index = static_cast<std::size_t>(find_design_test(context.mechanism.info(), name));
   return make_quantity([index, limits = context.plan.limits,
                         count = context.mechanism.info().design_margins.size()](const auto& design) {
-    std::array<double, 16> margins{};
+    std::array<std::remove_cvref_t<decltype(design.parameters[0])>, 16> margins{};
     PKM_EXPECTS(count <= margins.size());
     design.mechanism.design_margins(design.parameters, limits, std::span(margins).first(count));
     return margins[index];

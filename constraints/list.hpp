@@ -7,8 +7,10 @@ namespace pkm {
 
 ConstraintEntry interference();
 ConstraintEntry singularity_margin();
+ConstraintEntry clearance();
 ConstraintEntry workspace_shape();
 ConstraintEntry rail_length();
 ConstraintEntry linear();
+ConstraintEntry expression_constraint();
 
 }  // namespace pkm

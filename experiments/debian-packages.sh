@@ -5,11 +5,14 @@ pkm_build_packages=(
   libeigen3-dev                     # linear algebra
   libhdf5-dev libxxhash-dev         # study files and their checksum
   libtomlplusplus-dev               # studies
+  libnlopt-dev coinor-libipopt-dev  # solvers
+  libmuparser-dev                   # formulas in studies
   libcli11-dev nlohmann-json3-dev   # command line, --json
   librandom123-dev                  # counter-based random numbers
 )
 pkm_test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
+  libfcl-dev                                  # distances of capsules, computed by others
   python3 python3-numpy python3-h5py          # reads study files independently of us
   clang-14 libomp-14-dev libclang-rt-14-dev   # second compiler, its thread sanitizer
   clang-format-14

@@ -9,6 +9,7 @@ const std::vector<ObjectiveEntry>& all_objectives() {
       workspace_volume(),
       workspace_ratio(),
       conditioning(),
+      expression_objective(),
   };
   return list;
 }

@@ -8,5 +8,6 @@ namespace pkm {
 ObjectiveEntry workspace_volume();
 ObjectiveEntry workspace_ratio();
 ObjectiveEntry conditioning();
+ObjectiveEntry expression_objective();
 
 }  // namespace pkm

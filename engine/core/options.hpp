@@ -7,15 +7,19 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 namespace pkm {
 
 using NamedNumbers = std::map<std::string, double>;
-using OptionValue = std::variant<double, std::int64_t, bool, std::string, NamedNumbers>;
+using Setting = std::variant<double, std::int64_t, std::string>;  ///< an option of a library, passed through
+using NamedSettings = std::map<std::string, Setting>;
+using OptionValue =
+    std::variant<double, std::int64_t, bool, std::string, NamedNumbers, std::vector<NamedNumbers>, NamedSettings>;
 
-enum class OptionKind { number, integer, flag, word, named_numbers };
+enum class OptionKind { number, integer, flag, word, named_numbers, list_of_numbers, named_settings };
 
 /// As the unit of a number: the unit of what the entry itself computes (a constraint's margin) or works on (an
 /// optimiser's objective). It is known only once the study is, so the study's reader puts it in.
@@ -32,6 +36,7 @@ struct OptionSpec {
   double upper = std::numeric_limits<double>::infinity();   ///< and greatest
   std::vector<std::string> choices;                         ///< words only: the words known; empty: any text
   std::string meaning;                                      ///< one line for `pkmopt list`
+  std::vector<std::pair<std::string, std::string>> fields = {};  ///< lists of numbers: names known, and their units
 };
 
 /// Validated values of one entry's options, defaults included.
@@ -47,6 +52,10 @@ class Options {
   bool flag(const std::string& name) const { return std::get<bool>(values_.at(name)); }
   const std::string& word(const std::string& name) const { return std::get<std::string>(values_.at(name)); }
   const NamedNumbers& numbers(const std::string& name) const { return std::get<NamedNumbers>(values_.at(name)); }
+  const std::vector<NamedNumbers>& list(const std::string& name) const {
+    return std::get<std::vector<NamedNumbers>>(values_.at(name));
+  }
+  const NamedSettings& settings(const std::string& name) const { return std::get<NamedSettings>(values_.at(name)); }
 
   const std::map<std::string, OptionValue>& values() const { return values_; }
 

@@ -143,6 +143,11 @@ std::vector<std::string> related_units(std::string_view unit) {
 
 }  // namespace
 
+bool is_si_unit(std::string_view text) {
+  const auto unit = unit_of(text);
+  return unit && unit->multiply == unit->divide;
+}
+
 std::string quantity_hint(std::string_view unit) {
   if (unit == "1") return "a number, or text such as \"5 %\"";
   return "a number in " + std::string(unit) + ", or text with a unit made of " + join(related_units(unit));

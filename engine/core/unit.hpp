@@ -16,6 +16,9 @@ namespace pkm {
 /// units known when `text` is no finite number, has another dimension, an unknown unit or anything behind it.
 double parse_quantity(std::string_view text, std::string_view unit);
 
+/// Whether `unit` is a product of SI units that the program knows, such as "m", "m^2 rad", "N m/rad" or "1".
+bool is_si_unit(std::string_view unit);
+
 /// What may be written where a quantity in `unit` is expected, for messages: "a number in m, or text with a unit made
 /// of um, mm, cm, dm, m, km, in".
 std::string quantity_hint(std::string_view unit);

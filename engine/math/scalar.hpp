@@ -27,6 +27,8 @@ inline SinCosOf<double> sincos(double x) {
 inline double atan2(double y, double x) { return portable::atan2(y, x); }
 inline double asin(double x) { return portable::asin(x); }
 inline double acos(double x) { return portable::acos(x); }
+inline double exp(double x) { return portable::exp(x); }
+inline double log(double x) { return portable::log(x); }
 
 /// The smaller and the larger of two numbers, chosen by value.
 template <class S>

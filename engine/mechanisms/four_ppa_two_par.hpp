@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,20 +27,20 @@
 namespace pkm::four_ppa_two_par {
 
 /// Order of the parameters.
-enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kParameters };
+enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kRp, kRs, kParameters };
 
 /// Order of the pose-level limits.
-enum LimitIndex { kAlphaMin, kBetaMin, kBetaMax, kHMin, kSinParMin, kCosThetaMin, kLimits };
+enum LimitIndex { kAlphaMin, kBetaMin, kBetaMax, kHMin, kSinParMin, kCosThetaMin, kClearanceMin, kLimits };
 
 /// Lengths [m], names as in the paper.
 template <class S>
 struct Geometry {
-  S a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0;
+  S a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s;
 };
 
 template <class S>
 Geometry<S> geometry(std::span<const S> p) {
-  return {p[kA], p[kB], p[kLu], p[kLd], p[kD], p[kL0], p[kRu], p[kRd], p[kDu], p[kDd], p[kD0]};
+  return {p[kA], p[kB], p[kLu], p[kLd], p[kD], p[kL0], p[kRu], p[kRd], p[kDu], p[kDd], p[kD0], p[kRp], p[kRs]};
 }
 
 /// Pose-level thresholds in the form in which the tests use them.
@@ -52,6 +53,7 @@ struct Limits {
   S sin_par_min;         ///< sin(phi), the least sin(beta_1 + beta_2)
   S sin_half, cos_half;  ///< of phi/2
   S cos_theta_min;
+  std::optional<double> clearance_min;  ///< [m]; none: no capsule is looked at
 };
 
 /// Thresholds given by the study, or derived from the bars' and sliders' sizes (eqs 17 and 19).
@@ -81,6 +83,7 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
   l.cos_half = S(std::sqrt(0.5 * (1 + cos_phi)));
   l.sin_half = S(0.5 * sin_phi / std::sqrt(0.5 * (1 + cos_phi)));
   l.cos_theta_min = S(spec.given[kCosThetaMin].value_or(0));
+  l.clearance_min = spec.given[kClearanceMin];
   return l;
 }
 

@@ -1,8 +1,10 @@
 // 4PPa-2PaR: exact volume, and weighted samples, by quadrature over theta of closed-form sections.
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
+#include "engine/mechanisms/four_ppa_two_par_clearance.hpp"
 #include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
 #include "engine/mechanisms/four_ppa_two_par_pieces.hpp"
 #include "engine/workspace/survey.hpp"
@@ -15,7 +17,15 @@ struct ColumnScratch {
   std::vector<Break<S>> breaks;
   std::vector<Piece<S>> pieces;
   std::vector<Integral<S>> integrals;
+  std::vector<Piece<S>> ranges, parts;
+  std::vector<Interval> clear;
 };
+
+/// Rounding of a section's area [m^2]: it is a difference of terms of this size times some 2^-53.
+template <class S>
+double area_roundoff(const Geometry<S>& g) {
+  return 1e-15 * value_of(g.l_d) * (value_of(g.l_d) + value_of(g.l_u));
+}
 
 /// Volume of the workspace on one plane y [m^2 rad].
 template <class S>
@@ -25,20 +35,21 @@ Integral<S> plane_volume(const Frame<S>& f, double tolerance, ColumnScratch<S>& 
     const auto [s, c] = sincos(theta);
     return area(f, section(f, s, c));
   };
-  Integral<S> result = integrate<S>(section_area, scratch.pieces, tolerance, scratch.integrals);
+  Integral<S> result = integrate<S>(section_area, scratch.pieces, tolerance, area_roundoff(f.g), scratch.integrals);
   result.value *= S(2.0);  // even in theta
   result.error *= 2;
   return result;
 }
 
 /// Section areas at one theta >= 0, integrated over y in [0, L0/2] [m^3]. The area depends on y through the two depths
-/// alone, so its kinks in y are known: where a limb's stroke begins to cut, where its depth overtakes an end of delta,
-/// and where the nearer end of the rail changes.
+/// alone, so its kinks in y are known: where a limb's stroke begins to cut, where its depth or the difference of both
+/// overtakes an end of delta, and where the nearer end of the rail changes. With r_j = Z_low - Delta_j, the points
+/// (H_j, r_j) lie on a circle of radius l_u; where both strokes cut, a given difference r_1 - r_2 is a chord of it.
 template <class S>
 S area_over_y(const Frame<S>& f, Section<S> t, const GaussRule& rule) {
   const Geometry<S>& g = f.g;
   const S middle = g.L0 * 0.5, shift = g.a * t.sin_theta * 0.5, from = f.l.h_min + shift;
-  std::array<S, 16> y;
+  std::array<S, 24> y;
   std::size_t n = 0;
   const auto add = [&](const S& value) {
     if (value_of(value) > value_of(from) && value_of(value) < value_of(middle)) y[n++] = value;
@@ -50,9 +61,18 @@ S area_over_y(const Frame<S>& f, Section<S> t, const GaussRule& rule) {
   };
   add_stroke(f.stroke_free);
   for (const S& end : {t.delta_end, t.delta_low}) {
-    const S rest = f.z_low - end;
-    if (value_of(end) > 0 && value_of(rest) > value_of(f.z_high))
-      add_stroke(root_or_zero(S((g.l_u - rest) * (g.l_u + rest))));
+    if (!(value_of(end) > 0)) continue;
+    const S rest = f.z_low - end, above = f.z_high + end;
+    if (value_of(rest) > value_of(f.z_high)) {
+      add_stroke(root_or_zero(S((g.l_u - rest) * (g.l_u + rest))));     // Delta_j = end
+      add(root_or_zero(S((g.l_u - above) * (g.l_u + above))) + shift);  // Delta_2 - Delta_1 = end, H_2 does not cut
+    }
+    const auto offset = [&](const S& width) {  // of the middle of a chord with components (width, end)
+      const S square = width * width + end * end;
+      return S(end * root_or_zero(S(g.l_u * g.l_u / square - 0.25)));
+    };
+    add(offset(S(shift * 2.0)));                  // H_2 - H_1 = 2 shift
+    add(middle - offset(S(g.L0 - shift * 2.0)));  // H_1 + H_2 = L0 - 2 shift
   }
   add(middle - shift);
   if (!(value_of(middle) > value_of(from))) return S(0.0);
@@ -90,18 +110,55 @@ Integral<S> volume_over_y(const Geometry<S>& g, const Limits<S>& l, double toler
     const Section<S> t = section_range(f, s, c);
     return t.empty ? S(0.0) : area_over_y(f, t, rule);
   };
-  Integral<S> result = integrate<S>(areas, scratch.pieces, tolerance, scratch.integrals);
+  Integral<S> result =
+      integrate<S>(areas, scratch.pieces, tolerance, area_roundoff(g) * value_of(g.L0), scratch.integrals);
   result.value *= S(4.0);
   result.error *= 4;
   return result;
 }
 
+/// The pieces of a half section's delta on which the length of columns is smooth: up to the knee and beyond it, or what
+/// a clearance limit leaves of them.
+template <class S>
+void feasible_ranges(const Frame<S>& f, const Section<S>& t, const Half<S>& h, std::size_t leaning,
+                     const ClearanceTest* test, ColumnScratch<S>& scratch) {
+  scratch.ranges.clear();
+  for (const auto& [low, high] : {std::pair{h.low, h.knee}, std::pair{h.knee, h.end}}) {
+    if (!(value_of(high) > value_of(low))) continue;
+    if constexpr (std::is_same_v<S, double>) {
+      if (test) {
+        test->clear_ranges(f, t, h, leaning, low, high, scratch.clear);
+        for (const Interval& range : scratch.clear) scratch.ranges.push_back({range.lower, range.upper});
+        continue;
+      }
+    }
+    scratch.ranges.push_back({low, high});
+  }
+}
+
+/// The parts of one column's z interval that carry samples: all of it, or those on which links are clear.
+template <class S>
+void feasible_parts(const Frame<S>& f, const Section<S>& t, const Column<S>& column, const ClearanceTest* test,
+                    ColumnScratch<S>& scratch) {
+  scratch.parts.clear();
+  if constexpr (std::is_same_v<S, double>) {
+    if (test) {
+      test->clear_parts(f, t, column, scratch.clear);
+      for (const Interval& part : scratch.clear) scratch.parts.push_back({part.lower, part.upper, true, true});
+      return;
+    }
+  }
+  scratch.parts.push_back({S(0.0), column.length, true, true});
+}
+
 /// Weighted samples of conditioning over one plane: Gauss nodes in theta, delta and z on every smooth piece. Their
 /// weights, times `weight`, add up to the plane's volume within the rule's accuracy.
 /// @param gamma  a / (2 L_c)
+/// @param test   what a clearance limit leaves to be tested pose by pose, or null
 template <class S>
 void sample_conditioning(const Frame<S>& f, const S& gamma, const S& weight, const GaussRule& theta_rule,
-                         const GaussRule& inner_rule, ColumnScratch<S>& scratch, Survey<S>& survey) {
+                         const GaussRule& inner_rule, const ClearanceTest* test, ColumnScratch<S>& scratch,
+                         Survey<S>& survey) {
   find_pieces(f, scratch.breaks, scratch.pieces);
   const Geometry<S>& g = f.g;
   for (const Piece<S>& piece : scratch.pieces)
@@ -115,31 +172,21 @@ void sample_conditioning(const Frame<S>& f, const S& gamma, const S& weight, con
         const Half<S> h = half_section(t, leaning);
         if (h.empty) continue;
         const S outer = weight * theta_jacobian * (theta_rule.weight[i] * (symmetric ? 4.0 : 2.0));
-        for (const Piece<S>& range : {Piece<S>{h.low, h.knee}, Piece<S>{h.knee, h.end}}) {
-          if (!(value_of(range.upper) > value_of(range.lower))) continue;
+        feasible_ranges(f, t, h, leaning, test, scratch);
+        for (const Piece<S>& range : scratch.ranges)
           for (std::size_t k = 0; k < inner_rule.node.size(); ++k) {
             const auto [delta, delta_jacobian] = map_node(range, inner_rule.node[k]);
-            const Chord<S> ch = chord(f, t, delta);
-            const S q = t.w * t.w + delta * delta;
-            const S ratio = g.l_d * t.w / q;
-            const S slope = (ratio * ratio - 0.25) * 2.0 * ch.sin_p / ch.cos_p;  // du / d(delta)
-            const S length = min(h.flat, S(h.slope - delta));
-            std::array<S, 2> x, sigma;
-            x[leaning] = t.w * 0.5 + ch.u;
-            x[1 - leaning] = t.w * 0.5 - ch.u;
-            for (std::size_t j = 0; j < 2; ++j) sigma[j] = root_or_zero(S((g.l_d - x[j]) * (g.l_d + x[j])));
-            // z_c of the leaning limb starts at -Z_low, that of the other limb delta above
-            for (std::size_t n = 0; n < inner_rule.node.size(); ++n) {
-              const auto [rise, rise_jacobian] = map_node(Piece<S>{S(0.0), length, true, true}, inner_rule.node[n]);
-              std::array<S, 2> z_c;
-              z_c[leaning] = rise - f.z_low;
-              z_c[1 - leaning] = z_c[leaning] + (sigma[1 - leaning] - sigma[leaning]);
-              survey.weight.push_back(outer * slope * delta_jacobian * rise_jacobian *
-                                      (inner_rule.weight[k] * inner_rule.weight[n]));
-              survey.conditioning.push_back(conditioning(g, s, c, x, sigma, z_c, gamma));
-            }
+            const Column<S> col = column(f, t, h, leaning, delta);
+            feasible_parts(f, t, col, test, scratch);
+            for (const Piece<S>& part : scratch.parts)
+              for (std::size_t n = 0; n < inner_rule.node.size(); ++n) {
+                const auto [rise, rise_jacobian] = map_node(part, inner_rule.node[n]);
+                survey.weight.push_back(outer * col.slope * delta_jacobian * rise_jacobian *
+                                        (inner_rule.weight[k] * inner_rule.weight[n]));
+                survey.conditioning.push_back(
+                    conditioning(g, s, c, col.x, col.sigma, {col.z_c(f, rise, 0), col.z_c(f, rise, 1)}, gamma));
+              }
           }
-        }
       }
     }
 }

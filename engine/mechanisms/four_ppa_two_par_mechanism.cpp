@@ -10,6 +10,9 @@ namespace {
 
 using namespace four_ppa_two_par;
 
+/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
+constexpr double kNoClearance = -2;
+
 const char* const kModes[4] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
 
 MechanismInfo make_info() {
@@ -28,7 +31,9 @@ MechanismInfo make_info() {
       {"R_d", "m", 0.010, 0, 1, "radius of the lower bars"},
       {"d_u", "m", 0.080, 1e-3, 10, "distance of an upper parallelogram's two bars"},
       {"d_d", "m", 0.080, 1e-3, 10, "distance of the lower parallelogram's two bars"},
-      {"d_0", "m", 0.030, 0, 10, "half length of a slider"},
+      {"d_0", "m", 0.030, 0, 10, "length of a slider beyond its outer joint"},
+      {"R_p", "m", 0.020, 0, 1, "radius of the platform as a capsule"},
+      {"R_s", "m", 0.020, 0, 1, "radius of the sliders as capsules"},
   };
   i.coordinates = {"x", "y", "z", "theta"};
   i.joints = {"q1", "q2", "q3", "q4"};
@@ -47,6 +52,8 @@ MechanismInfo make_info() {
       {"h_min", "m", 0, 0, 100, "singularity-margin", "d_0 + d_u / 2, eq 19", "least half spacing of a limb's sliders"},
       {"sin_par_min", "1", 0, 0, 1, "singularity-margin", "", "least sin(beta_1 + beta_2), eq 15"},
       {"cos_theta_min", "1", 0, 0, 1, "singularity-margin", "", "least cos(theta), eq 15"},
+      {"clearance_min", "m", kNoClearance, kNoClearance, 100, "clearance", "",
+       "least distance of links of different limbs, platform and sliders; < 0: they may overlap that far"},
   };
   i.design_margins = {
       {"workspace-shape", "m",
@@ -61,24 +68,60 @@ MechanismInfo make_info() {
   return i;
 }
 
+/// Eq 21, upper and lower part separate at the least cos(theta) allowed; eq 18.
+template <class S>
+void margins_of(std::span<const S> p, const LimitSpec& spec, std::span<S> margins) {
+  const auto g = geometry(p);
+  const auto l = limits(g, spec);
+  const S w = g.b - g.a * l.cos_theta_min;
+  margins[0] = g.l_d - sqrt(S(g.l_u * g.l_u + w * w)) * 0.5;
+  margins[1] = g.L0 - 2.0 * g.l_u * l.cos_alpha_min;
+}
+
+/// V_mech of table 8.
+template <class S>
+S size_of(std::span<const S> p) {
+  return kPi * p[kB] * (p[kLu] + p[kLd]);
+}
+
+template <class S>
+void thresholds_of(std::span<const S> p, const LimitSpec& spec, std::span<S> values) {
+  const auto g = geometry(p);
+  const auto l = limits(g, spec);
+  values[kAlphaMin] = asin(l.sin_alpha_min);
+  values[kBetaMin] = asin(l.sin_beta_min);
+  values[kBetaMax] = atan2(l.sin_beta_max, l.cos_beta_max);
+  values[kHMin] = l.h_min;
+  values[kSinParMin] = l.sin_par_min;
+  values[kCosThetaMin] = l.cos_theta_min;
+  values[kClearanceMin] = S(l.clearance_min.value_or(kNoClearance));
+}
+
 class FourPpaTwoPar final : public Mechanism {
  public:
   const MechanismInfo& info() const override { return info_; }
 
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
+    sweep_of(info_, plan);  // refuses a plan that holds another coordinate than y
     return make_surveyor(plan, demand);
   }
   VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
     return four_ppa_two_par::voxel_map(geometry(p), plan);
   }
   void design_margins(std::span<const double> p, const LimitSpec& spec, std::span<double> margins) const override {
-    const auto g = geometry(p);
-    const auto l = limits(g, spec);
-    const double w = g.b - g.a * l.cos_theta_min;
-    margins[0] = g.l_d - std::sqrt(g.l_u * g.l_u + w * w) / 2;
-    margins[1] = g.L0 - 2 * g.l_u * l.cos_alpha_min;
+    margins_of(p, spec, margins);
   }
-  double size(std::span<const double> p) const override { return kPi * p[kB] * (p[kLu] + p[kLd]); }
+  void design_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> margins) const override {
+    margins_of(p, spec, margins);
+  }
+  double size(std::span<const double> p) const override { return size_of(p); }
+  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
+  void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
+    thresholds_of(p, spec, values);
+  }
+  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
+    thresholds_of(p, spec, values);
+  }
   NamedValues facts(std::span<const double> p, const LimitSpec& spec) const override {
     const auto g = geometry(p);
     return {{"shape_type_at_theta_0", section_type(g, 1)},

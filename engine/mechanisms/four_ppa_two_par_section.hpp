@@ -111,14 +111,19 @@ S depth(const Frame<S>& f, const S& H) {
   return S(0.0);
 }
 
+/// Strokes H_1, H_2 left to the limbs on their shorter sides [m]. Written so that on the middle plane both have the
+/// same bits.
+template <class S>
+std::array<S, 2> strokes(const Frame<S>& f, const S& y, const S& sin_theta) {
+  const S shift = f.g.a * sin_theta * 0.5, rest = f.g.L0 - y;
+  return {min(S(y - shift), S(rest + shift)), min(S(y + shift), S(rest - shift))};
+}
+
 /// Adds the depths of both limbs on the plane y.
 template <class S>
 void set_depths(const Frame<S>& f, const S& y, Section<S>& t) {
-  const S shift = f.g.a * t.sin_theta * 0.5;
-  for (std::size_t j = 0; j < 2; ++j) {
-    const S y_j = j == 0 ? S(y - shift) : S(y + shift);
-    t.depth[j] = depth(f, min(y_j, S(f.g.L0 - y_j)));
-  }
+  const std::array<S, 2> H = strokes(f, y, t.sin_theta);
+  t.depth = {depth(f, H[0]), depth(f, H[1])};
 }
 
 /// The section on the frame's plane.
@@ -164,6 +169,37 @@ Chord<S> chord(const Frame<S>& f, const Section<S>& t, const S& delta) {
   c.sin_p = root / (f.g.l_d * 2.0);
   c.cos_p = root_or_zero(S((S(1.0) - c.sin_p) * (S(1.0) + c.sin_p)));
   c.u = delta * f.g.l_d * c.cos_p / root;
+  return c;
+}
+
+/// The feasible z at one x of a half section.
+template <class S>
+struct Column {
+  std::array<S, 2> x, sigma;  ///< of the two limbs [m]
+  S length;                   ///< of the z interval [m]
+  S slope;                    ///< du / d(delta)
+  std::size_t leaning;
+
+  /// z_c of limb j at a height over the interval's lower end, where that of the leaning limb is -Z_low.
+  S z_c(const Frame<S>& f, const S& rise, std::size_t j) const {
+    const S lean = rise - f.z_low;
+    return j == leaning ? lean : S(lean + (sigma[j] - sigma[leaning]));
+  }
+};
+
+template <class S>
+Column<S> column(const Frame<S>& f, const Section<S>& t, const Half<S>& h, std::size_t leaning, const S& delta) {
+  const Geometry<S>& g = f.g;
+  const Chord<S> ch = chord(f, t, delta);
+  const S q = t.w * t.w + delta * delta;
+  const S ratio = g.l_d * t.w / q;
+  Column<S> c;
+  c.slope = (ratio * ratio - 0.25) * 2.0 * ch.sin_p / ch.cos_p;
+  c.length = min(h.flat, S(h.slope - delta));
+  c.leaning = leaning;
+  c.x[leaning] = t.w * 0.5 + ch.u;
+  c.x[1 - leaning] = t.w * 0.5 - ch.u;
+  for (std::size_t j = 0; j < 2; ++j) c.sigma[j] = root_or_zero(S((g.l_d - c.x[j]) * (g.l_d + c.x[j])));
   return c;
 }
 

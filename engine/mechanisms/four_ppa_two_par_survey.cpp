@@ -4,18 +4,20 @@
 
 #include <Eigen/LU>
 
-#include "engine/mechanisms/four_ppa_two_par_columns.hpp"
+#include "engine/mechanisms/four_ppa_two_par_clear_volume.hpp"
 #include "engine/mechanisms/four_ppa_two_par_voxels.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {
 
-double plane(const Geometry<double>& g, const HeldCoordinate& held) {
-  return held.kind == HeldCoordinate::Kind::value ? held.value : g.L0 / 2;
+template <class S>
+S plane(const Geometry<S>& g, const HeldCoordinate& held) {
+  return held.kind == HeldCoordinate::Kind::value ? S(held.value) : S(g.L0 * 0.5);
 }
 
-double gamma(const Geometry<double>& g, const Demand& demand) {
-  return demand.characteristic_length ? g.a / (2 * *demand.characteristic_length) : 1.0;  // default L_c = a/2
+template <class S>
+S gamma(const Geometry<S>& g, const Demand& demand) {
+  return demand.characteristic_length ? S(g.a / (2 * *demand.characteristic_length)) : S(1.0);  // default L_c = a/2
 }
 
 class ColumnSurveyor final : public Surveyor {
@@ -26,45 +28,71 @@ class ColumnSurveyor final : public Surveyor {
         inner_rule_(gauss_legendre(plan.nodes[0] > 0 ? plan.nodes[0] : kSampleNodes)),
         theta_rule_(gauss_legendre(plan.nodes[1] > 0 ? plan.nodes[1] : kSampleNodes)) {}
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
-    thread_local ColumnScratch<double> scratch;
-    survey.clear();
-    const Geometry<double> g = geometry(parameters);
-    const Limits<double> l = limits(g, plan_.limits);
-    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
-    const Frame<double> f = frame(g, l, plane(g, plan_.held));
-    const Integral<double> volume = over_y               ? volume_over_y(g, l, plan_.tolerance, scratch)
-                                    : plan_.nodes[1] > 0 ? fixed_rule(f, scratch)
-                                                         : plane_volume(f, plan_.tolerance, scratch);
-    survey.volume = volume.value;
-    survey.error = volume.value > 0 ? volume.error / volume.value : 0;
-    survey.columns = volume.evaluations;
-    if (!demand_.conditioning) return;
-    if (!over_y) {
-      sample_conditioning(f, gamma(g, demand_), 1.0, theta_rule_, inner_rule_, scratch, survey);
-      return;
-    }
-    const Piece<double> half{l.h_min, g.L0 / 2, true, false};
-    if (!(half.upper > half.lower)) return;
-    for (std::size_t i = 0; i < inner_rule_.node.size(); ++i) {
-      const auto [y, jacobian] = map_node(half, inner_rule_.node[i]);
-      sample_conditioning(frame(g, l, y), gamma(g, demand_), 2 * jacobian * inner_rule_.weight[i], theta_rule_,
-                          inner_rule_, scratch, survey);
-    }
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
+  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override {
+    if (plan_.limits.given[kClearanceMin]) throw std::logic_error(no_derivatives());
+    run(parameters, survey);
+  }
+  std::string no_derivatives() const override {
+    if (!plan_.limits.given[kClearanceMin]) return {};
+    return "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
+           "such surveys have no derivatives; take an optimiser without gradients, or keep the sliders apart by h_min";
   }
 
  private:
   static constexpr int kSampleNodes = 12;
 
+  template <class S>
+  void run(std::span<const S> parameters, Survey<S>& survey) const {
+    thread_local ColumnScratch<S> scratch;
+    survey.clear();
+    const Geometry<S> g = geometry(parameters);
+    Limits<S> l = limits(g, plan_.limits);
+    std::optional<ClearanceTest> clearance;
+    if constexpr (std::is_same_v<S, double>) clearance = take_clearance(g, l);
+    const ClearanceTest* const test = clearance ? &*clearance : nullptr;
+    const Frame<S> f = frame(g, l, plane(g, plan_.held));
+    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
+    const Integral<S> volume = volume_of(f, test, over_y, scratch);
+    survey.volume = volume.value;
+    survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
+    survey.columns = volume.evaluations;
+    if (!demand_.conditioning) return;
+    if (!over_y) {
+      sample_conditioning(f, gamma(g, demand_), S(1.0), theta_rule_, inner_rule_, test, scratch, survey);
+      return;
+    }
+    const Piece<S> half{l.h_min, g.L0 * 0.5, true, false};
+    if (!(value_of(half.upper) > value_of(half.lower))) return;
+    for (std::size_t i = 0; i < inner_rule_.node.size(); ++i) {
+      const auto [y, jacobian] = map_node(half, inner_rule_.node[i]);
+      sample_conditioning(frame(g, l, y), gamma(g, demand_), S(2.0 * jacobian * inner_rule_.weight[i]), theta_rule_,
+                          inner_rule_, test, scratch, survey);
+    }
+  }
+
+  template <class S>
+  Integral<S> volume_of(const Frame<S>& f, const ClearanceTest* test, bool over_y, ColumnScratch<S>& scratch) const {
+    if constexpr (std::is_same_v<S, double>) {
+      if (test)
+        return plan_.nodes[1] > 0 ? clear_volume_by_rule(f, *test, theta_rule_, inner_rule_, scratch)
+                                  : clear_volume(f, *test, over_y, plan_.tolerance, scratch);
+    }
+    return over_y               ? volume_over_y(f.g, f.l, plan_.tolerance, scratch)
+           : plan_.nodes[1] > 0 ? fixed_rule(f, scratch)
+                                : plane_volume(f, plan_.tolerance, scratch);
+  }
+
   /// The volume by the study's own number of theta nodes per piece; no error is estimated.
-  Integral<double> fixed_rule(const Frame<double>& f, ColumnScratch<double>& scratch) const {
+  template <class S>
+  Integral<S> fixed_rule(const Frame<S>& f, ColumnScratch<S>& scratch) const {
     find_pieces(f, scratch.breaks, scratch.pieces);
-    Integral<double> result;
+    Integral<S> result;
     for (const auto& piece : scratch.pieces)
       for (std::size_t i = 0; i < theta_rule_.node.size(); ++i) {
         const auto [theta, jacobian] = map_node(piece, theta_rule_.node[i]);
         const auto [s, c] = sincos(theta);
-        result.value += 2 * theta_rule_.weight[i] * jacobian * area(f, section(f, s, c));
+        result.value += (2 * theta_rule_.weight[i]) * jacobian * area(f, section(f, s, c));
         ++result.evaluations;
       }
     return result;
@@ -80,10 +108,14 @@ class VoxelSurveyor final : public Surveyor {
   VoxelSurveyor(const SurveyPlan& plan, const Demand& demand)
       : plan_(plan), demand_(demand), counter_(plan.cells, plan.box ? (*plan.box)[2] : kTheta) {}
 
+  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+
   void survey(std::span<const double> parameters, Survey<double>& survey) const override {
     survey.clear();
     const Geometry<double> g = geometry(parameters);
-    const Limits<double> l = limits(g, plan_.limits);
+    Limits<double> l = limits(g, plan_.limits);
+    const auto clearance = take_clearance(g, l);
+    const ClearanceTest* const test = clearance ? &*clearance : nullptr;
     const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
     const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
     const std::int64_t planes = over_y ? plan_.held_cells : 1;
@@ -93,18 +125,19 @@ class VoxelSurveyor final : public Surveyor {
     for (std::int64_t p = 0; p < planes; ++p) {
       const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, plan_.held);
       bool touches = false;
-      survey.feasible_cells += counter_.count(g, l, y, grid, touches);
+      survey.feasible_cells += counter_.count(g, l, test, y, grid, touches);
       survey.touches_box = survey.touches_box || touches;
-      if (demand_.conditioning) sample(g, l, y, grid, survey);
+      if (demand_.conditioning) sample(g, l, test, y, grid, survey);
     }
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
   VoxelMap map(const Geometry<double>& g) const {
-    const Limits<double> l = limits(g, plan_.limits);
+    Limits<double> l = limits(g, plan_.limits);
+    const auto clearance = take_clearance(g, l);
     const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
     VoxelMap m = grid.map();
-    counter_.visit_columns(g, l, plane(g, plan_.held), grid,
+    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, plan_.held), grid,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              for (std::int64_t j = first; j < end; ++j)
                                m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
@@ -115,20 +148,21 @@ class VoxelSurveyor final : public Surveyor {
  private:
   static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
 
-  void sample(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-              Survey<double>& survey) const {
+  void sample(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
+              const VoxelGrid& grid, Survey<double>& survey) const {
     const double scale = gamma(g, demand_);
-    counter_.visit_columns(g, l, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-      const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
-      const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
-      const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
-                                           root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
-      for (std::int64_t j = first; j < end; ++j) {
-        const double z = grid.centre(1, j) + g.d;
-        survey.weight.push_back(survey.cell_volume);
-        survey.conditioning.push_back(conditioning(g, s, c, x_j, sigma, {z + sigma[0], z + sigma[1]}, scale));
-      }
-    });
+    counter_.visit_columns(
+        g, l, test, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+          const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
+          const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
+          const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
+                                               root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
+          for (std::int64_t j = first; j < end; ++j) {
+            const double z = grid.centre(1, j) + g.d;
+            survey.weight.push_back(survey.cell_volume);
+            survey.conditioning.push_back(conditioning(g, s, c, x_j, sigma, {z + sigma[0], z + sigma[1]}, scale));
+          }
+        });
   }
 
   SurveyPlan plan_;
@@ -203,6 +237,8 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
   for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha[j]);
   for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("beta_" + std::to_string(j + 1), beta[j]);
   for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
+  const Nearest<double> nearest = nearest_links(links(g, placement(pose, limb, mode)));
+  report.angles.emplace_back("clearance", nearest.clearance);
 
   const auto least = [](const std::array<double, 2>& p) { return std::fmin(p[0], p[1]); };
   double stroke = limb.q[0];
@@ -223,9 +259,15 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
       {"sin_par_min", std::fabs(sin_1) - l.sin_par_min},
       {"cos_theta_min", c - l.cos_theta_min},
   };
+  if (l.clearance_min) report.margins.emplace_back("clearance_min", nearest.clearance - *l.clearance_min);
   report.feasible = true;
   for (const auto& [name, margin] : report.margins) {  // the most basic tests come first
-    if (report.feasible && !(margin >= 0)) report.reason = "limit " + name + " is broken";
+    if (report.feasible && !(margin >= 0)) {
+      report.reason = "limit " + name + " is broken";
+      if (name == "clearance_min")
+        report.reason += ": " + link_name(nearest.first) + " and " + link_name(nearest.second) +
+                         (nearest.clearance < 0 ? " overlap" : " are too near");
+    }
     report.feasible = report.feasible && margin >= 0;
   }
   return report;

@@ -23,7 +23,9 @@ bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, doub
     if (h < l.h_min) return false;                          // eq 19
     if (y_j[j] - h < 0 || y_j[j] + h > g.L0) return false;  // stroke
   }
-  return sin_b[0] * cos_b[1] + cos_b[0] * sin_b[1] >= l.sin_par_min;  // eq 15
+  if (sin_b[0] * cos_b[1] + cos_b[0] * sin_b[1] < l.sin_par_min) return false;  // eq 15
+  if (!l.clearance_min) return true;
+  return nearest_links(links(g, lower_placement(g, x, z, sin_theta, cos_theta))).clearance >= *l.clearance_min;
 }
 
 Box default_box(const Geometry<double>& g) { return {{{0, g.b}, {-(g.l_u + g.l_d + g.d), -g.d}, {-kPi / 2, kPi / 2}}}; }
@@ -90,8 +92,9 @@ void VoxelCounter::fill_row(const Geometry<double>& g, const Limits<double>& l, 
   }
 }
 
-std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                                 bool& touches) const {
+std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test,
+                                 double y, const VoxelGrid& grid, bool& touches) const {
+  if (test) return count_clear(g, l, *test, y, grid, touches);
   thread_local Row row;
   const auto n = static_cast<std::size_t>(cells_[0]);
   row.first.resize(n);
@@ -131,6 +134,17 @@ std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>
     const bool centre_row = half_theta && cells_[2] % 2 == 1 && k == rows - 1;
     total += half_theta && !centre_row ? 2 * sum : sum;
   }
+  return total;
+}
+
+std::int64_t VoxelCounter::count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test,
+                                       double y, const VoxelGrid& grid, bool& touches) const {
+  std::int64_t total = 0;
+  touches = false;
+  visit_columns(g, l, &test, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+    total += end - first;
+    touches = touches || i == 0 || i == cells_[0] - 1 || first == 0 || end == cells_[1] || k == 0 || k == cells_[2] - 1;
+  });
   return total;
 }
 

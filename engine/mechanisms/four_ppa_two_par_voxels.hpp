@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/mechanisms/four_ppa_two_par_section.hpp"
+#include "engine/mechanisms/four_ppa_two_par_clearance.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 
 namespace pkm::four_ppa_two_par {
@@ -30,20 +30,26 @@ class VoxelCounter {
   VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::array<double, 2>& theta);
 
   /// Feasible cells of a grid (its cells and theta range as given above) on the plane y.
+  /// @param test     what a clearance limit leaves to be tested pose by pose, or null
   /// @param touches  set when a feasible cell lies on the grid's outer layer
-  std::int64_t count(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                     bool& touches) const;
+  std::int64_t count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
+                     const VoxelGrid& grid, bool& touches) const;
 
-  /// Calls visit(i, j_first, j_end, k) for every x index i and theta index k with feasible z cells [j_first, j_end).
+  /// Calls visit(i, j_first, j_end, k) for every run [j_first, j_end) of feasible z cells at x index i and theta index
+  /// k. There is one run at most, unless `test` cuts it.
   template <class Visit>
-  void visit_columns(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                     const Visit& visit) const {
+  void visit_columns(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
+                     const VoxelGrid& grid, const Visit& visit) const {
     Row row = make_row();
     for (std::int64_t k = 0; k < cells_[2]; ++k) {
       fill_row(g, l, y, grid, k, cells_[0], row);
       for (std::int64_t i = 0; i < cells_[0]; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        if (row.first[at] < row.end[at]) visit(i, row.first[at], row.end[at], k);
+        if (!(row.first[at] < row.end[at])) continue;
+        if (test)
+          visit_clear_runs(g, *test, grid, i, row.first[at], row.end[at], k, visit);
+        else
+          visit(i, row.first[at], row.end[at], k);
       }
     }
   }
@@ -53,6 +59,22 @@ class VoxelCounter {
 
  private:
   Row make_row() const;
+  /// The runs of one column's cells [first, end) that pass the test, cell by cell.
+  template <class Visit>
+  void visit_clear_runs(const Geometry<double>& g, const ClearanceTest& test, const VoxelGrid& grid, std::int64_t i,
+                        std::int64_t first, std::int64_t end, std::int64_t k, const Visit& visit) const {
+    const double x = grid.centre(0, i);
+    std::int64_t start = first;
+    for (std::int64_t j = first; j < end; ++j) {
+      const auto p = lower_placement(g, x, grid.centre(1, j), sin_theta(k), cos_theta(k));
+      if (test.excess(p) >= 0) continue;
+      if (start < j) visit(i, start, j, k);
+      start = j + 1;
+    }
+    if (start < end) visit(i, start, end, k);
+  }
+  std::int64_t count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test, double y,
+                           const VoxelGrid& grid, bool& touches) const;
   /// Fills the first `columns` x of row k.
   void fill_row(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid, std::int64_t k,
                 std::int64_t columns, Row& row) const;

@@ -8,5 +8,7 @@
 namespace pkm {
 
 std::shared_ptr<const Mechanism> make_four_ppa_two_par();
+std::shared_ptr<const Mechanism> make_three_crr_r_cru();
+std::shared_ptr<const Mechanism> make_quadrupteron();
 
 }  // namespace pkm

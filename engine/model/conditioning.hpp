@@ -3,12 +3,14 @@
 // Two ways to the same number. One-sided Jacobi serves any size. Surveys, which ask for it at every sample, use a
 // closed form for 3 x 3 that is two to three times faster: sigma_1^2 is the largest eigenvalue of M M^T, (sigma_1
 // sigma_2)^2 that of C C^T with the cofactors C, and sigma_3 = |det M| / (sigma_1 sigma_2). Taking the quotient by the
-// determinant rather than the smallest eigenvalue keeps the small singular value's leading digits.
+// determinant rather than the smallest eigenvalue keeps the small singular value's leading digits. Its derivatives need
+// none of the closed form's: with the singular vectors u_i, v_i of M they are d sigma_i = u_i^T dM v_i.
 #pragma once
 
 #include <array>
 #include <cmath>
 
+#include "engine/math/dual.hpp"
 #include "engine/math/scalar.hpp"
 
 namespace pkm {
@@ -131,24 +133,86 @@ S largest_eigenvalue(const Symmetric3<S>& matrix) {
   return trace * (p * 2.0 * (r * r * 2.0 - 1.0) + third);
 }
 
+/// The eigenvector of length 1 to the largest eigenvalue of a positive semidefinite matrix: the adjugate of
+/// (eigenvalue - matrix) is a multiple of v v^T, whose longest column is the most accurate. 0 where the eigenvalue is
+/// double to the last bit.
+inline std::array<double, 3> eigenvector_of_largest(const Symmetric3<double>& matrix, double eigenvalue) {
+  const double scale = 1 / eigenvalue;  // nothing overflows
+  const double x = 1 - matrix.xx * scale, y = 1 - matrix.yy * scale, z = 1 - matrix.zz * scale;
+  const double f = -matrix.xy * scale, g = -matrix.yz * scale, h = -matrix.zx * scale;
+  const double X = y * z - g * g, Y = z * x - h * h, Z = x * y - f * f;
+  const double F = g * h - f * z, G = h * f - g * x, H = f * g - h * y;
+  std::array<double, 3> v = X >= Y && X >= Z ? std::array{X, F, H} : Y >= Z ? std::array{F, Y, G} : std::array{H, G, Z};
+  const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  const double inverse = square > 0 ? 1 / std::sqrt(square) : 0;
+  for (double& component : v) component *= inverse;
+  return v;
+}
+
+/// What leads to the extreme singular values of a 3 x 3 matrix in closed form.
+struct ExtremeSingularValues {
+  Rows3<double> cofactors;
+  double determinant;
+  Symmetric3<double> square, square_of_cofactors;  ///< M M^T, C C^T
+  double greatest_2, pair_2;                       ///< sigma_1^2, (sigma_1 sigma_2)^2
+  double least_2() const { return determinant * determinant / pair_2; }
+};
+inline ExtremeSingularValues extreme_singular_values(const Rows3<double>& m) {
+  const auto cross = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return std::array<double, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  ExtremeSingularValues s;
+  s.cofactors = {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
+  s.determinant = m[0][0] * s.cofactors[0][0] + m[0][1] * s.cofactors[0][1] + m[0][2] * s.cofactors[0][2];
+  s.square_of_cofactors = gram(s.cofactors);
+  s.pair_2 = largest_eigenvalue(s.square_of_cofactors);
+  s.square = gram(m);
+  s.greatest_2 = largest_eigenvalue(s.square);
+  return s;
+}
+
+/// Inverse condition number from the squares of the extreme singular values.
+inline double inverse_condition_of(double least_2, double greatest_2) {
+  const bool usable = least_2 > 0 && greatest_2 < 1e300;
+  return usable ? std::sqrt(least_2 / greatest_2) : 0.0;
+}
+
 /// The same as inverse_condition for 3 x 3, in closed form. Relative error a few ulp where the determinant and the
 /// cofactors, computed as written here, have no cancellation; a few ulp of sigma_1 / sigma_2 otherwise.
 /// @param extra  square of one more singular value, of a block that is diagonal already; < 0: none
-template <class S>
-S inverse_condition(const Rows3<S>& m, const S& extra = S(-1.0)) {
-  const auto cross = [](const std::array<S, 3>& a, const std::array<S, 3>& b) {
-    return std::array<S, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+inline double inverse_condition(const Rows3<double>& m, double extra = -1) {
+  const ExtremeSingularValues s = extreme_singular_values(m);
+  if (!(extra >= 0)) return inverse_condition_of(s.least_2(), s.greatest_2);
+  return inverse_condition_of(min(s.least_2(), extra), max(s.greatest_2, extra));
+}
+
+/// The same with derivatives. Where two singular values meet and the extreme one so has a kink, they are those of one
+/// of the two, or of neither.
+template <int N>
+Dual<N> inverse_condition(const Rows3<Dual<N>>& m, const Dual<N>& extra = Dual<N>(-1.0)) {
+  Rows3<double> plain;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) plain[i][j] = m[i][j].a;
+  const ExtremeSingularValues s = extreme_singular_values(plain);
+  const bool extra_is_least = extra.a >= 0 && extra.a<s.least_2(), extra_is_greatest = extra.a> s.greatest_2;
+  Dual<N> result(
+      inverse_condition_of(extra_is_least ? extra.a : s.least_2(), extra_is_greatest ? extra.a : s.greatest_2));
+  if (!(result.a > 0)) return result;
+  // d ln(least / greatest) = G : dM, with u_3^T C = det v_3^T / sigma_3 and u_1^T M = sigma_1 v_1^T
+  Rows3<double> G{};
+  const auto add = [&](const std::array<double, 3>& u, const Rows3<double>& rows, double factor) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double v = (u[0] * rows[0][j] + u[1] * rows[1][j] + u[2] * rows[2][j]) * factor;
+      for (std::size_t i = 0; i < 3; ++i) G[i][j] += u[i] * v;
+    }
   };
-  const Rows3<S> cofactors{cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
-  const S determinant = m[0][0] * cofactors[0][0] + m[0][1] * cofactors[0][1] + m[0][2] * cofactors[0][2];
-  const S pair = largest_eigenvalue(gram(cofactors));  // (sigma_1 sigma_2)^2
-  S greatest = largest_eigenvalue(gram(m)), least = determinant * determinant / pair;
-  if (value_of(extra) >= 0) {
-    least = min(least, extra);
-    greatest = max(greatest, extra);
-  }
-  const bool usable = value_of(least) > 0 && value_of(greatest) < 1e300;
-  return usable ? S(sqrt(S(least / greatest))) : S(0.0);
+  if (!extra_is_least) add(eigenvector_of_largest(s.square_of_cofactors, s.pair_2), s.cofactors, 1 / s.determinant);
+  if (!extra_is_greatest) add(eigenvector_of_largest(s.square, s.greatest_2), plain, -1 / s.greatest_2);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) result.v = result.v + m[i][j].v * (G[i][j] * result.a);
+  if (extra_is_least != extra_is_greatest)
+    result.v = result.v + extra.v * ((extra_is_least ? 0.5 : -0.5) / extra.a * result.a);
+  return result;
 }
 
 }  // namespace pkm

@@ -31,6 +31,7 @@ struct PoseReport {
   std::optional<Eigen::Matrix4d> Jq, G, J;      ///< Jq qdot = G V, J = Jq^-1 G (absent when Jq is singular)
   std::optional<double> det_Jq, det_G;
   std::optional<double> conditioning;  ///< inverse condition number in [0, 1]
+  NamedValues indices;                 ///< mechanism's own singularity indices
   NamedValues angles;                  ///< mechanism's own angles [rad] and lengths [m]
   NamedValues margins;                 ///< named pose-level margins, >= 0 holds
 };

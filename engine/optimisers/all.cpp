@@ -1,11 +1,13 @@
 #include "engine/optimisers/genetic_algorithm.hpp"
+#include "engine/optimisers/ipopt.hpp"
+#include "engine/optimisers/nlopt.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/optimisers/sweep.hpp"
 
 namespace pkm {
 
 const std::vector<OptimiserEntry>& all_optimisers() {
-  static const std::vector<OptimiserEntry> entries = {genetic_algorithm(), sweep()};
+  static const std::vector<OptimiserEntry> entries = {genetic_algorithm(), sweep(), nlopt_stage(), ipopt_stage()};
   return entries;
 }
 
@@ -25,6 +27,12 @@ std::string_view words(StopReason reason) {
       return "every design evaluated";
     case StopReason::interrupted:
       return "interrupted";
+    case StopReason::time:
+      return "time limit";
+    case StopReason::failed:
+      return "failed";
+    case StopReason::starts:
+      return "every start has ended";
   }
   return "";
 }

@@ -4,14 +4,14 @@
 
 namespace pkm {
 
-void Breeder::start(const std::vector<std::vector<double>>& given, EvaluationTable& table, std::size_t most_new,
+void Breeder::start(const std::vector<StartDesign>& given, EvaluationTable& table, std::size_t most_new,
                     std::vector<std::int64_t>& members) {
   members.clear();
   const std::size_t count = plan_.population, n = space_.dimension();
   const std::vector<double> points = start_points(plan_.start, count, n, seed_);
   for (std::size_t k = 0; k < count; ++k) {
     if (k < given.size()) {
-      std::copy(given[k].begin(), given[k].end(), child_.begin());
+      std::ranges::copy(given[k].design, child_.begin());
     } else {
       for (std::size_t i = 0; i < n; ++i) child_[i] = space_.from_unit(i, points[k * n + i]);
     }

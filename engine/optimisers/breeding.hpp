@@ -9,6 +9,7 @@
 #include "engine/core/parameter.hpp"
 #include "engine/optimisers/breeding_plan.hpp"
 #include "engine/optimisers/known_designs.hpp"
+#include "engine/optimisers/optimiser.hpp"
 
 namespace pkm {
 
@@ -20,7 +21,7 @@ class Breeder {
 
   /// The start population: the given designs first (moved into the space), then an even cover. At most `most_new` rows
   /// are added. `members` receives the rows.
-  void start(const std::vector<std::vector<double>>& given, EvaluationTable& table, std::size_t most_new,
+  void start(const std::vector<StartDesign>& given, EvaluationTable& table, std::size_t most_new,
              std::vector<std::int64_t>& members);
 
   /// `count` children of `parents` (best first). A child that equals a known design is not added again: its row is

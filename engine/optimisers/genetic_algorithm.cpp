@@ -166,8 +166,12 @@ std::vector<OptionSpec> options() {
 }  // namespace
 
 OptimiserEntry genetic_algorithm() {
-  return {
-      "ga", "genetic algorithm for one objective with constraints", Capabilities{}, options(), make, resolve_breeding};
+  return {"ga",
+          "genetic algorithm for one objective with constraints",
+          [](const Options&) { return Capabilities{}; },
+          options(),
+          make,
+          resolve_breeding};
 }
 
 }  // namespace pkm

@@ -23,15 +23,29 @@ struct Capabilities {
   bool discrete = true;         ///< variables with a step
   bool needs_gradient = false;  ///< refuses surveys without derivative (voxels)
   bool needs_objective = true;  ///< false: a plain sweep
+  bool starts = false;          ///< works on from given designs, several if asked
+};
+
+/// How one start of a solver ended.
+struct StartOutcome {
+  std::string origin;          ///< where the start came from: "best so far", "Sobol point 3"
+  std::int64_t first_row = 0;  ///< of its evaluations; this one is the start itself
+  std::int64_t rows = 0;       ///< evaluations made
+  std::int64_t end_row = 0;    ///< what is kept: the best of start, all that was seen and what the solver returned
+  std::string stop;            ///< "converged", "evaluation limit", "time limit" or "failed"
+  std::string message;         ///< what the solver said
+  /// Norm of the projected gradient at the end (see optimality.hpp); NaN where the stage has no derivatives.
+  double optimality = 0;
 };
 
 /// What an optimiser tells after each batch of evaluations ("generation").
 struct Generation {
-  std::int64_t number = 0;                      ///< 0 is the start population
-  std::size_t first_row = 0;                    ///< rows [first_row, table.size()) are new
-  const EvaluationTable* table = nullptr;       ///< all evaluations of this stage so far
-  const std::vector<std::int64_t>* population;  ///< rows that form the population now
-  std::int64_t best_row = -1;                   ///< best by `better`; -1 while nothing is evaluated
+  std::int64_t number = 0;                            ///< 0 is the start population
+  std::size_t first_row = 0;                          ///< rows [first_row, table.size()) are new
+  const EvaluationTable* table = nullptr;             ///< all evaluations of this stage so far
+  const std::vector<std::int64_t>* population;        ///< rows that form the population now
+  std::int64_t best_row = -1;                         ///< best by `better`; -1 while nothing is evaluated
+  const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: the starts that have ended
 };
 
 /// Time limits, signals, checkpoints and the screen live behind this.
@@ -40,16 +54,36 @@ class Monitor {
   virtual ~Monitor() = default;
   /// After each generation. False: stop now (the stage then ends with StopReason::interrupted).
   virtual bool generation(const Generation& generation) = 0;
+  /// Something that the user must be told, one sentence.
+  virtual void warn(const std::string& sentence) = 0;
 };
 
-enum class StopReason { generations, evaluations, target, stall, tolerance, exhausted, interrupted };
+enum class StopReason {
+  generations,
+  evaluations,
+  target,
+  stall,
+  tolerance,
+  exhausted,
+  interrupted,
+  time,
+  failed,
+  starts,  ///< every start has come to its own end
+};
 
 /// "generation limit", ...: the words of the screen and the study file.
 std::string_view words(StopReason reason);
 
 struct StageResult {
   StopReason reason = StopReason::generations;
-  std::int64_t best_row = -1;  ///< row of the stage's table
+  std::int64_t best_row = -1;             ///< row of the stage's table
+  std::vector<StartOutcome> starts = {};  ///< solvers only
+};
+
+/// A design to begin from, and where it comes from.
+struct StartDesign {
+  std::vector<double> design;
+  std::string origin;
 };
 
 struct StageInput {
@@ -57,7 +91,10 @@ struct StageInput {
   Evaluator& evaluator;
   Monitor& monitor;
   std::uint64_t seed = 1;
-  std::vector<std::vector<double>> starts;  ///< designs to begin from; may be empty
+  std::vector<StartDesign> starts;  ///< designs to begin from; may be empty
+  /// A resumed stage: the evaluations on record, which the evaluator serves, and the starts that had ended.
+  const EvaluationTable* recorded = nullptr;
+  std::vector<StartOutcome> recorded_starts = {};
 };
 
 class Optimiser {
@@ -67,13 +104,16 @@ class Optimiser {
   virtual StageResult minimise(const StageInput& input, EvaluationTable& table) const = 0;
   /// Evaluations the stage will make at most (for the estimate before a run).
   virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
+  /// What the stage's evaluations must hold.
+  virtual Detail detail() const { return Detail::enough; }
 };
 
 /// An entry of the catalogue of optimisers.
 struct OptimiserEntry {
   std::string name;
   std::string meaning;  ///< one line
-  Capabilities capabilities;
+  /// May depend on options (the algorithm of a library).
+  Capabilities (*capabilities)(const Options&);
   std::vector<OptionSpec> options;
   std::unique_ptr<Optimiser> (*make)(const Options&, const DesignSpace&);
   /// Fills in the options without value whose default depends on the variables, so that listings show what `make` would

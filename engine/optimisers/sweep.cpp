@@ -87,7 +87,7 @@ class Sweep final : public Optimiser {
     const DesignSpace& space = input.problem.space();
     std::vector<double> centre(space.dimension());
     for (std::size_t i = 0; i < centre.size(); ++i)
-      centre[i] = input.starts.empty() ? space.from_unit(i, 0.5) : space.nearest(i, input.starts.front()[i]);
+      centre[i] = input.starts.empty() ? space.from_unit(i, 0.5) : space.nearest(i, input.starts.front().design[i]);
     append(table, centre);
     bool goes_on = batches.finish_generation();
     for (std::size_t i = 0; i < centre.size(); ++i) {
@@ -143,12 +143,16 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
   return std::make_unique<Sweep>(std::move(levels), factorial);
 }
 
+Capabilities capabilities(const Options&) {
+  Capabilities can;
+  can.max_objectives = std::numeric_limits<std::size_t>::max();
+  can.needs_objective = false;
+  return can;
+}
+
 }  // namespace
 
 OptimiserEntry sweep() {
-  Capabilities capabilities;
-  capabilities.max_objectives = std::numeric_limits<std::size_t>::max();
-  capabilities.needs_objective = false;
   return {"sweep",
           "designs on a grid, one variable at a time or every combination",
           capabilities,

@@ -30,7 +30,7 @@ struct ProblemParts {
   Demand demand;
   std::vector<NamedQuantity> objectives;
   std::vector<NamedQuantity> design_margins;  ///< need no survey: computed first
-  std::vector<NamedQuantity> survey_margins;  ///< made from objectives with min or max
+  std::vector<NamedQuantity> survey_margins;  ///< the others
   std::vector<NamedQuantity> reports;
 };
 
@@ -52,6 +52,7 @@ class DesignProblem final : public Problem {
   const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level ones first
   const std::vector<ReportInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, EvaluationSlot result) const override;
+  std::string no_derivatives() const override { return surveyor_->no_derivatives(); }
 
   const ProblemParts& parts() const { return parts_; }
   /// All parameters of a design given by its variables.
@@ -59,10 +60,15 @@ class DesignProblem final : public Problem {
   /// Evaluates a full parameter vector (a baseline may lie outside the variables' bounds). Computes what it can even
   /// where a design-level margin is violated.
   DesignReport report(std::span<const double> parameters) const;
+  /// Slopes of objectives and margins by any parameters, fixed ones included, laid out as in EvaluationShape::slopes.
+  /// @param by  indices of parameters
+  std::vector<double> slopes(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
-  Status compute(std::span<const double> parameters, Survey<double>& survey, bool always_survey,
-                 EvaluationSlot result) const;
+  Status compute(std::span<const double> parameters, Survey<double>& survey, EvaluationSlot result) const;
+  /// Fills `slopes`; `survey` receives the survey's values.
+  void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> slopes,
+                     Survey<double>& survey) const;
 
   ProblemParts parts_;
   std::unique_ptr<const Surveyor> surveyor_;

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,13 +17,24 @@ enum class Status : std::uint8_t {
   failed = 3,      ///< no usable number came out (NaN or an exception)
 };
 
+/// How much an optimiser needs to know of a design.
+enum class Detail : std::uint8_t {
+  enough,       ///< a design that breaks a design-level margin needs no more
+  complete,     ///< objectives and all margins, whatever holds
+  derivatives,  ///< and the slopes of all of them
+};
+
 /// How many numbers belong to one evaluation.
 struct EvaluationShape {
   std::size_t variables = 0;
   std::size_t objectives = 0;
   std::size_t margins = 0;
   std::size_t reports = 0;
+  Detail detail = Detail::enough;
   bool operator==(const EvaluationShape&) const = default;
+
+  /// Slopes of one evaluation: per objective, then per margin, a smooth value and its derivatives by each variable.
+  std::size_t slopes() const { return detail == Detail::derivatives ? (objectives + margins) * (1 + variables) : 0; }
 };
 
 /// Where one evaluation's results go. Objectives in their own unit and direction (nothing is negated here).
@@ -33,6 +43,8 @@ struct EvaluationSlot {
   std::span<double> margins;  ///< >= 0 holds
   std::span<double> reports;
   Status& status;
+  Detail detail = Detail::enough;
+  std::span<double> slopes = {};  ///< Detail::derivatives only, see EvaluationShape::slopes
 };
 
 /// Evaluations in the order in which they were asked for. Row r of each array belongs to evaluation r.
@@ -50,36 +62,36 @@ class EvaluationTable {
   std::size_t size() const { return status.size(); }
 
   /// Adds `count` rows (designs zero, results NaN, status failed) and returns the first one's index.
-  std::size_t extend(std::size_t count) {
-    const std::size_t first = size(), rows = first + count;
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    designs.resize(rows * shape_.variables);
-    objectives.resize(rows * shape_.objectives, nan);
-    margins.resize(rows * shape_.margins, nan);
-    reports.resize(rows * shape_.reports, nan);
-    status.resize(rows, Status::failed);
-    seconds.resize(rows);
-    return first;
-  }
+  std::size_t extend(std::size_t count);
+  /// Forgets all rows but the first `rows`.
+  void truncate(std::size_t rows) { resize(rows); }
 
   std::span<double> design(std::size_t row) { return {&designs[row * shape_.variables], shape_.variables}; }
   std::span<const double> design(std::size_t row) const { return {&designs[row * shape_.variables], shape_.variables}; }
   std::span<const double> objective_row(std::size_t row) const { return part(objectives, row, shape_.objectives); }
   std::span<const double> margin_row(std::size_t row) const { return part(margins, row, shape_.margins); }
   std::span<const double> report_row(std::size_t row) const { return part(reports, row, shape_.reports); }
+  std::span<const double> slope_row(std::size_t row) const { return part(slopes, row, shape_.slopes()); }
   EvaluationSlot slot(std::size_t row) {
-    return {part(objectives, row, shape_.objectives), part(margins, row, shape_.margins),
-            part(reports, row, shape_.reports), status[row]};
+    return {part(objectives, row, shape_.objectives),
+            part(margins, row, shape_.margins),
+            part(reports, row, shape_.reports),
+            status[row],
+            shape_.detail,
+            part(slopes, row, shape_.slopes())};
   }
 
   std::vector<double> designs;     ///< rows x variables
   std::vector<double> objectives;  ///< rows x objectives
   std::vector<double> margins;     ///< rows x margins
   std::vector<double> reports;     ///< rows x reports
+  std::vector<double> slopes;      ///< rows x shape().slopes()
   std::vector<Status> status;      ///< rows
   std::vector<float> seconds;      ///< rows; evaluation time, not part of what must repeat
 
  private:
+  void resize(std::size_t rows);
+
   EvaluationShape shape_;
 };
 

@@ -12,6 +12,9 @@ class Evaluator {
   /// Evaluates rows [first, table.size()) of `table`, whose designs are set. The result does not depend on how the rows
   /// are shared out. An exception in one design marks that row failed and leaves the others intact.
   virtual void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) = 0;
+  /// Evaluators that serve a record: rows of the table from `row` on are rows [first, end) of the record, in order, and
+  /// those after them new. Others have nothing to do.
+  virtual void follow(std::size_t /*row*/, std::size_t /*first*/, std::size_t /*end*/) {}
 };
 
 /// One design after the other, on the calling thread.

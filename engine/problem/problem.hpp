@@ -45,10 +45,14 @@ class Problem {
 
   /// Evaluates one design (dimension() values in the space's units). Thread-safe. Neither an exception nor a NaN
   /// leaves it unmarked: whatever cannot be used has status `failed`.
+  ///
+  /// result.detail says how much is wanted. Under Detail::enough a broken design-level margin may save the rest.
   virtual void evaluate(std::span<const double> design, EvaluationSlot result) const = 0;
+  /// "" or one sentence saying why there are no derivatives (Detail::derivatives must then not be asked for).
+  virtual std::string no_derivatives() const { return "the problem gives no derivatives"; }
 
-  EvaluationShape shape() const {
-    return {space().dimension(), objectives().size(), margins().size(), reports().size()};
+  EvaluationShape shape(Detail detail = Detail::enough) const {
+    return {space().dimension(), objectives().size(), margins().size(), reports().size(), detail};
   }
 };
 

@@ -25,21 +25,31 @@ struct DesignView {
 class Quantity {
  public:
   virtual ~Quantity() = default;
+  /// What is stored, shown and compared.
   virtual double value(const DesignView<double>& design) const = 0;
+  /// What gradient solvers are told: the value with derivatives, or a smooth stand-in for it (a worst case).
+  virtual Dual4 smooth(const DesignView<Dual4>& design) const = 0;
 };
 
-/// Wraps one generic function `[](const auto& design) { ... }` of a DesignView.
-template <class F>
-std::unique_ptr<const Quantity> make_quantity(F function) {
+/// Wraps generic functions `[](const auto& design) { ... }` of a DesignView: the value, and its smooth stand-in where
+/// the value itself has kinks.
+template <class F, class G>
+std::unique_ptr<const Quantity> make_quantity(F function, G stand_in) {
   class Wrapped final : public Quantity {
    public:
-    explicit Wrapped(F f) : function_(std::move(f)) {}
+    Wrapped(F f, G g) : function_(std::move(f)), smooth_(std::move(g)) {}
     double value(const DesignView<double>& design) const override { return function_(design); }
+    Dual4 smooth(const DesignView<Dual4>& design) const override { return smooth_(design); }
 
    private:
     F function_;
+    G smooth_;
   };
-  return std::make_unique<Wrapped>(std::move(function));
+  return std::make_unique<Wrapped>(std::move(function), std::move(stand_in));
+}
+template <class F>
+std::unique_ptr<const Quantity> make_quantity(F function) {
+  return make_quantity(function, function);
 }
 
 /// What an entry is given when a study asks for it.
@@ -60,21 +70,29 @@ struct ObjectiveEntry {
   std::string (*refusal)(const MechanismInfo&);
   void (*demand)(const EntryContext&, Demand&);  ///< adds what the survey has to compute
   std::unique_ptr<const Quantity> (*make)(const EntryContext&);
+  /// What one with these options computes; none: `meaning`.
+  std::string (*detail)(const EntryContext&) = nullptr;
 };
 
-/// An entry of the catalogue of constraints: pose-level ones set thresholds, design-level ones give a margin.
+/// An entry of the catalogue of constraints: pose-level ones set thresholds, the others give a margin, of the design
+/// alone or of its survey.
 struct ConstraintEntry {
   std::string name;
   std::string meaning;
   bool pose_level = false;
   /// Options may depend on the mechanism (its limits' names).
   std::vector<OptionSpec> (*options)(const MechanismInfo&);
-  std::string (*unit)(const EntryContext&);  ///< design-level only
+  std::string (*unit)(const EntryContext&);  ///< not of pose-level ones
   std::string (*refusal)(const MechanismInfo&);
   /// Pose-level only: thresholds this constraint sets, merged by the reader (the same threshold twice is an error).
   LimitSpec (*limits)(const MechanismInfo&, const Options&);
-  /// Design-level only. Throws std::invalid_argument with a sentence when the options name something unknown.
+  /// Not of pose-level ones. Throws std::invalid_argument with a sentence when the options name something unknown.
   std::unique_ptr<const Quantity> (*make)(const EntryContext&);
+  /// Whether one with these options reads the survey, and what it adds to what the survey has to compute; none: no.
+  bool (*needs_survey)(const EntryContext&) = nullptr;
+  void (*demand)(const EntryContext&, Demand&) = nullptr;
+  /// What one with these options tests; none: `meaning`.
+  std::string (*detail)(const EntryContext&) = nullptr;
 };
 
 }  // namespace pkm

@@ -24,6 +24,28 @@ NamedNumbers read_named_numbers(const ConfigValue& table, std::string_view unit,
   return numbers;
 }
 
+/// [{ name = number, ... }, ...] with the names and units of `fields`.
+std::vector<NamedNumbers> read_list_of_numbers(const ConfigValue& array, const OptionSpec& spec) {
+  std::vector<std::string> names;
+  for (const auto& [name, unit] : spec.fields) names.push_back(name);
+  std::vector<NamedNumbers> list;
+  for (const auto& table : array.elements("a list of tables, [{ name = number, ... }, ...]")) {
+    table.expect_table("a table of numbers, { name = number, ... }").allow(names, "name");
+    NamedNumbers numbers;
+    for (const auto& [name, unit] : spec.fields)
+      if (const auto value = table.find(name)) numbers[name] = value->number(unit);
+    list.push_back(std::move(numbers));
+  }
+  return list;
+}
+
+NamedSettings read_named_settings(const ConfigValue& table) {
+  table.expect_table("a table, { name = number or text, ... }");
+  NamedSettings settings;
+  for (const auto& key : table.keys()) settings[key] = table.find(key)->setting();
+  return settings;
+}
+
 OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
   switch (spec.kind) {
     case OptionKind::integer:
@@ -34,6 +56,10 @@ OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
       return spec.choices.empty() ? value.text("text") : value.word(spec.choices);
     case OptionKind::named_numbers:
       return read_named_numbers(value, spec.unit, spec.lower, spec.upper);
+    case OptionKind::list_of_numbers:
+      return read_list_of_numbers(value, spec);
+    case OptionKind::named_settings:
+      return read_named_settings(value);
     case OptionKind::number:
       break;
   }
@@ -50,6 +76,10 @@ std::string expectation(const OptionSpec& spec) {
       return spec.choices.empty() ? "text" : "one of " + join(spec.choices);
     case OptionKind::named_numbers:
       return "a table of numbers, { name = number, ... }";
+    case OptionKind::list_of_numbers:
+      return "a list of tables, [{ name = number, ... }, ...]";
+    case OptionKind::named_settings:
+      return "a table, { name = number or text, ... }";
     case OptionKind::number:
       break;
   }
@@ -93,6 +123,13 @@ std::int64_t ConfigValue::integer(double lower, double upper) const {
 bool ConfigValue::flag() const {
   if (value_->kind != TomlValue::Kind::flag) throw error("true or false");
   return value_->flag;
+}
+
+Setting ConfigValue::setting() const {
+  using Kind = TomlValue::Kind;
+  if (value_->kind == Kind::integer) return value_->integer;
+  if (value_->kind == Kind::number && std::isfinite(value_->number)) return value_->number;
+  return text("a finite number, an integer or text");
 }
 
 const std::string& ConfigValue::text(std::string_view expected) const {

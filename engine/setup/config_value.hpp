@@ -35,6 +35,8 @@ class ConfigValue {
                        double upper = std::numeric_limits<double>::infinity()) const;
   bool flag() const;
   const std::string& text(std::string_view expected) const;
+  /// A number, an integer or text, whichever it is.
+  Setting setting() const;
   /// Text that is one of `choices`.
   const std::string& word(const std::vector<std::string>& choices) const;
   /// The elements of an array: `path[1]`, `path[2]`, ...

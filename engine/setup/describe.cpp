@@ -50,24 +50,25 @@ void write_parameters(std::ostream& out, const Study& study) {
 std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
   const auto unit = [](int i) { return std::string(i == 3 ? "rad" : "m"); };
+  const Sweep sweep = sweep_of(info, plan);
   std::vector<Row> rows;
   if (plan.method == Method::voxels) {
     std::string cells, box;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string separator = k == 0 ? "" : ", ";
-      const int swept = info.swept[k];
+      const int swept = sweep.swept[k];
       cells += separator + coordinate(swept) + " = " + std::to_string(plan.cells[k]);
       if (plan.box)
         box += separator + coordinate(swept) + " = " + range((*plan.box)[k][0], (*plan.box)[k][1], unit(swept));
     }
-    if (plan.held_cells > 0) cells += ", " + coordinate(info.held) + " = " + std::to_string(plan.held_cells);
+    if (plan.held_cells > 0) cells += ", " + coordinate(sweep.held) + " = " + std::to_string(plan.held_cells);
     rows = {{"method", "voxels"}, {"cells", cells}, {"box", plan.box ? box : "derived from each design"}};
   } else {
     rows = {{"method", "columns"}};
     std::string nodes;
     std::size_t k = 0;
-    for (const int swept : info.swept)
-      if (swept != info.column)
+    for (const int swept : sweep.swept)
+      if (swept != sweep.column)
         nodes += (nodes.empty() ? "" : ", ") + coordinate(swept) + " = " + std::to_string(plan.nodes[k++]);
     if (plan.nodes[0] > 0)
       rows.push_back({"nodes", nodes + " per piece"});
@@ -77,8 +78,8 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) 
   using Kind = HeldCoordinate::Kind;
   const std::string held = plan.held.kind == Kind::middle       ? "middle of each design"
                            : plan.held.kind == Kind::integrated ? "integrated over its range"
-                                                                : with_unit(plan.held.value, unit(info.held));
-  rows.push_back({coordinate(info.held), held});
+                                                                : with_unit(plan.held.value, unit(sweep.held));
+  rows.push_back({coordinate(sweep.held), held});
   return rows;
 }
 

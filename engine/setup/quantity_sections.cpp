@@ -29,9 +29,7 @@ std::string entry_name(const ConfigValue& table, const std::string& type, const 
 }
 
 /// Adds what an entry needs to the demands of those before it. All samples share one characteristic length.
-void add_demand(const ConfigValue& table, const ObjectiveEntry& entry, const EntryContext& context, Demand& demand) {
-  Demand own;
-  entry.demand(context, own);
+void add_demand(const ConfigValue& table, const Demand& own, Demand& demand) {
   if (own.conditioning && demand.conditioning && own.characteristic_length != demand.characteristic_length)
     throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
   if (own.conditioning) demand = own;
@@ -44,8 +42,11 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
     throw table.find("type")->refusal(reason);
   const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options};
   try {
-    add_demand(table, entry, context, draft.parts.demand);
-    return {name, entry.unit(context), entry.meaning, entry.direction, entry.make(context), {}, {}};
+    Demand own;
+    entry.demand(context, own);
+    add_demand(table, own, draft.parts.demand);
+    const std::string meaning = entry.detail ? entry.detail(context) : entry.meaning;
+    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), {}, {}};
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());
   }
@@ -96,7 +97,8 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
   draft.parts.survey_margins.push_back(std::move(made));
 }
 
-void read_design_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
+/// A constraint that gives a margin, of the design alone or of its survey.
+void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
   auto specs = entry.options(draft.info());
   allow_options(table, {"type", "name"}, specs);
   if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
@@ -109,17 +111,22 @@ void read_design_constraint(const ConfigValue& table, const ConstraintEntry& ent
   const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options};
   NamedQuantity made;
   made.name = entry_name(table, entry.name, draft.study.constraints);
-  made.meaning = entry.meaning;
+  bool after_survey = false;
   try {
     made.unit = entry.unit(context);
     specs = with_entry_unit(std::move(specs), made.unit);
     options = read_options(table, specs);
     made.quantity = entry.make(context);
+    made.meaning = entry.detail ? entry.detail(context) : entry.meaning;
+    after_survey = entry.needs_survey && entry.needs_survey(context);
+    Demand own;
+    if (entry.demand) entry.demand(context, own);
+    add_demand(table, own, draft.parts.demand);
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());
   }
   draft.study.constraints.push_back({entry.name, made.name, "margin >= 0, " + in_unit(made.unit), specs, options});
-  draft.parts.design_margins.push_back(std::move(made));
+  (after_survey ? draft.parts.survey_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
 void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
@@ -176,7 +183,7 @@ void read_quantities(const ConfigValue& root, StudyDraft& draft) {
   for_constraints(root, draft, false,
                   [&](const ConfigValue& table, const ConstraintEntry* entry, const std::string& type) {
                     if (entry)
-                      read_design_constraint(table, *entry, draft);
+                      read_margin_constraint(table, *entry, draft);
                     else
                       read_bounded_objective(table, *find_named(draft.catalogues.objectives, type), draft);
                   });

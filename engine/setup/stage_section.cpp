@@ -2,15 +2,27 @@
 
 #include <stdexcept>
 
+#include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
 namespace {
 
+/// "" or why the surveys of the study have no derivatives.
+std::string no_derivatives(const ProblemParts& parts) {
+  if (parts.plan.method == Method::voxels) return voxels_have_no_derivatives();
+  try {
+    return parts.mechanism->prepare(parts.plan, parts.demand)->no_derivatives();
+  } catch (const std::invalid_argument&) {
+    return "";  // the survey itself is refused, which is told when the problem is made
+  }
+}
+
 /// "" or one sentence naming what the optimiser can do and what the study asks for.
-std::string refusal_of(const OptimiserEntry& entry, const ProblemParts& parts) {
-  const Capabilities& can = entry.capabilities;
-  const std::string who = "the optimiser " + entry.name + " ";
+std::string refusal_of(const OptimiserEntry& entry, const Options& options, const ProblemParts& parts) {
+  const Capabilities can = entry.capabilities(options);
+  const std::string who = "the optimiser " + entry.name + " " +
+                          (options.has("algorithm") ? "with the algorithm " + options.word("algorithm") + " " : "");
   if (parts.space.dimension() == 0) return who + "needs variables, but the study's [variables] is empty";
   if (can.needs_objective && parts.objectives.empty())
     return who + "needs an objective, but the study has no [[objective]]";
@@ -24,10 +36,24 @@ std::string refusal_of(const OptimiserEntry& entry, const ProblemParts& parts) {
   for (const auto& variable : parts.space.variables())
     if (!can.discrete && variable.step > 0)
       return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
-  if (can.needs_gradient && parts.plan.method == Method::voxels)
-    return who +
-           "needs derivatives, but the study surveys voxels, whose sums have none; take workspace.method = \"columns\"";
+  if (can.needs_gradient)
+    if (const std::string reason = no_derivatives(parts); !reason.empty())
+      return who + "needs derivatives, but " + reason;
   return "";
+}
+
+/// The designs that a stage is to start from lie in the space that it searches.
+void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpace& space) {
+  for (const OptionSpec& spec : stage.specs) {
+    if (spec.kind != OptionKind::list_of_numbers || !table.has(spec.name)) continue;
+    for (const NamedNumbers& design : stage.options.list(spec.name))
+      for (const Variable& v : space.variables())
+        if (const auto given = design.find(v.name);
+            given != design.end() && !(given->second >= v.lower && given->second <= v.upper))
+          throw table.find(spec.name)->refusal(v.name + " = " + with_unit(given->second, v.unit) +
+                                               " lies outside the variable's bounds " + with_unit(v.lower, v.unit) +
+                                               " to " + with_unit(v.upper, v.unit));
+  }
 }
 
 }  // namespace
@@ -39,16 +65,20 @@ void read_stages(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& table : tables) {
     const OptimiserEntry& entry = *find_named(draft.catalogues.optimisers, type_of(table, "optimiser", names));
     allow_options(table, {"optimiser"}, entry.options);
-    if (const std::string reason = refusal_of(entry, draft.parts); !reason.empty())
-      throw table.find("optimiser")->refusal(reason);
     // The unit of the objective that an optimiser works on; of several there is no one unit.
     const auto& objectives = draft.parts.objectives;
     auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");
+    for (auto& spec : specs)
+      if (spec.kind == OptionKind::list_of_numbers)
+        for (const Variable& v : draft.parts.space.variables()) spec.fields.emplace_back(v.name, v.unit);
     Stage stage{&entry, read_options(table, specs), nullptr, table.place().line, {}};
+    if (const std::string reason = refusal_of(entry, stage.options, draft.parts); !reason.empty())
+      throw table.find("optimiser")->refusal(reason);
     if (entry.resolve) entry.resolve(stage.options, draft.parts.space);
     for (auto& spec : specs)
       if (!table.has(spec.name) && stage.options.has(spec.name)) spec.initial = stage.options.values().at(spec.name);
     stage.specs = std::move(specs);
+    check_designs(table, stage, draft.parts.space);
     try {
       stage.optimiser = entry.make(stage.options, draft.parts.space);
     } catch (const std::invalid_argument& reason) {

@@ -77,11 +77,13 @@ void warn_of_empty_workspace(Study& study) {
   parts.mechanism->prepare(plan, {})->survey(design, survey);
   if (survey.volume > 0) return;
   using Kind = HeldCoordinate::Kind;
-  const std::string& held = info.coordinates[static_cast<std::size_t>(info.held)];
-  const std::string where = plan.held.kind == Kind::value ? "on the plane " + held + " = " +
-                                                                with_unit(plan.held.value, info.held == 3 ? "rad" : "m")
-                            : plan.held.kind == Kind::middle ? "on its middle plane"
-                                                             : "at any " + held;
+  const int coordinate = sweep_of(info, plan).held;
+  const std::string& held = info.coordinates[static_cast<std::size_t>(coordinate)];
+  const std::string where =
+      plan.held.kind == Kind::value
+          ? "on the plane " + held + " = " + with_unit(plan.held.value, coordinate == 3 ? "rad" : "m")
+      : plan.held.kind == Kind::middle ? "on its middle plane"
+                                       : "at any " + held;
   study.warnings.push_back("the workspace of " + what + " is empty: no pose " + where +
                            (plan.box ? " in the box" : "") + " is feasible");
 }

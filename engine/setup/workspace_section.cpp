@@ -18,17 +18,21 @@ constexpr std::int64_t kMostNodes = 200;
 
 std::string unit_of_coordinate(int coordinate) { return coordinate == 3 ? "rad" : "m"; }
 
-std::array<std::string, 3> swept_names(const MechanismInfo& info) {
+const std::string& name_of(const MechanismInfo& info, int coordinate) {
+  return info.coordinates[static_cast<std::size_t>(coordinate)];
+}
+
+std::array<std::string, 3> swept_names(const MechanismInfo& info, const SurveyPlan& plan) {
   std::array<std::string, 3> names;
-  for (std::size_t k = 0; k < 3; ++k) names[k] = info.coordinates[static_cast<std::size_t>(info.swept[k])];
+  for (std::size_t k = 0; k < 3; ++k) names[k] = name_of(info, sweep_of(info, plan).swept[k]);
   return names;
 }
 
 void read_cells(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
-  const auto swept = swept_names(info);
+  const auto swept = swept_names(info, plan);
   std::vector<std::string> known(swept.begin(), swept.end());
   const bool integrated = plan.held.kind == HeldCoordinate::Kind::integrated;
-  if (integrated) known.push_back(info.coordinates[static_cast<std::size_t>(info.held)]);
+  if (integrated) known.push_back(name_of(info, sweep_of(info, plan).held));
   table.expect_table("a table of cell numbers for " + join(known)).allow(known, "coordinate");
   const auto read = [&table](const std::string& name) {
     return table.at(name, "a number of cells").integer(1, kMostCellsPerAxis);
@@ -48,12 +52,12 @@ std::string angle_expectation(const ConfigValue& written, double value) {
 }
 
 void read_box(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
-  const auto names = swept_names(info);
+  const auto names = swept_names(info, plan);
   const std::vector<std::string> known(names.begin(), names.end());
   table.expect_table("a table of ranges [from, to] for " + join(known)).allow(known, "coordinate");
   plan.box.emplace();
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::string expected = "a range [from, to]", unit = unit_of_coordinate(info.swept[k]);
+    const std::string expected = "a range [from, to]", unit = unit_of_coordinate(sweep_of(info, plan).swept[k]);
     const ConfigValue range = table.at(names[k], expected);
     const auto ends = range.elements(expected);
     if (ends.size() != 2) throw range.error(expected);
@@ -68,32 +72,51 @@ void read_box(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& p
 
 void read_nodes(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
   std::vector<std::string> names;
-  for (const int coordinate : info.swept)
-    if (coordinate != info.column) names.push_back(info.coordinates[static_cast<std::size_t>(coordinate)]);
+  const Sweep sweep = sweep_of(info, plan);
+  for (const int coordinate : sweep.swept)
+    if (coordinate != sweep.column) names.push_back(name_of(info, coordinate));
   table.expect_table("a table of node numbers for " + join(names)).allow(names, "coordinate");
   for (std::size_t k = 0; k < plan.nodes.size(); ++k)
     plan.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer(1, kMostNodes));
 }
 
 /// The key of the coordinate that is not swept: "middle", "integrated" or a number.
-HeldCoordinate read_held(const ConfigValue& value, const MechanismInfo& info) {
+HeldCoordinate read_held(const ConfigValue& value, const MechanismInfo& info, int coordinate) {
   using Kind = HeldCoordinate::Kind;
   const std::string choices =
       info.held_can_integrate ? "\"middle\", \"integrated\" or a number in " : "\"middle\" or a number in ";
-  const std::string unit = unit_of_coordinate(info.held), expected = choices + unit;
+  const std::string unit = unit_of_coordinate(coordinate), expected = choices + unit;
   if (value.is_text()) {
     const std::string& word = value.text(expected);
-    if (word == "middle") return {Kind::middle, 0};
-    if (word == "integrated" && info.held_can_integrate) return {Kind::integrated, 0};
+    if (word == "middle") return {Kind::middle, 0, coordinate};
+    if (word == "integrated" && info.held_can_integrate) return {Kind::integrated, 0, coordinate};
     if (word == "integrated")
       throw value.refusal("the mechanism " + info.name + " cannot integrate its workspace over " +
-                          info.coordinates[static_cast<std::size_t>(info.held)] + "; give " + expected);
+                          name_of(info, coordinate) + "; give " + expected);
   }
+  double number = 0;
   try {
-    return {Kind::value, value.number(unit)};
+    number = value.number(unit);
   } catch (const ConfigError&) {
     const std::string word = value.is_text() ? nearest_name(value.text(""), {"middle", "integrated"}) : "";
     throw value.error(expected, word);
+  }
+  if (unit == "rad" && std::fabs(number) > kPi) throw value.error(angle_expectation(value, number));
+  return {Kind::value, number, coordinate};
+}
+
+/// The one coordinate, of those that the mechanism's surveys can hold, that the study names.
+void read_held_coordinate(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
+  std::string first;
+  for (const Sweep& sweep : sweeps_of(info)) {
+    const std::string& name = name_of(info, sweep.held);
+    const auto value = table.find(name);
+    if (!value) continue;
+    if (!first.empty())
+      throw value->refusal("a survey holds one coordinate and sweeps the others, but both " + first + " and " + name +
+                           " are given");
+    first = name;
+    plan.held = read_held(*value, info, sweep.held);
   }
 }
 
@@ -117,9 +140,10 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   const auto table = root.find("workspace");
   if (!table) return;
 
-  const std::string& held = info.coordinates[static_cast<std::size_t>(info.held)];
-  table->expect_table("a table [workspace]")
-      .allow({"method", "tolerance", "nodes", "cells", "box", held, "limits"}, "key");
+  std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box"};
+  for (const Sweep& sweep : sweeps_of(info)) keys.push_back(name_of(info, sweep.held));
+  keys.push_back("limits");
+  table->expect_table("a table [workspace]").allow(keys, "key");
   if (const auto method = table->find("method"))
     plan.method = method->word({"columns", "voxels"}) == "voxels" ? Method::voxels : Method::columns;
   const bool voxels = plan.method == Method::voxels;
@@ -136,8 +160,8 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
       throw table->find("nodes")->refusal("either tolerance (" + tolerance->line() +
                                           ") or nodes set the accuracy; give one of them");
   }
+  read_held_coordinate(*table, info, plan);  // decides which coordinates are swept
   if (const auto nodes = table->find("nodes")) read_nodes(*nodes, info, plan);
-  if (const auto value = table->find(held)) plan.held = read_held(*value, info);
   if (voxels) {
     plan.cells = kPaperCells;
     if (plan.held.kind == HeldCoordinate::Kind::integrated) plan.held_cells = kHeldCells;

@@ -44,7 +44,7 @@ void seal(std::string& file, int schema) {
   file.replace(0, kSealBytes, make_seal(schema, file.size() - kSealBytes, hash_of(file)));
 }
 
-void verify_seal(const std::string& file, const std::string& path, int newest_schema) {
+int verify_seal(const std::string& file, const std::string& path, int newest_schema) {
   if (file.empty()) throw StorageError(path + ": the file is empty");
   if (file.compare(0, kMark.size(), kMark) != 0) {
     if (std::string_view(kMark).starts_with(file)) throw StorageError(path + ": the file is truncated");
@@ -69,6 +69,7 @@ void verify_seal(const std::string& file, const std::string& path, int newest_sc
                        " bytes)");
   if (present > bytes || hash_of(file) != hash)
     throw StorageError(path + ": the file is damaged or was changed by another program (its checksum differs)");
+  return schema;
 }
 
 }  // namespace pkm

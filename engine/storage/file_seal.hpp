@@ -1,7 +1,7 @@
 // The block of 512 bytes in front of a study's HDF5 data: format mark, schema, size and checksum, as text that `head`
 // shows:
 //
-//   pkmopt-study schema=1 bytes=51200 xxh64=0123456789abcdef
+//   pkmopt-study schema=2 bytes=51200 xxh64=0123456789abcdef
 //
 // `bytes` and `xxh64` are size and XXH64 (seed 0) of all that follows the block.
 #pragma once
@@ -19,8 +19,8 @@ bool starts_hdf5(const std::string& file, std::size_t at);
 /// Fills the first kSealBytes of `file`, whose remainder is complete.
 void seal(std::string& file, int schema);
 
-/// Verifies the seal of the bytes read from `path`. Throws StorageError with a sentence for each way in which they are
-/// not a sound study of at most this schema.
-void verify_seal(const std::string& file, const std::string& path, int newest_schema);
+/// Verifies the seal of the bytes read from `path` and returns their schema. Throws StorageError with a sentence for
+/// each way in which they are not a sound study of at most this schema.
+int verify_seal(const std::string& file, const std::string& path, int newest_schema);
 
 }  // namespace pkm

@@ -292,7 +292,8 @@ struct ImageReader::Parts {
   Handle file;
 };
 
-ImageReader::ImageReader(const std::string& file) : parts_(std::make_unique<Parts>(file)) {}
+ImageReader::ImageReader(const std::string& file, int schema)
+    : parts_(std::make_unique<Parts>(file)), schema_(schema) {}
 ImageReader::~ImageReader() = default;
 
 void ImageReader::group(const std::string& path, const std::string&) const {

@@ -62,10 +62,12 @@ class ImageReader {
   static constexpr bool kReads = true;
   static constexpr bool kDerives = false;
 
-  explicit ImageReader(const std::string& file);
+  /// @param schema  of the layout, for whoever describes it
+  ImageReader(const std::string& file, int schema);
   ~ImageReader();
   void group(const std::string& path, const std::string& description) const;  ///< must be there
   bool has(const std::string& path) const;
+  int schema() const { return schema_; }
   template <class T>
   void attribute(const std::string& group, const std::string& name, T& value, Repeats = Repeats::yes) const;
   /// @param extent  must equal the dataset's; a first size of kAnyRows takes what is there
@@ -75,6 +77,7 @@ class ImageReader {
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
+  int schema_;
 };
 
 }  // namespace pkm

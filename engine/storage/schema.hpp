@@ -39,10 +39,79 @@ void describe_problem(Archive& archive, Study& study) {
           Field{"meaning", &ReportInfo::meaning, "1", "Meaning"});
 }
 
+/// How much an evaluation holds. Schema 1 had one answer only.
+template <class Archive>
+Detail read_detail(Archive& archive, const std::string& group) {
+  Detail detail = Detail::enough;
+  if (archive.schema() > 1) choice(archive, group, "detail", detail, kDetailWords);
+  return detail;
+}
+
+/// "workspace-ratio", "d workspace-ratio / d a", ...
+template <class Problem>
+std::vector<std::string> slope_columns(const Problem& problem) {
+  std::vector<std::string> columns;
+  const auto add = [&](const std::string& name) {
+    columns.push_back(name);
+    for (const auto& v : problem.variables) columns.push_back("d " + name + " / d " + v.name);
+  };
+  for (const auto& o : problem.objectives) add(o.name);
+  for (const auto& m : problem.margins) add(m.name);
+  return columns;
+}
+
+template <class Problem>
+std::vector<std::string> slope_units(const Problem& problem) {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& unit) {
+    all.push_back(unit);
+    for (const auto& v : problem.variables) all.push_back("(" + unit + ")/(" + v.unit + ")");
+  };
+  for (const auto& o : problem.objectives) add(o.unit);
+  for (const auto& m : problem.margins) add(m.unit);
+  return all;
+}
+
+template <class Archive, class Starts>
+void describe_starts(Archive& archive, const std::string& group, Starts& starts) {
+  records(archive, group, "Starts of the solver that have ended", starts,
+          Field{"origin", &StartOutcome::origin, "1", "Where the start came from"},
+          Field{"first_row", &StartOutcome::first_row, "1", "First row (0-based) in evaluations: the start itself"},
+          Field{"rows", &StartOutcome::rows, "1", "Evaluations made"},
+          Field{"end_row", &StartOutcome::end_row, "1", "Row of what is kept: the best of the start's evaluations"},
+          Field{"stop", &StartOutcome::stop, "1", "converged, evaluation limit, time limit or failed"},
+          Field{"message", &StartOutcome::message, "1", "What the solver said"},
+          Field{"optimality", &StartOutcome::optimality, "1",
+                "First-order optimality at the end, relative to the objective; NaN: no derivatives"});
+}
+
+template <class Archive, class Record>
+void describe_optimality(Archive& archive, const std::string& group, Record& record) {
+  archive.group(group, "First-order optimality of the stage's best design");
+  archive.attribute(group, "optimality", record.optimality);
+  records(archive, group + "/active", "Bounds and constraints that hold it back", record.active,
+          Field{"name", &ActiveRecord::name, "1", "Variable or constraint"},
+          Field{"kind", &ActiveRecord::kind, "1", "lower bound, upper bound or constraint"},
+          Field{"multiplier", &ActiveRecord::multiplier, "objective/unit",
+                "Gain of the objective per unit by which it is moved out of the way"},
+          Field{"unit", &ActiveRecord::unit, "1", "Unit of what is moved"});
+  records(archive, group + "/sensitivity", "What a change of each parameter does to the objective",
+          record.sensitivities, Field{"parameter", &SensitivityRecord::parameter, "1", "Name"},
+          Field{"unit", &SensitivityRecord::unit, "1", "Unit of the parameter"},
+          Field{"as_built", &SensitivityRecord::as_built, "objective/unit", "The rest of the design as it is"},
+          Field{"reoptimised", &SensitivityRecord::reoptimised, "objective/unit",
+                "When the variables follow; NaN for variables"});
+}
+
 template <class Archive, class Problem, class Table>
 void describe_evaluations(Archive& archive, const std::string& group, const Problem& problem, Table& table) {
   archive.group(group, "Every evaluation of the stage, one row each, in the order in which it was asked for");
-  if constexpr (Archive::kReads) table = EvaluationTable(problem.shape());
+  if constexpr (Archive::kReads) table = EvaluationTable(problem.shape(read_detail(archive, group)));
+  const EvaluationShape shape = table.shape();
+  if constexpr (!Archive::kReads) {
+    Detail detail = shape.detail;
+    choice(archive, group, "detail", detail, kDetailWords);
+  }
   const Leaf status{group + "/status", "0 feasible, 1 infeasible, 2 rejected before the survey, 3 failed", {"1"}, {}};
   std::vector<std::uint8_t> codes;
   if constexpr (!Archive::kReads)
@@ -62,6 +131,10 @@ void describe_evaluations(Archive& archive, const std::string& group, const Prob
   matrix("objective", "Objectives, in their own direction; NaN: not computed", problem.objectives, table.objectives);
   matrix("margin", "Margins, >= 0 holds; NaN: not computed", problem.margins, table.margins);
   matrix("report", "Reports; NaN: not computed", problem.reports, table.reports);
+  if (shape.detail == Detail::derivatives)
+    archive.array(Leaf{group + "/slope", "Per objective, then per margin: smooth value, derivatives by each variable",
+                       slope_units(problem), slope_columns(problem)},
+                  table.slopes, {rows, shape.slopes()});
   archive.array(Leaf{group + "/seconds", "Evaluation time", {"s"}, {}, Repeats::no}, table.seconds, {rows});
 }
 
@@ -113,6 +186,13 @@ void describe_stages(Archive& archive, Study& study) {
                   {kAnyRows});
     describe_evaluations(archive, group + "/evaluations", study.problem, stage.table);
     describe_generations(archive, group, stage.generations, stage.table.size());
+    if constexpr (Archive::kReads) {
+      if (archive.has(group + "/starts")) describe_starts(archive, group + "/starts", stage.starts);
+    } else if (!stage.starts.empty()) {
+      describe_starts(archive, group + "/starts", stage.starts);
+    }
+    if (present(archive, group + "/optimality", stage.optimality))
+      describe_optimality(archive, group + "/optimality", *stage.optimality);
   }
 }
 
@@ -210,6 +290,7 @@ void describe(Archive& archive, Study& study) {
   archive.attribute("/", "updated", study.updated, Repeats::no);
   choice(archive, "/", "state", study.state, kStateWords);
   archive.attribute("/", "seconds", study.seconds, Repeats::no);
+  if constexpr (Archive::kDerives) archive.attribute("/", "reproducible", study.reproducible());
 
   if constexpr (Archive::kReads) {
     std::vector<std::string> text;
@@ -222,6 +303,11 @@ void describe(Archive& archive, Study& study) {
           Field{"stage", &Extension::stage, "1", "Stage, 0 is the first"},
           Field{"limit", &Extension::limit, "1", "generations, evaluations or time"},
           Field{"value", &Extension::value, "1 or s", "New limit"});
+  bool notes = true;
+  if constexpr (Archive::kReads) notes = archive.schema() > 1;
+  if (notes)
+    archive.array(Leaf{"/notes", "What happened to the study, in sentences", {"1"}, {}, Repeats::no}, study.notes,
+                  {kAnyRows});
   describe_problem(archive, study);
   describe_stages(archive, study);
   describe_best(archive, study);

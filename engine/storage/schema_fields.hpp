@@ -15,6 +15,7 @@ namespace pkm::schema {
 
 inline constexpr std::array<const char*, 2> kDirectionWords{"minimise", "maximise"};
 inline constexpr std::array<const char*, 3> kStateWords{"running", "interrupted", "finished"};
+inline constexpr std::array<const char*, 3> kDetailWords{"enough", "complete", "derivatives"};
 inline constexpr std::array<const char*, 4> kStatusWords{"feasible", "infeasible", "rejected", "failed"};
 
 template <class Enum, std::size_t n>

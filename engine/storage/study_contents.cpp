@@ -18,6 +18,13 @@ std::int64_t StudyContents::evaluations() const {
   return static_cast<std::int64_t>(count);
 }
 
+bool StudyContents::reproducible() const {
+  for (const StageRecord& stage : stages)
+    for (const StartOutcome& start : stage.starts)
+      if (start.stop == words(StopReason::time)) return false;
+  return true;
+}
+
 std::string words(StudyState state) { return schema::kStateWords[static_cast<std::size_t>(state)]; }
 
 }  // namespace pkm

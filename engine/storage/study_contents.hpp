@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "engine/core/parameter.hpp"
+#include "engine/optimisers/optimiser.hpp"
 #include "engine/problem/problem.hpp"
 #include "engine/workspace/survey.hpp"
 
 namespace pkm {
 
 /// Version of the file's layout. A file of a newer one is refused by name.
-inline constexpr int kStudySchema = 1;
+inline constexpr int kStudySchema = 2;
 
 /// One parameter of the study's mechanism, in the mechanism's order.
 struct ParameterRecord {
@@ -34,7 +35,9 @@ struct ProblemRecord {
   std::vector<MarginInfo> margins;
   std::vector<ReportInfo> reports;
 
-  EvaluationShape shape() const { return {variables.size(), objectives.size(), margins.size(), reports.size()}; }
+  EvaluationShape shape(Detail detail = Detail::enough) const {
+    return {variables.size(), objectives.size(), margins.size(), reports.size(), detail};
+  }
 };
 
 /// A limit that `pkmopt resume` changed after the study was begun. Replay needs it, because the TOML text stays as is.
@@ -59,6 +62,29 @@ struct GenerationRecords {
   std::span<const std::int64_t> population_of(std::size_t g) const;
 };
 
+/// A bound or constraint that holds a design back.
+struct ActiveRecord {
+  std::string name;
+  std::string kind;       ///< "lower bound", "upper bound" or "constraint"
+  double multiplier = 0;  ///< gain of the objective per unit by which it is moved out of the way
+  std::string unit;       ///< of what is moved
+};
+
+/// What a change of one parameter does to the objective.
+struct SensitivityRecord {
+  std::string parameter;
+  std::string unit;
+  double as_built = 0;     ///< d objective / d parameter, the rest of the design as it is
+  double reoptimised = 0;  ///< the same when the variables follow (fixed parameters; NaN for variables)
+};
+
+/// First-order optimality of a stage's best design.
+struct OptimalityRecord {
+  double optimality = 0;  ///< see optimality.hpp
+  std::vector<ActiveRecord> active;
+  std::vector<SensitivityRecord> sensitivities;  ///< all parameters, in the mechanism's order
+};
+
 /// One optimiser's part of the study.
 struct StageRecord {
   std::string optimiser;             ///< "ga"
@@ -68,6 +94,8 @@ struct StageRecord {
   bool finished = false;
   std::string stop;  ///< why it ended, in words; "" while it runs
   std::int64_t best_row = -1;
+  std::vector<StartOutcome> starts;            ///< solvers: the starts that have ended
+  std::optional<OptimalityRecord> optimality;  ///< stages with derivatives, once finished
 };
 
 /// One design, evaluated with everything that the problem asks for.
@@ -134,9 +162,12 @@ struct StudyContents {
   std::vector<StageRecord> stages;
   BestRow best;
   std::optional<FinalRecord> final;
+  std::vector<std::string> notes;  ///< sentences on what happened to the study; not part of what must repeat
 
   /// Evaluations of all stages.
   std::int64_t evaluations() const;
+  /// False where a start of a solver was ended by the clock: another run may end it elsewhere.
+  bool reproducible() const;
 };
 
 /// Compares everything that a resumed run must repeat bit for bit: all but times, machine, program and the TOML file's

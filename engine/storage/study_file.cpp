@@ -37,6 +37,13 @@ void check_indices(const StudyContents& study) {
         generations.best_row.size() == generations.size() && generations.population_first.size() == generations.size(),
         group, "generations have arrays of different lengths");
     require(is_row_or_none(stage.best_row, rows), group, "best_row is no row of evaluations");
+    std::int64_t next = 0;
+    for (const StartOutcome& start : stage.starts) {
+      require(start.first_row == next && start.rows > 0 && start.rows <= static_cast<std::int64_t>(rows) - next, group,
+              "starts do not follow one another within evaluations");
+      next += start.rows;
+      require(start.end_row >= start.first_row && start.end_row < next, group, "a start's end is not among its rows");
+    }
     require(ascends(generations.first_row, rows), group, "first_row does not ascend within evaluations");
     require(ascends(generations.population_first, generations.population.size()), group,
             "population_first does not ascend within population");
@@ -72,16 +79,15 @@ void write_study(const std::string& path, const StudyContents& contents) {
 
 StudyContents read_study(const std::string& path) {
   const std::string bytes = read_file(path);
-  verify_seal(bytes, path, kStudySchema);
+  const int schema = verify_seal(bytes, path, kStudySchema);
   try {
     StudyContents contents;
-    const ImageReader image(bytes);
+    const ImageReader image(bytes, schema);
     schema::describe(image, contents);
     check_indices(contents);
     return contents;
   } catch (const ImageError& error) {
-    throw StorageError(path + ": not laid out as schema " + std::to_string(kStudySchema) + " says (" + error.what() +
-                       ")");
+    throw StorageError(path + ": not laid out as schema " + std::to_string(schema) + " says (" + error.what() + ")");
   }
 }
 

@@ -15,6 +15,15 @@ void check_limit(const Stage& stage, const std::string& limit, double value) {
   if (!(value <= option->upper)) throw ConfigError(place, shortest(value), "at most " + shortest(option->upper));
 }
 
+/// What a limit on evaluations counts: those of the stage, or of one start of a solver.
+double evaluations_done(const StageRecord& stage) {
+  const std::size_t all = stage.table.size();
+  if (stage.starts.empty()) return static_cast<double>(all);
+  std::int64_t most = static_cast<std::int64_t>(all) - stage.starts.back().first_row - stage.starts.back().rows;
+  for (const StartOutcome& start : stage.starts) most = std::max(most, start.rows);
+  return static_cast<double>(most);
+}
+
 }  // namespace
 
 void request_extension(const Study& study, StudyContents& contents, const ExtensionRequest& request) {
@@ -29,7 +38,7 @@ void request_extension(const Study& study, StudyContents& contents, const Extens
     contents.extensions.push_back({last, limit, value});
   };
   const double generations = begun ? static_cast<double>(contents.stages.back().generations.size()) - 1 : 0;
-  const double evaluations = begun ? static_cast<double>(contents.stages.back().table.size()) : 0;
+  const double evaluations = begun ? evaluations_done(contents.stages.back()) : 0;
   if (request.evaluations) set("evaluations", static_cast<double>(*request.evaluations), evaluations);
   if (request.generations) set("generations", static_cast<double>(*request.generations), generations);
   const auto& options = study.stages.back().entry->options;

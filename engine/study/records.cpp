@@ -1,11 +1,15 @@
 #include "engine/study/records.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/optimisers/optimality.hpp"
 #include "engine/study/machine.hpp"
 
 namespace pkm {
@@ -77,7 +81,7 @@ SurveyPlan picture_plan(const SurveyPlan& plan) {
     picture.cells = {32, 34, 60};
     picture.box.reset();
   }
-  if (plan.held.kind == HeldCoordinate::Kind::integrated) picture.held = {};
+  if (plan.held.kind == HeldCoordinate::Kind::integrated) picture.held.kind = HeldCoordinate::Kind::middle;
   return picture;
 }
 
@@ -102,11 +106,25 @@ std::vector<std::string> active_sentences(const DesignProblem& problem, const De
   return sentences;
 }
 
+ProblemRecord problem_record(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const MechanismInfo& info = parts.mechanism->info();
+  ProblemRecord p;
+  p.mechanism = info.name;
+  for (std::size_t i = 0; i < info.parameters.size(); ++i)
+    p.parameters.push_back({info.parameters[i].name, info.parameters[i].unit, parts.parameters[i], -1});
+  for (std::size_t v = 0; v < parts.varies.size(); ++v)
+    p.parameters[parts.varies[v]].variable = static_cast<std::int64_t>(v);
+  p.variables = parts.space.variables();
+  p.objectives = study.problem->objectives();
+  p.margins = study.problem->margins();
+  p.reports = study.problem->reports();
+  return p;
+}
+
 }  // namespace
 
 StudyContents new_contents(const Study& study) {
-  const ProblemParts& parts = study.problem->parts();
-  const MechanismInfo& info = parts.mechanism->info();
   StudyContents c;
   c.name = study.name;
   c.toml = study.text;
@@ -114,16 +132,24 @@ StudyContents new_contents(const Study& study) {
   c.seed = study.seed;
   c.machine = describe_machine();
   c.created = c.updated = utc_now();
-  c.problem.mechanism = info.name;
-  for (std::size_t i = 0; i < info.parameters.size(); ++i)
-    c.problem.parameters.push_back({info.parameters[i].name, info.parameters[i].unit, parts.parameters[i], -1});
-  for (std::size_t v = 0; v < parts.varies.size(); ++v)
-    c.problem.parameters[parts.varies[v]].variable = static_cast<std::int64_t>(v);
-  c.problem.variables = parts.space.variables();
-  c.problem.objectives = study.problem->objectives();
-  c.problem.margins = study.problem->margins();
-  c.problem.reports = study.problem->reports();
+  c.problem = problem_record(study);
   return c;
+}
+
+ProblemRecord continued_problem(const Study& study, const ProblemRecord& begun) {
+  ProblemRecord now = problem_record(study);
+  for (const ParameterRecord& before : begun.parameters) {
+    const ParameterRecord* const after = find_named(now.parameters, before.name);
+    if (!after)
+      throw std::invalid_argument("it has the parameter " + before.name + ", which this program's mechanism " +
+                                  now.mechanism + " has not");
+    if (after->value != before.value || after->unit != before.unit || after->variable != before.variable)
+      throw std::invalid_argument("it was begun with " + before.name + " = " + with_unit(before.value, before.unit) +
+                                  ", where this program takes " + with_unit(after->value, after->unit));
+  }
+  if (now.shape() != begun.shape())
+    throw std::invalid_argument("this program gives other numbers of objectives, constraints or reports");
+  return now;
 }
 
 std::vector<std::string> option_lines(const Options& options) {
@@ -138,6 +164,46 @@ double rounded_to(double value, double step) {
   if (per_unit >= 1 && std::fabs(1 / step - per_unit) <= 1e-9 * per_unit)
     return std::nearbyint(value * per_unit) / per_unit;
   return std::nearbyint(value / step) * step;
+}
+
+std::optional<OptimalityRecord> optimality_record(const Study& study, const StageRecord& stage) {
+  const DesignProblem& problem = *study.problem;
+  const auto row = static_cast<std::size_t>(stage.best_row);
+  if (stage.best_row < 0 || stage.table.status[row] == Status::failed) return std::nullopt;
+  const ProblemParts& parts = problem.parts();
+  const auto design = stage.table.design(row);
+  double at_start = 0;
+  for (const StartOutcome& start : stage.starts)
+    if (stage.best_row >= start.first_row && stage.best_row < start.first_row + start.rows)
+      at_start = std::fabs(stage.table.objective_row(static_cast<std::size_t>(start.first_row))[0]);
+  const Optimality found = optimality(problem, design, stage.table.slope_row(row), at_start);
+  const bool maximise = problem.objectives()[0].direction == Direction::maximise;
+  OptimalityRecord record;
+  record.optimality = found.optimality;
+  for (const ActiveMargin& m : found.margins) {
+    const MarginInfo& info = problem.margins()[m.margin];
+    record.active.push_back({info.name, "constraint", m.multiplier, info.unit});
+  }
+  for (const ActiveBound& b : found.bounds) {
+    const Variable& v = parts.space[b.variable];
+    record.active.push_back({v.name, b.upper ? "upper bound" : "lower bound", b.multiplier, v.unit});
+  }
+
+  // By every parameter: how the objective changes, and how the active margins do, which the variables then make up for.
+  const std::size_t count = parts.parameters.size(), width = 1 + count;
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<double> slopes = problem.slopes(problem.parameters(design), all);
+  const auto& parameters = parts.mechanism->info().parameters;
+  for (std::size_t p = 0; p < count; ++p) {
+    double follow = slopes[1 + p];
+    for (const ActiveMargin& m : found.margins)
+      follow += (maximise ? 1 : -1) * m.multiplier * slopes[(problem.objectives().size() + m.margin) * width + 1 + p];
+    const bool varies = std::ranges::find(parts.varies, p) != parts.varies.end();
+    record.sensitivities.push_back({parameters[p].name, parameters[p].unit, slopes[1 + p],
+                                    varies ? std::numeric_limits<double>::quiet_NaN() : follow});
+  }
+  return record;
 }
 
 FinalRecord final_record(const Study& study, const StudyContents& contents) {
@@ -165,7 +231,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
   }
   MapRecord map;
   map.voxels = parts.mechanism->voxel_map(best, picture_plan(parts.plan));
-  for (const int swept : info.swept) {
+  for (const int swept : sweep_of(info, parts.plan).swept) {
     map.axes.push_back(info.coordinates[static_cast<std::size_t>(swept)]);
     map.units.push_back(swept == 3 ? "rad" : "m");
   }

@@ -12,6 +12,7 @@
 #include "engine/study/extension.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/study/records.hpp"
+#include "engine/study/starts.hpp"
 #include "engine/study/stop_request.hpp"
 
 namespace pkm {
@@ -82,7 +83,8 @@ class Run final : public Monitor {
     outcome.contents = std::move(contents_);
     outcome.seconds = now() - start_;
     outcome.checkpoint_share = clock_.share();
-    outcome.evaluations = made_;
+    outcome.evaluations = evaluator_.made;
+    outcome.warnings = warnings_;
     outcome.parallel_efficiency = evaluator_.wall > 0 ? evaluator_.busy / (evaluator_.wall * evaluator_.threads()) : 0;
     return outcome;
   }
@@ -96,16 +98,17 @@ class Run final : public Monitor {
     GenerationRecords& list = stage.generations;
     if (index < list.size()) truncate(list, index);
     list.first_row.push_back(static_cast<std::int64_t>(g.first_row));
+    if (g.starts && g.starts->size() != stage.starts.size()) stage.starts = *g.starts;
     list.best_row.push_back(g.best_row);
     list.feasible_share.push_back(feasible_share(table, *g.population));
     list.diversity.push_back(diversity(study_.problem->space(), table, *g.population));
     list.population_first.push_back(static_cast<std::int64_t>(list.population.size()));
     list.population.insert(list.population.end(), g.population->begin(), g.population->end());
-    replaying_ = record && table.size() <= record->table.size() && index < record->generations.size();
-    list.seconds.push_back(replaying_ ? record->generations.seconds[index] : seconds());
+    replaying_ = record && evaluator_.made == made_;
+    const bool timed = replaying_ && index < record->generations.size();
+    list.seconds.push_back(timed ? record->generations.seconds[index] : seconds());
+    made_ = evaluator_.made;
     take_best(table, g.best_row);
-    if (!replaying_)
-      made_ += static_cast<std::int64_t>(table.size() - std::max(g.first_row, record ? record->table.size() : 0));
     report(g, stage.optimiser);
 
     if (const int signal = StopRequest::signal())
@@ -117,6 +120,12 @@ class Run final : public Monitor {
     return true;
   }
 
+  void warn(const std::string& sentence) override {
+    const std::string note = "stage " + std::to_string(stage_ + 1) + ": " + sentence;
+    contents_.notes.push_back(note);
+    warnings_.push_back(note);
+  }
+
  private:
   /// Adds up what parallel efficiency is made of.
   class TimedEvaluator final : public Evaluator {
@@ -126,10 +135,12 @@ class Run final : public Monitor {
       const double begin = now();
       inner_.evaluate(problem, table, first);
       wall += now() - begin;
+      made += static_cast<std::int64_t>(table.size() - first);
       for (std::size_t row = first; row < table.size(); ++row) busy += static_cast<double>(table.seconds[row]);
     }
     int threads() const { return inner_.threads(); }
     double wall = 0, busy = 0;
+    std::int64_t made = 0;  ///< evaluations
 
    private:
     ParallelEvaluator inner_;
@@ -147,21 +158,24 @@ class Run final : public Monitor {
   bool run_stage(std::size_t index) {
     stage_ = index;
     const Stage& stage = study_.stages[index];
-    StageInput input{*study_.problem, evaluator_, *this, stage_seed(index), starts(stage)};
-    contents_.stages.push_back(
-        {stage.entry->name, option_lines(stage.options), EvaluationTable(study_.problem->shape())});
+    const bool again = index < recorded_.size();
+    std::optional<ReplayEvaluator> replay;
+    if (again) replay.emplace(evaluator_, recorded_[index].table);
+    Evaluator& evaluator = again ? static_cast<Evaluator&>(*replay) : evaluator_;
+    StageInput input{*study_.problem, evaluator, *this, stage_seed(index), start_designs(study_, stage, contents_)};
+    if (again) {
+      input.recorded = &recorded_[index].table;
+      input.recorded_starts = recorded_[index].starts;
+    }
+    contents_.stages.push_back({stage.entry->name, option_lines(stage.options),
+                                EvaluationTable(study_.problem->shape(stage.optimiser->detail()))});
     StageRecord& record = contents_.stages.back();
     limit_ = stage.optimiser->evaluation_limit(*study_.problem);
-    StageResult result;
-    if (index < recorded_.size()) {
-      ReplayEvaluator replay(evaluator_, recorded_[index].table);
-      StageInput again{input.problem, replay, input.monitor, input.seed, input.starts};
-      result = stage.optimiser->minimise(again, record.table);
-    } else {
-      result = stage.optimiser->minimise(input, record.table);
-    }
+    const StageResult result = stage.optimiser->minimise(input, record.table);
+    record.starts = result.starts;
     if (result.reason == StopReason::interrupted) return false;
-    if (index < recorded_.size() && record.table.size() < recorded_[index].table.size())
+    const bool restarted = !warnings_.empty();  // a start that left its recorded path may have become shorter
+    if (again && !restarted && record.table.size() < recorded_[index].table.size())
       throw ReplayMismatch("stage " + std::to_string(index + 1) + " ended after " +
                            std::to_string(record.table.size()) + " of " +
                            std::to_string(recorded_[index].table.size()) + " recorded evaluations");
@@ -169,27 +183,13 @@ class Run final : public Monitor {
     record.finished = true;
     record.stop = words(result.reason);
     record.best_row = result.best_row;
+    if (record.table.shape().detail == Detail::derivatives) record.optimality = optimality_record(study_, record);
     return true;
   }
 
   /// Every stage has streams of its own.
   std::uint64_t stage_seed(std::size_t index) const {
     return contents_.seed + 0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(index);
-  }
-
-  /// The best design of the stages before; for a sweep without one, the baseline or else the parameters as they are.
-  std::vector<std::vector<double>> starts(const Stage& stage) const {
-    if (contents_.best.row >= 0) {
-      const auto best = contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table.design(
-          static_cast<std::size_t>(contents_.best.row));
-      return {{best.begin(), best.end()}};
-    }
-    if (stage.entry->capabilities.needs_objective) return {};
-    const auto& parts = study_.problem->parts();
-    const auto& from = study_.baseline ? *study_.baseline : parts.parameters;
-    std::vector<double> centre;
-    for (const std::size_t i : parts.varies) centre.push_back(from[i]);
-    return {centre};
   }
 
   void take_best(const EvaluationTable& table, std::int64_t row) {
@@ -260,6 +260,7 @@ class Run final : public Monitor {
   std::int64_t made_ = 0;
   bool replaying_ = false;
   std::string stopped_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace
@@ -289,6 +290,11 @@ RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, c
                        "), whose algorithms have version " + std::to_string(contents.algorithms) +
                        "; this program has version " + std::to_string(kAlgorithms) + " and would not repeat it");
   Study study = study_of(contents, catalogues);
+  try {
+    contents.problem = continued_problem(study, contents.problem);
+  } catch (const std::invalid_argument& change) {
+    throw StorageError(path + " cannot be continued: " + change.what());
+  }
   if (extension.generations || extension.evaluations) {
     request_extension(study, contents, extension);
     contents.state = StudyState::interrupted;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/setup/study.hpp"
 #include "engine/storage/study_contents.hpp"
@@ -16,7 +17,7 @@ namespace pkm {
 
 /// Version of the behaviour of optimisers and surveys: a study is continued only by a program of the same one. Raise it
 /// with every change that changes the evaluations that a seed leads to.
-inline constexpr std::int64_t kAlgorithms = 1;
+inline constexpr std::int64_t kAlgorithms = 2;
 
 struct ProgramVersion {
   std::string version, revision;
@@ -32,10 +33,11 @@ struct RunOutcome {
   StudyContents contents;
   /// Why the run stopped before the study's end ("SIGINT", "time limit"); "" when the study is finished.
   std::string stopped;
-  double seconds = 0;              ///< of this run
-  std::int64_t evaluations = 0;    ///< made by this run, replayed ones not counted
-  double checkpoint_share = 0;     ///< of the run time, first and final write not counted
-  double parallel_efficiency = 0;  ///< evaluation time over threads times wall time of the evaluations
+  double seconds = 0;                 ///< of this run
+  std::int64_t evaluations = 0;       ///< made by this run, replayed ones not counted
+  double checkpoint_share = 0;        ///< of the run time, first and final write not counted
+  double parallel_efficiency = 0;     ///< evaluation time over threads times wall time of the evaluations
+  std::vector<std::string> warnings;  ///< sentences for the user; also in the file
 };
 
 /// Runs a new study into `path`, which must not exist unless `overwrite`. Throws StorageError.

@@ -4,10 +4,12 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "engine/core/parameter.hpp"
+#include "engine/math/dual.hpp"
 #include "engine/model/pose.hpp"
 #include "engine/workspace/plan.hpp"
 #include "engine/workspace/survey.hpp"
@@ -33,6 +35,14 @@ struct DesignMarginInfo {
   std::string meaning;
 };
 
+/// Three coordinates that a survey sweeps over, the fourth being held.
+struct Sweep {
+  std::array<int, 3> swept{};  ///< outermost of a voxel map first
+  int held = 1;
+  int column = 2;           ///< the swept coordinate that columns run along; the other two, in order, have nodes
+  std::string volume_unit;  ///< of the swept set: "m^2 rad"
+};
+
 struct MechanismInfo {
   std::string name;    ///< "4ppa-2par"
   std::string title;   ///< one line
@@ -41,9 +51,10 @@ struct MechanismInfo {
   std::array<std::string, 4> coordinates;  ///< names of x, y, z, rotation
   std::array<std::string, 4> joints;       ///< names of the four actuated joints
   std::vector<std::string> modes;          ///< working modes; the first is the default
-  std::array<int, 3> swept{};              ///< coordinates a survey sweeps over, outermost of a voxel map first
-  int held = 1;                            ///< the remaining coordinate
+  std::array<int, 3> swept{};              ///< the usual sweep, as in Sweep
+  int held = 1;                            ///< as in Sweep
   bool held_can_integrate = false;         ///< HeldCoordinate::Kind::integrated is available
+  std::vector<Sweep> more_sweeps;          ///< those that a study may ask for by holding another coordinate
   std::vector<LimitInfo> limits;
   std::vector<DesignMarginInfo> design_margins;
   std::string volume_unit;      ///< of the swept set: "m^2 rad"
@@ -51,8 +62,13 @@ struct MechanismInfo {
   std::string size_unit;        ///< unit of size(); "" when the mechanism has no size
   std::string size_meaning;
   std::string characteristic_length;  ///< formula of the default characteristic length
-  int column = 2;  ///< the swept coordinate that columns run along; the other two, in the order of `swept`, have nodes
+  int column = 2;                     ///< as in Sweep
 };
+
+/// What every voxel surveyor answers when asked for derivatives.
+inline std::string voxels_have_no_derivatives() {
+  return "the study surveys voxels, whose sums have none; take workspace.method = \"columns\"";
+}
 
 /// A survey whose plan is fixed: what does not depend on the design is computed here once. Immutable, shared by
 /// threads.
@@ -62,6 +78,10 @@ class Surveyor {
   /// @param parameters  all parameters of the design, order of MechanismInfo::parameters
   /// @param survey      overwritten; reuse one per thread, so that nothing is allocated per design
   virtual void survey(std::span<const double> parameters, Survey<double>& survey) const = 0;
+  /// The same survey with derivatives by up to four variables. Values have the bits of the survey above.
+  virtual void survey(std::span<const Dual4>, Survey<Dual4>&) const { throw std::logic_error(no_derivatives()); }
+  /// "" or one sentence saying why surveys of this plan have no derivatives.
+  virtual std::string no_derivatives() const { return "the mechanism's surveys give no derivatives"; }
 };
 
 class Mechanism {
@@ -78,6 +98,15 @@ class Mechanism {
                               std::span<double> margins) const = 0;
   /// The mechanism's size, to which workspace-ratio refers, in MechanismInfo::size_unit.
   virtual double size(std::span<const double> parameters) const = 0;
+  /// The thresholds in force for a design, order of MechanismInfo::limits. Those that the design derives are the
+  /// mechanism's to fill in; this fills in the given and the inactive ones.
+  virtual void thresholds(std::span<const double>, const LimitSpec& limits, std::span<double> values) const {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = limits.given[i].value_or(info().limits[i].inactive);
+  }
+  // The same three with derivatives. A mechanism without them has no surveys with derivatives either.
+  virtual void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const { throw no_duals(); }
+  virtual Dual4 size(std::span<const Dual4>) const { throw no_duals(); }
+  virtual void thresholds(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const { throw no_duals(); }
   /// Numbers worth knowing of a design, for `pkmopt evaluate`.
   virtual NamedValues facts(std::span<const double> parameters, const LimitSpec& limits) const = 0;
   /// "" or a sentence saying why the parameters describe no mechanism (a length <= 0, ...).
@@ -89,11 +118,29 @@ class Mechanism {
   /// Every assembly mode for joint values [m]; empty when the joints cannot be reached.
   virtual std::vector<AssemblyMode> forward(std::span<const double> parameters,
                                             const std::array<double, 4>& joints) const = 0;
+
+ private:
+  std::logic_error no_duals() const { return std::logic_error("mechanism " + info().name + " has no derivatives"); }
 };
+
+/// Every sweep that the mechanism serves, the usual one first.
+inline std::vector<Sweep> sweeps_of(const MechanismInfo& info) {
+  std::vector<Sweep> all = {{info.swept, info.held, info.column, info.volume_unit}};
+  all.insert(all.end(), info.more_sweeps.begin(), info.more_sweeps.end());
+  return all;
+}
+
+/// The sweep of a plan. Throws std::invalid_argument when the mechanism has none that holds the plan's coordinate.
+inline Sweep sweep_of(const MechanismInfo& info, const SurveyPlan& plan) {
+  for (const Sweep& sweep : sweeps_of(info))
+    if (sweep.held == plan.held.coordinate.value_or(info.held)) return sweep;
+  throw std::invalid_argument("mechanism " + info.name + " has no survey that holds coordinate number " +
+                              std::to_string(*plan.held.coordinate + 1));
+}
 
 /// Unit of the volume that a plan measures.
 inline std::string volume_unit(const MechanismInfo& info, const SurveyPlan& plan) {
-  return plan.held.kind == HeldCoordinate::Kind::integrated ? info.integrated_unit : info.volume_unit;
+  return plan.held.kind == HeldCoordinate::Kind::integrated ? info.integrated_unit : sweep_of(info, plan).volume_unit;
 }
 
 /// No limit given or derived.

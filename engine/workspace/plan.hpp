@@ -22,13 +22,14 @@ struct HeldCoordinate {
   enum class Kind { middle, value, integrated };
   Kind kind = Kind::middle;
   double value = 0;
+  std::optional<int> coordinate;  ///< which one, 0 to 3; none: the mechanism's usual one
 };
 
 struct SurveyPlan {
   Method method = Method::columns;
   HeldCoordinate held;
   LimitSpec limits;
-  std::array<std::int64_t, 3> cells{};  ///< voxels, in the order of MechanismInfo::swept
+  std::array<std::int64_t, 3> cells{};  ///< voxels, in the order of Sweep::swept
   std::int64_t held_cells = 0;          ///< voxels integrated over the held coordinate: its number of cells
   std::optional<std::array<std::array<double, 2>, 3>> box;  ///< voxels; none: derived from each design
   double tolerance = 1e-8;                                  ///< columns: relative

@@ -4,13 +4,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/math/scalar.hpp"
+
 namespace pkm {
 
 /// Weighted samples of the feasible set. A mean is a weighted sum of a field over the sum of the weights.
 /// S is double or the derivative scalar.
 template <class S>
 struct Survey {
-  S volume{};  ///< measure of the feasible set, in MechanismInfo::volume_unit
+  S volume{};  ///< measure of the feasible set, in the unit of volume_unit()
   // voxels
   std::int64_t cells = 0;
   std::int64_t feasible_cells = 0;
@@ -33,8 +35,26 @@ struct Survey {
   }
 };
 
-/// Which cells of a voxel box are feasible, for pictures and the study file. Order of axes: MechanismInfo::swept, the
-/// last one fastest.
+/// The values of a survey with derivatives.
+template <class S>
+void copy_values(const Survey<S>& from, Survey<double>& to) {
+  to.volume = value_of(from.volume);
+  to.cells = from.cells;
+  to.feasible_cells = from.feasible_cells;
+  to.cell_volume = from.cell_volume;
+  to.touches_box = from.touches_box;
+  to.columns = from.columns;
+  to.error = from.error;
+  const auto copy = [](const std::vector<S>& source, std::vector<double>& target) {
+    target.resize(source.size());
+    for (std::size_t i = 0; i < source.size(); ++i) target[i] = value_of(source[i]);
+  };
+  copy(from.weight, to.weight);
+  copy(from.conditioning, to.conditioning);
+}
+
+/// Which cells of a voxel box are feasible, for pictures and the study file. Order of axes: Sweep::swept, the last
+/// one fastest.
 struct VoxelMap {
   std::vector<std::uint8_t> feasible;
   std::int64_t cells[3] = {0, 0, 0};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/problem/expression.hpp"
+
 namespace pkm {
 namespace {
 
@@ -21,6 +23,10 @@ Json word_of(OptionKind kind) {
       return "word";
     case OptionKind::named_numbers:
       return "named numbers";
+    case OptionKind::list_of_numbers:
+      return "list of named numbers";
+    case OptionKind::named_settings:
+      return "named settings";
   }
   return nullptr;
 }
@@ -73,6 +79,18 @@ Json limits_json(const MechanismInfo& info, const std::string& group) {
   return list;
 }
 
+/// What expressions may name, with the units of a survey on one plane.
+Json expression_names_json(const MechanismInfo& info) {
+  using Origin = ExpressionName::Origin;
+  Json list = Json::array();
+  for (const auto& known : expression_names(info, {}))
+    list.push_back({{"name", known.name},
+                    {"unit", known.unit},
+                    {"known", known.origin == Origin::survey ? "after the survey" : "before the survey"},
+                    {"meaning", known.meaning}});
+  return list;
+}
+
 /// Names of the entries that serve a mechanism.
 template <class List>
 Json serving(const List& entries, const MechanismInfo& info) {
@@ -93,6 +111,14 @@ Json mechanism_json(const MechanismInfo& info, const Catalogues& catalogues) {
   json["columns_along"] = coordinate(info.column);
   json["held"] = coordinate(info.held);
   json["volume_unit"] = info.volume_unit;
+  json["other_sweeps"] = Json::array();
+  for (const Sweep& sweep : info.more_sweeps) {
+    Json other = {{"held", coordinate(sweep.held)}, {"swept", Json::array()}};
+    for (const int swept : sweep.swept) other["swept"].push_back(coordinate(swept));
+    other["columns_along"] = coordinate(sweep.column);
+    other["volume_unit"] = sweep.volume_unit;
+    json["other_sweeps"].push_back(other);
+  }
   json["integrated_unit"] = info.held_can_integrate ? Json(info.integrated_unit) : Json();
   json["size"] = info.size_unit.empty() ? Json() : Json(info.size_meaning);
   json["size_unit"] = info.size_unit.empty() ? Json() : Json(info.size_unit);
@@ -111,6 +137,7 @@ Json mechanism_json(const MechanismInfo& info, const Catalogues& catalogues) {
   json["design_tests"] = Json::array();
   for (const auto& test : info.design_margins)
     json["design_tests"].push_back({{"name", test.name}, {"unit", test.unit}, {"meaning", test.meaning}});
+  json["expression_names"] = expression_names_json(info);
   return json;
 }
 
@@ -126,9 +153,9 @@ Json objective_json(const ObjectiveEntry& entry, const Catalogues& catalogues) {
 }
 
 Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues) {
-  Json json = {
-      {"name", entry.name},          {"meaning", entry.meaning},  {"level", entry.pose_level ? "pose" : "design"},
-      {"mechanisms", Json::array()}, {"options", Json::object()}, {"limits", Json::object()}};
+  const char* level = entry.pose_level ? "pose" : entry.needs_survey ? "design or survey" : "design";
+  Json json = {{"name", entry.name},          {"meaning", entry.meaning},  {"level", level},
+               {"mechanisms", Json::array()}, {"options", Json::object()}, {"limits", Json::object()}};
   for (const auto& mechanism : catalogues.mechanisms) {
     const MechanismInfo& info = mechanism->info();
     const auto specs = entry.options(info);
@@ -140,18 +167,31 @@ Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues)
   return json;
 }
 
-Json optimiser_json(const OptimiserEntry& entry) {
-  const Capabilities& can = entry.capabilities;
+Json capabilities_json(const Capabilities& can) {
   const bool many = can.max_objectives == std::numeric_limits<std::size_t>::max();
-  return {{"name", entry.name},
-          {"meaning", entry.meaning},
-          {"capabilities",
-           {{"max_objectives", many ? Json() : Json(can.max_objectives)},
-            {"constraints", can.constraints},
-            {"discrete", can.discrete},
-            {"needs_gradient", can.needs_gradient},
-            {"needs_objective", can.needs_objective}}},
-          {"options", options_json(entry.options)}};
+  return {{"max_objectives", many ? Json() : Json(can.max_objectives)},
+          {"constraints", can.constraints},
+          {"discrete", can.discrete},
+          {"needs_gradient", can.needs_gradient},
+          {"needs_objective", can.needs_objective},
+          {"starts", can.starts}};
+}
+
+/// What an optimiser can do by default, and with each of its algorithms where it has several.
+Json optimiser_json(const OptimiserEntry& entry) {
+  Options options = default_options(entry.options);
+  Json json = {{"name", entry.name},
+               {"meaning", entry.meaning},
+               {"capabilities", capabilities_json(entry.capabilities(options))},
+               {"options", options_json(entry.options)}};
+  for (const OptionSpec& spec : entry.options) {
+    if (spec.name != "algorithm") continue;
+    for (const std::string& algorithm : spec.choices) {
+      options.set(spec.name, algorithm);
+      json["algorithms"][algorithm] = capabilities_json(entry.capabilities(options));
+    }
+  }
+  return json;
 }
 
 }  // namespace

@@ -32,26 +32,27 @@ Json entries_json(const std::vector<StudyEntry>& entries) {
 
 Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
+  const Sweep sweep = sweep_of(info, plan);
   Json json;
   if (plan.method == Method::voxels) {
     json["method"] = "voxels";
-    for (std::size_t k = 0; k < 3; ++k) json["cells"][coordinate(info.swept[k])] = plan.cells[k];
-    if (plan.held_cells > 0) json["cells"][coordinate(info.held)] = plan.held_cells;
+    for (std::size_t k = 0; k < 3; ++k) json["cells"][coordinate(sweep.swept[k])] = plan.cells[k];
+    if (plan.held_cells > 0) json["cells"][coordinate(sweep.held)] = plan.held_cells;
     json["box"] = nullptr;  // derived from each design
-    for (std::size_t k = 0; plan.box && k < 3; ++k) json["box"][coordinate(info.swept[k])] = (*plan.box)[k];
+    for (std::size_t k = 0; plan.box && k < 3; ++k) json["box"][coordinate(sweep.swept[k])] = (*plan.box)[k];
   } else {
     json["method"] = "columns";
     const bool fixed = plan.nodes[0] > 0;
     json["tolerance"] = fixed ? Json() : Json(plan.tolerance);
     json["nodes"] = nullptr;  // chosen from the tolerance
     std::size_t k = 0;
-    for (const int swept : info.swept)
-      if (fixed && swept != info.column) json["nodes"][coordinate(swept)] = plan.nodes[k++];
+    for (const int swept : sweep.swept)
+      if (fixed && swept != sweep.column) json["nodes"][coordinate(swept)] = plan.nodes[k++];
   }
   using Kind = HeldCoordinate::Kind;
-  json[coordinate(info.held)] = plan.held.kind == Kind::middle       ? Json("middle")
-                                : plan.held.kind == Kind::integrated ? Json("integrated")
-                                                                     : Json(plan.held.value);
+  json[coordinate(sweep.held)] = plan.held.kind == Kind::middle       ? Json("middle")
+                                 : plan.held.kind == Kind::integrated ? Json("integrated")
+                                                                      : Json(plan.held.value);
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const auto& given = plan.limits.given[i];
     json["limits"][info.limits[i].name] = given                    ? Json(*given)

@@ -68,6 +68,7 @@ Json pose_json(const MechanismInfo& info, const std::string& mode, const std::ve
           {"det_Jq", json_or_null(report.det_Jq)},
           {"det_G", json_or_null(report.det_G)},
           {"conditioning", json_or_null(report.conditioning)},
+          {"indices", named_json(report.indices)},
           {"angles", named_json(report.angles)},
           {"margins", named_json(report.margins)}};
 }
@@ -104,12 +105,15 @@ void print_pose(const MechanismInfo& info, const std::string& mode, const std::v
     margins.push_back({name, number(value), value >= 0 ? "holds" : "broken"});
   if (report.det_Jq) indices.push_back({"det_Jq", number(*report.det_Jq)});
   if (report.det_G) indices.push_back({"det_G", number(*report.det_G)});
+  for (const auto& [name, value] : report.indices) indices.push_back({name, number(value)});
   if (report.conditioning) indices.push_back({"conditioning", number(*report.conditioning)});
   print_section(std::cout, "joints", joints);
-  if (report.assembles) {
+  if (report.assembles && report.G) {
     print_matrix("Jq, where Jq qdot = G V", report.Jq);
     print_matrix("G", report.G);
     print_matrix("J = Jq^-1 G, where qdot = J V", report.J);
+  } else if (report.assembles) {
+    print_matrix("J, where qdot = J V", report.J);
   }
   print_section(std::cout, "indices", indices);
   print_section(std::cout, "angles and lengths (rad, m)", angles);

@@ -26,7 +26,20 @@ void print_json(std::ostream& out, const Json& json) {
 }
 
 Json to_json(const OptionValue& value) {
-  return std::visit([](const auto& v) { return Json(v); }, value);
+  if (const auto* settings = std::get_if<NamedSettings>(&value)) {
+    Json json = Json::object();
+    for (const auto& [name, setting] : *settings)
+      json[name] = std::visit([](const auto& v) { return Json(v); }, setting);
+    return json;
+  }
+  return std::visit(
+      [](const auto& v) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, NamedSettings>)
+          return Json();
+        else
+          return Json(v);
+      },
+      value);
 }
 
 }  // namespace pkm

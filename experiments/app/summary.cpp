@@ -5,6 +5,7 @@
 
 #include "engine/core/text_table.hpp"
 #include "engine/study/progress.hpp"
+#include "experiments/app/solver_summary.hpp"
 
 namespace pkm {
 namespace {
@@ -168,9 +169,17 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
       << duration_text(contents.seconds) << ", seed " << contents.seed << '\n';
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
-    out << "stage " << i + 1 << ": " << stage.optimiser << ", " << stage.generations.size() << " generations, "
-        << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", ended: " + stage.stop) << '\n';
+    out << "stage " << i + 1 << ": " << stage.optimiser << ", ";
+    if (stage.starts.empty())
+      out << stage.generations.size() << " generations, ";
+    else
+      out << stage.starts.size() << (stage.starts.size() == 1 ? " start, " : " starts, ");
+    out << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", ended: " + stage.stop) << '\n'
+        << starts_text(contents.problem, stage);
   }
+  for (const std::string& note : contents.notes) out << "note: " << note << '\n';
+  if (!contents.reproducible())
+    out << "note: the clock ended a start, so another run with this seed may end elsewhere\n";
   if (!contents.final) {
     if (contents.best.row >= 0 && !contents.problem.objectives.empty()) {
       const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
@@ -197,6 +206,9 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
   if (final.rounded && (final.rounded->status != Status::feasible || !final.rounded->reason.empty()))
     out << "the rounded design is " << status_word(final.rounded->status) << rounded_remarks(contents, *final.rounded)
         << '\n';
+  const StageRecord& of_best = contents.stages[static_cast<std::size_t>(contents.best.stage)];
+  const StageRecord& last = contents.stages.back();
+  out << optimality_text(contents.problem, of_best.optimality ? of_best : last);
   if (!final.active.empty()) out << "active: " << join(final.active, "; ") << '\n';
   if (final.best->touches_box)
     out << "warning: feasible cells of the best design touch the box; a larger box may hold more workspace\n";
@@ -216,13 +228,18 @@ Json summary_json(const StudyContents& contents) {
                  {"seconds", contents.seconds},
                  {"program", contents.program_version + " (" + contents.program_revision + ")"}};
   Json stages = Json::array();
-  for (const StageRecord& stage : contents.stages)
+  for (const StageRecord& stage : contents.stages) {
     stages.push_back({{"optimiser", stage.optimiser},
                       {"generations", stage.generations.size()},
                       {"evaluations", stage.table.size()},
                       {"finished", stage.finished},
                       {"stop", stage.stop}});
+    if (!stage.starts.empty()) stages.back()["starts"] = starts_json(contents.problem, stage);
+    if (stage.optimality) stages.back()["optimality"] = optimality_json(*stage.optimality);
+  }
   object["stages"] = stages;
+  object["reproducible"] = contents.reproducible();
+  object["notes"] = contents.notes;
   object["stop"] = contents.stages.empty() ? "" : contents.stages.back().stop;
   object["best"] = nullptr;
   if (contents.best.row >= 0) {

@@ -25,6 +25,8 @@ struct Refusal {
 TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
   const std::string commands = "one of run, resume, check, evaluate, pose, forward, show, list";
   const std::string mechanism = "4ppa-2par";
+  std::string mechanisms;
+  for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry->info().name;
   const Refusal refusals[] = {
       {{}, "found no command; expected " + commands + " (see 'pkmopt --help')"},
       {{"evalute"},
@@ -41,15 +43,17 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
        "list: found the unknown word 'objectiv'; expected one of mechanisms, objectives, constraints, optimisers, or "
        "the name of an entry; did you mean 'objectives'?"},
       {{"list", "optimisers", "g"},
-       "list optimisers: found the unknown name 'g'; expected one of ga, sweep; did you mean 'ga'?"},
+       "list optimisers: found the unknown name 'g'; expected one of ga, sweep, nlopt, ipopt; did you mean 'ga'?"},
       {{"evaluate", "4ppa-2pra"},
-       "found '4ppa-2pra', which is neither a mechanism nor a file; expected a study in TOML, or one of the mechanisms "
-       "4ppa-2par; did you mean '4ppa-2par'?"},
+       "found '4ppa-2pra', which is neither a mechanism nor a file; expected a study in TOML, or one of the "
+       "mechanisms " +
+           mechanisms + "; did you mean '4ppa-2par'?"},
       {{"check", "none.toml"},
        "none.toml: found no readable file (No such file or directory); expected a study file in TOML"},
       {{"evaluate", "/tmp"}, "/tmp: found a folder; expected a study file in TOML"},
       {{"evaluate", mechanism, "--set", "l_uu=0.5"},
-       "--set: found the unknown name 'l_uu'; expected one of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0; did you "
+       "--set: found the unknown name 'l_uu'; expected one of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, "
+       "R_s; did you "
        "mean 'l_u'?"},
       {{"evaluate", mechanism, "--set", "a=2kg"},
        "--set: found a=2kg; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in"},
@@ -117,7 +121,8 @@ void expect_listed(const std::string& kind, const List& names) {
     EXPECT_EQ(text.exit_code, 0) << text.err;
     EXPECT_THAT(text.out, HasSubstr(entries[i]["meaning"].template get<std::string>()));
     EXPECT_EQ(pkmopt({"list", kind, names[i], "--json"}).json(), entries[i]);
-    EXPECT_EQ(pkmopt({"list", names[i], "--json"}).json(), entries[i]);
+    const auto found = pkmopt({"list", names[i], "--json"}).json();  // by catalogue where several know the word
+    EXPECT_EQ(found.contains(kind) ? found[kind] : found, entries[i]);
   }
 }
 

@@ -102,6 +102,24 @@ TEST(CliPose, LimitsAreThoseOfTheStudy) {
   EXPECT_EQ(limited.json()["joints"], bare.json()["joints"]);
 }
 
+TEST(CliPose, NamesTheLinksThatAreTooNear) {
+  const StudyFolder folder;
+  const auto file = folder.write("near.toml", study_with("[[constraint]]\ntype = \"clearance\"\nmin = \"10 mm\""));
+  const std::string low = "x=0.4,y=1.25,z=-1.207,theta=0";  // sliders nearly meet
+  const auto bare = pkmopt({"pose", "4ppa-2par", "--at", low, "--json"}).json();
+  EXPECT_EQ(bare["feasible"], true);
+  EXPECT_FALSE(bare["margins"].contains("clearance_min"));
+  const auto limited = pkmopt({"pose", file, "--at", low, "--json"}).json();
+  EXPECT_EQ(limited["feasible"], false);
+  EXPECT_THAT(limited["reason"].get<std::string>(),
+              HasSubstr("limit clearance_min is broken: slider 1 and slider 2 overlap"));
+  const double clearance = limited["angles"]["clearance"];
+  EXPECT_LT(clearance, 0);
+  EXPECT_EQ(bare["angles"]["clearance"], clearance);
+  EXPECT_DOUBLE_EQ(limited["margins"]["clearance_min"], clearance - 0.01);
+  EXPECT_EQ(pkmopt({"pose", file, "--at", kPose, "--json"}).json()["feasible"], true);
+}
+
 TEST(CliPose, WhatDoesNotAssembleHasNoValuesAndExitCodeOne) {
   const auto found = pkmopt({"pose", "4ppa-2par", "--at", "x=0.4,y=1.25,z=-3,theta=0", "--json"});
   EXPECT_EQ(found.exit_code, 1);

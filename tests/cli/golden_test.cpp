@@ -133,6 +133,20 @@ TEST(CliPaper, TwoDesigns) {
   }
 }
 
+// What the example study says of the same two designs.
+TEST(CliPaper, TwoDesignsUnderAClearance) {
+  const std::string study = PKM_EXPERIMENTS "/4ppa-2par/clearance.toml";
+  struct Row {
+    const char* set;
+    double volume;
+  };
+  for (const Row& row : {Row{"a=0.2,b=0.8,l_u=0.6,l_d=0.55", 0.536505}, Row{"a=0.3,b=1,l_u=0.7,l_d=0.7", 0.835146}}) {
+    const json limited = pkmopt({"evaluate", study, "--set", row.set, "--json"}).json();
+    EXPECT_NEAR(limited["workspace"]["volume"], row.volume, 5e-7);
+    EXPECT_LT(limited["workspace"]["relative_error"], 1e-8);
+  }
+}
+
 // Table 2, the rows whose C_j lie below the rails; the paper prints 4 digits.
 TEST(CliPaper, TableTwo) {
   struct Row {

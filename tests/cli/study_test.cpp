@@ -1,29 +1,12 @@
 // Studies through the built program: killed at random instants and resumed, stopped by signals, on any number of
 // threads, extended, locked, refused, on a full disk.
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <random>
-
-#include "engine/storage/study_file.hpp"
-#include "tests/cli/child_process.hpp"
+#include "tests/cli/study_program.hpp"
 
 namespace pkm::testing {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// A fresh folder with a study in it, removed at the end.
-class StudyProgram : public ::testing::Test {
+class GaProgram : public StudyProgram {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "pkmopt-study-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// @param generations  of 40 designs on exact columns with active constraints
   void write_toml(int generations, const std::string& more = "[checkpoint]\nevery = 0\n") const {
     std::ofstream(folder_ + "/study.toml") << R"([study]
@@ -52,62 +35,14 @@ population = 40
 generations = )" << generations << "\n[[stage]]\noptimiser = \"ga\"\npopulation = 20\ngenerations = 20\n"
                                            << more;
   }
-
-  int run(const std::vector<std::string>& arguments, ChildProcess::Settings settings = {}) {
-    ChildProcess child(command(arguments), folder_, settings);
-    const int code = child.wait();
-    output_ = child.output();
-    return code;
-  }
-  static std::vector<std::string> command(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), PKM_PROGRAM);
-    return arguments;
-  }
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
-  StudyContents read(const std::string& name) const { return read_study(path(name)); }
-
-  std::string folder_, output_;
 };
 
-TEST_F(StudyProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
+TEST_F(GaProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
   write_toml(100);
-  const auto begin = std::chrono::steady_clock::now();
-  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
-  const double straight_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  const StudyContents straight = read("straight.h5");
-  ASSERT_EQ(straight.state, StudyState::finished);
-
-  std::mt19937 engine(20);
-  int killed_while_running = 0, identical = 0;
-  constexpr int kKills = 20;
-  for (int i = 0; i < kKills; ++i) {
-    const std::string file = "killed-" + std::to_string(i) + ".h5";
-    {
-      ChildProcess child(command({"run", "study.toml", "--output", file, "--quiet"}), folder_);
-      const double wait_ms = straight_ms * static_cast<double>(engine() % 1000) / 1000;
-      std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(wait_ms));
-      child.signal(SIGKILL);
-      child.wait();
-    }
-    if (fs::exists(path(file))) {
-      const StudyContents left = read(file);  // throws if the file is not complete
-      if (left.state == StudyState::running) ++killed_while_running;
-      ASSERT_EQ(run({"resume", file, "--quiet"}), 0) << output_;
-    } else {
-      ASSERT_EQ(run({"run", "study.toml", "--output", file, "--quiet"}), 0)
-          << output_;  // killed before the first write
-    }
-    const std::string difference = first_difference(straight, read(file));
-    EXPECT_EQ(difference, "") << "kill " << i;
-    identical += difference.empty();
-  }
-  std::cout << kKills << " runs killed by SIGKILL, " << killed_while_running << " of them with a study on its way, "
-            << identical << " ended bit-identical after resuming\n";
-  EXPECT_GE(killed_while_running, kKills / 2);
+  kill_at_random(20, 20);
 }
 
-TEST_F(StudyProgram, AChainOfKillsEndsTheSame) {
+TEST_F(GaProgram, AChainOfKillsEndsTheSame) {
   write_toml(300);
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   std::mt19937 engine(21);
@@ -128,7 +63,7 @@ TEST_F(StudyProgram, AChainOfKillsEndsTheSame) {
   EXPECT_EQ(first_difference(read("straight.h5"), read("chain.h5")), "");
 }
 
-TEST_F(StudyProgram, OneTwoAndSevenThreadsAreTheSame) {
+TEST_F(GaProgram, OneTwoAndSevenThreadsAreTheSame) {
   write_toml(40);
   for (const char* threads : {"1", "2", "7"})
     ASSERT_EQ(run({"run", "study.toml", "--output", std::string(threads) + ".h5", "--threads", threads, "--quiet"}), 0)
@@ -137,7 +72,7 @@ TEST_F(StudyProgram, OneTwoAndSevenThreadsAreTheSame) {
   EXPECT_EQ(first_difference(read("1.h5"), read("7.h5")), "");
 }
 
-TEST_F(StudyProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
+TEST_F(GaProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
   write_toml(3000, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   int stopped = 0;
@@ -166,7 +101,7 @@ TEST_F(StudyProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
   EXPECT_GT(stopped, 0) << "the study ended before either signal";
 }
 
-TEST_F(StudyProgram, ASignalSentTwiceAtOnceStillStopsWithACheckpoint) {
+TEST_F(GaProgram, ASignalSentTwiceAtOnceStillStopsWithACheckpoint) {
   write_toml(100000, "");  // `timeout` signals the child and then its group
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     const std::string file = "twice-" + std::to_string(number) + ".h5";
@@ -180,7 +115,7 @@ TEST_F(StudyProgram, ASignalSentTwiceAtOnceStillStopsWithACheckpoint) {
   }
 }
 
-TEST_F(StudyProgram, ASignalStopsAllSeeds) {
+TEST_F(GaProgram, ASignalStopsAllSeeds) {
   write_toml(60, "");
   ChildProcess child(command({"run", "study.toml", "--seeds", "1000"}), folder_);
   while (!fs::exists(path("study-seed-9.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -193,7 +128,7 @@ TEST_F(StudyProgram, ASignalStopsAllSeeds) {
   EXPECT_FALSE(fs::exists(path("study-seed-500.h5")));
 }
 
-TEST_F(StudyProgram, LimitsMayGrowOnly) {
+TEST_F(GaProgram, LimitsMayGrowOnly) {
   write_toml(5);
   ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
   const StudyContents before = read("study.h5");
@@ -208,7 +143,7 @@ TEST_F(StudyProgram, LimitsMayGrowOnly) {
   EXPECT_EQ(read("study.h5").stages[1].stop, "evaluation limit");
 }
 
-TEST_F(StudyProgram, AnExtensionSurvivesAStopInTheReplay) {
+TEST_F(GaProgram, AnExtensionSurvivesAStopInTheReplay) {
   write_toml(40, "");
   ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
   ASSERT_EQ(run({"run", "study.toml", "--output", "long.h5", "--quiet"}), 0) << output_;
@@ -218,7 +153,7 @@ TEST_F(StudyProgram, AnExtensionSurvivesAStopInTheReplay) {
   EXPECT_EQ(first_difference(read("long.h5"), read("study.h5")), "");
 }
 
-TEST_F(StudyProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
+TEST_F(GaProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
   write_toml(3000, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   {
@@ -233,7 +168,7 @@ TEST_F(StudyProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
   EXPECT_EQ(first_difference(read("straight.h5"), read("t.h5")), "");
 }
 
-TEST_F(StudyProgram, AnExtendedStudyEqualsALongOne) {
+TEST_F(GaProgram, AnExtendedStudyEqualsALongOne) {
   std::ofstream(folder_ + "/short.toml") << R"([mechanism]
 type = "4ppa-2par"
 [variables]
@@ -262,7 +197,7 @@ generations = 10
   EXPECT_EQ(fs::last_write_time(path("a.h5")), before);
 }
 
-TEST_F(StudyProgram, ExistingFilesAreNotOverwritten) {
+TEST_F(GaProgram, ExistingFilesAreNotOverwritten) {
   write_toml(2);
   ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
   ASSERT_TRUE(fs::exists(path("study.h5")));
@@ -278,7 +213,7 @@ TEST_F(StudyProgram, ExistingFilesAreNotOverwritten) {
   EXPECT_NE(output_.find("study.h5 holds another text of the study than study.toml"), std::string::npos) << output_;
 }
 
-TEST_F(StudyProgram, ASecondProcessIsTurnedAway) {
+TEST_F(GaProgram, ASecondProcessIsTurnedAway) {
   write_toml(100000, "");
   ChildProcess first(command({"run", "study.toml", "--quiet"}), folder_);
   while (!fs::exists(path("study.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -290,7 +225,7 @@ TEST_F(StudyProgram, ASecondProcessIsTurnedAway) {
   EXPECT_EQ(first.wait(), 3);
 }
 
-TEST_F(StudyProgram, AFullDiskIsAnErrorAndTheLastCheckpointStays) {
+TEST_F(GaProgram, AFullDiskIsAnErrorAndTheLastCheckpointStays) {
   write_toml(120);
   ChildProcess::Settings small;
   small.file_size = 110'000;  // the first checkpoints fit, later ones do not
@@ -305,7 +240,7 @@ TEST_F(StudyProgram, AFullDiskIsAnErrorAndTheLastCheckpointStays) {
   EXPECT_EQ(first_difference(read("straight.h5"), read("study.h5")), "");
 }
 
-TEST_F(StudyProgram, UnusableFilesAreErrors) {
+TEST_F(GaProgram, UnusableFilesAreErrors) {
   write_toml(2);
   ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
   EXPECT_EQ(run({"resume", "none.h5"}), 1);
@@ -321,7 +256,7 @@ TEST_F(StudyProgram, UnusableFilesAreErrors) {
   EXPECT_EQ(fs::file_size(path("cut.h5")), fs::file_size(path("study.h5")) / 2) << "left untouched";
 }
 
-TEST_F(StudyProgram, ReportsTheBlockingConstraintWhenNothingIsFeasible) {
+TEST_F(GaProgram, ReportsTheBlockingConstraintWhenNothingIsFeasible) {
   std::ofstream(folder_ + "/no.toml") << R"([mechanism]
 type = "4ppa-2par"
 [variables]
@@ -345,7 +280,7 @@ generations = 3
       << output_;
 }
 
-TEST_F(StudyProgram, SeedsAreRepeatedIntoFilesOfTheirOwn) {
+TEST_F(GaProgram, SeedsAreRepeatedIntoFilesOfTheirOwn) {
   write_toml(5);
   ASSERT_EQ(run({"run", "study.toml", "--seeds", "3"}), 0) << output_;
   for (const char* name : {"study-seed-7.h5", "study-seed-8.h5", "study-seed-9.h5"})

@@ -24,7 +24,7 @@ const std::vector<Library> kLibraries = {
     {"xxh", {"engine/storage"}},
     {"Random123/", {"engine/math"}},
     {"toml++/", {"engine/setup"}},
-    {"muParser", {"engine/setup", "engine/motion"}},
+    {"muParser", {"engine/math"}},
     {"omp.h", {"engine/problem"}},
     {"mpi.h", {"engine/problem"}},
     {"nlopt", {"engine/optimisers"}},

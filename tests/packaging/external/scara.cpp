@@ -96,6 +96,7 @@ stage = [{ optimiser = "ga", population = 20, generations = 60 }]
 
 struct Silent final : pkm::Monitor {
   bool generation(const pkm::Generation&) override { return true; }  // false would stop the run
+  void warn(const std::string& sentence) override { std::fprintf(stderr, "%s\n", sentence.c_str()); }
 };
 
 }  // namespace

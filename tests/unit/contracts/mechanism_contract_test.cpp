@@ -4,6 +4,8 @@
 #include <numbers>
 #include <set>
 
+#include "engine/problem/expression.hpp"
+#include "engine/problem/survey_results.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 #include "tests/unit/contracts/nominal.hpp"
 
@@ -85,9 +87,21 @@ TEST_P(MechanismContract, DescribesItself) {
     EXPECT_LE(p.lower, p.nominal) << p.name;
     EXPECT_LE(p.nominal, p.upper) << p.name;
   }
-  std::set<int> coordinates(info().swept.begin(), info().swept.end());
-  coordinates.insert(info().held);
-  EXPECT_EQ(coordinates, (std::set<int>{0, 1, 2, 3}));  // each is swept or held
+  std::set<int> held;
+  for (const Sweep& sweep : sweeps_of(info())) {
+    std::set<int> coordinates(sweep.swept.begin(), sweep.swept.end());
+    coordinates.insert(sweep.held);
+    EXPECT_EQ(coordinates, (std::set<int>{0, 1, 2, 3}));  // each is swept or held
+    EXPECT_NE(sweep.column, sweep.held);
+    EXPECT_NE(sweep.volume_unit, "");
+    EXPECT_TRUE(held.insert(sweep.held).second) << "two sweeps hold coordinate " << sweep.held;
+  }
+  SurveyPlan other = plan(info(), Method::voxels, 4);
+  for (int coordinate = -1; coordinate < 5; ++coordinate) {
+    other.held.coordinate = coordinate;
+    if (held.contains(coordinate)) continue;
+    EXPECT_THROW(mechanism().prepare(other, {}), std::invalid_argument) << coordinate;
+  }
 }
 
 TEST_P(MechanismContract, TakesItsNominalParametersAndRefusesThoseOutOfRange) {
@@ -154,41 +168,49 @@ TEST_P(MechanismContract, JacobianEqualsDifferencesOfTheJoints) {
 }
 
 TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
-  const double exact = survey(mechanism(), parameters(), plan(info(), Method::columns)).volume;
-  ASSERT_GT(exact, 0);
-  EXPECT_NEAR(survey(mechanism(), parameters(), plan(info(), Method::voxels, 30)).volume / exact, 1, 0.05);
-  EXPECT_NEAR(survey(mechanism(), parameters(), plan(info(), Method::voxels, 240)).volume / exact, 1, 0.005);
+  for (const Sweep& sweep : sweeps_of(info())) {
+    SCOPED_TRACE("held coordinate " + std::to_string(sweep.held));
+    const double exact = survey(mechanism(), parameters(), plan(info(), sweep, Method::columns)).volume;
+    ASSERT_GT(exact, 0);
+    const auto voxels = [&](std::int64_t cells) {
+      return survey(mechanism(), parameters(), plan(info(), sweep, Method::voxels, cells)).volume;
+    };
+    EXPECT_NEAR(voxels(30) / exact, 1, 0.05);
+    EXPECT_NEAR(voxels(240) / exact, 1, 0.005);
+  }
 }
 
 TEST_P(MechanismContract, InactiveLimitsLieInTheirRangeAndCutNothing) {
-  for (const auto method : {Method::voxels, Method::columns}) {
-    SurveyPlan p = plan(info(), method, method == Method::voxels ? 30 : 0);
-    const auto free = survey(mechanism(), parameters(), p);
-    for (std::size_t i = 0; i < info().limits.size(); ++i) {
-      const LimitInfo& limit = info().limits[i];
-      EXPECT_LE(limit.lower, limit.inactive) << limit.name;
-      EXPECT_LE(limit.inactive, limit.upper) << limit.name;
-      p.limits = no_limits(info());
-      p.limits.given[i] = limit.inactive;
-      const auto limited = survey(mechanism(), parameters(), p);
-      EXPECT_EQ(limited.feasible_cells, free.feasible_cells) << limit.name;
-      EXPECT_NEAR(limited.volume / free.volume, 1, 1e-8) << limit.name;
+  for (const Sweep& sweep : sweeps_of(info()))
+    for (const auto method : {Method::voxels, Method::columns}) {
+      SurveyPlan p = plan(info(), sweep, method, method == Method::voxels ? 30 : 0);
+      const auto free = survey(mechanism(), parameters(), p);
+      for (std::size_t i = 0; i < info().limits.size(); ++i) {
+        const LimitInfo& limit = info().limits[i];
+        EXPECT_LE(limit.lower, limit.inactive) << limit.name;
+        EXPECT_LE(limit.inactive, limit.upper) << limit.name;
+        p.limits = no_limits(info());
+        p.limits.given[i] = limit.inactive;
+        const auto limited = survey(mechanism(), parameters(), p);
+        EXPECT_EQ(limited.feasible_cells, free.feasible_cells) << limit.name;
+        EXPECT_NEAR(limited.volume / free.volume, 1, 1e-8) << limit.name;
+      }
     }
-  }
 }
 
 TEST_P(MechanismContract, AbsurdLimitsLeaveAnEmptyWorkspace) {
-  for (const auto method : {Method::voxels, Method::columns}) {
-    SurveyPlan p = plan(info(), method, method == Method::voxels ? 10 : 0);
-    p.limits = test::absurd_limits(info());
-    Demand demand;
-    demand.conditioning = !info().characteristic_length.empty();
-    const auto empty = survey(mechanism(), parameters(), p, demand);
-    EXPECT_EQ(empty.volume, 0);
-    EXPECT_EQ(empty.feasible_cells, 0);
-    EXPECT_FALSE(empty.touches_box);
-    EXPECT_TRUE(std::isfinite(empty.error));
-  }
+  for (const Sweep& sweep : sweeps_of(info()))
+    for (const auto method : {Method::voxels, Method::columns}) {
+      SurveyPlan p = plan(info(), sweep, method, method == Method::voxels ? 10 : 0);
+      p.limits = test::absurd_limits(info());
+      Demand demand;
+      demand.conditioning = !info().characteristic_length.empty();
+      const auto empty = survey(mechanism(), parameters(), p, demand);
+      EXPECT_EQ(empty.volume, 0);
+      EXPECT_EQ(empty.feasible_cells, 0);
+      EXPECT_FALSE(empty.touches_box);
+      EXPECT_TRUE(std::isfinite(empty.error));
+    }
 }
 
 /// Power of the metre in a unit such as "m^2 rad".
@@ -201,15 +223,46 @@ TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeAsItsUnitSays) {
   auto larger = parameters();
   for (std::size_t i = 0; i < larger.size(); ++i)
     if (info().parameters[i].unit == "m") larger[i] *= 3;
-  const SurveyPlan p = plan(info(), Method::columns);
-  Demand demand;
-  demand.conditioning = !info().characteristic_length.empty();
-  const auto small = survey(mechanism(), parameters(), p, demand), large = survey(mechanism(), larger, p, demand);
-  EXPECT_NEAR(large.volume / small.volume, std::pow(3, metres(info().volume_unit)), 1e-7);
   EXPECT_NEAR(mechanism().size(larger) / mechanism().size(parameters()), std::pow(3, metres(info().size_unit)), 1e-12);
-  ASSERT_EQ(large.conditioning.size(), small.conditioning.size());
-  for (std::size_t i = 0; i < small.conditioning.size(); ++i)
-    EXPECT_NEAR(large.conditioning[i], small.conditioning[i], 1e-7) << i;
+  for (const Sweep& sweep : sweeps_of(info())) {
+    const SurveyPlan p = plan(info(), sweep, Method::columns);
+    Demand demand;
+    demand.conditioning = !info().characteristic_length.empty();
+    const auto small = survey(mechanism(), parameters(), p, demand), large = survey(mechanism(), larger, p, demand);
+    EXPECT_NEAR(large.volume / small.volume, std::pow(3, metres(sweep.volume_unit)), 1e-7);
+    ASSERT_EQ(large.conditioning.size(), small.conditioning.size());
+    for (std::size_t i = 0; i < small.conditioning.size(); ++i)
+      EXPECT_NEAR(large.conditioning[i], small.conditioning[i], 1e-7) << i;
+  }
+}
+
+TEST_P(MechanismContract, ExpressionsKnowItsNumbersByDistinctNames) {
+  const SurveyPlan p = plan(info(), Method::columns);
+  const auto design = parameters();
+  const auto names = expression_names(info(), p);
+  std::set<std::string> distinct;
+  for (const ExpressionName& known : names) {
+    SCOPED_TRACE(known.name);
+    EXPECT_TRUE(distinct.insert(known.name).second) << "twice";
+    EXPECT_NE(known.unit, "");
+    EXPECT_NE(known.meaning, "");
+    Options options = default_options(expression_options());
+    options.set("expression", known.name);
+    const EntryContext context{mechanism(), p, options};
+    const Expression expression(context);
+    Demand demand;
+    expression.add_demand(context, demand);
+    const auto found = survey(mechanism(), design, p, demand);
+    std::vector<double> thresholds(info().limits.size());
+    mechanism().thresholds(design, p.limits, thresholds);
+    using Origin = ExpressionName::Origin;
+    EXPECT_EQ(expression.needs_survey(), known.origin == Origin::survey);
+    const double expected = known.origin == Origin::parameter   ? design[known.index]
+                            : known.origin == Origin::threshold ? thresholds[known.index]
+                            : known.origin == Origin::size      ? mechanism().size(design)
+                                                                : survey_results()[known.index].value(found);
+    EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found}), expected);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MechanismContract, testing::ValuesIn(all_mechanisms()),

@@ -25,6 +25,13 @@ inline SurveyPlan plan(const MechanismInfo& info, Method method, std::int64_t ce
   return plan;
 }
 
+/// The same for another of the mechanism's sweeps.
+inline SurveyPlan plan(const MechanismInfo& info, const Sweep& sweep, Method method, std::int64_t cells = 0) {
+  SurveyPlan p = plan(info, method, cells);
+  p.held.coordinate = sweep.held;
+  return p;
+}
+
 inline Survey<double> survey(const Mechanism& mechanism, const std::vector<double>& parameters, const SurveyPlan& plan,
                              const Demand& demand = {}) {
   Survey<double> result;

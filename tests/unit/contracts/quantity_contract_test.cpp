@@ -43,8 +43,26 @@ void for_all_served(const List& entries, const Do& action) {
   }
 }
 
+/// Defaults, and something harmless for what must be given: the first parameter as it is nominally.
+Options some_options(const std::vector<OptionSpec>& specs, const MechanismInfo& info, const std::string& expression) {
+  Options options = default_options(specs);
+  for (const OptionSpec& spec : specs) {
+    if (spec.kind == OptionKind::named_numbers) options.set(spec.name, NamedNumbers{{info.parameters[0].name, 1.0}});
+    if (spec.name == "bound") options.set(spec.name, info.parameters[0].nominal);
+    if (spec.name == "expression") options.set(spec.name, expression);
+  }
+  return options;
+}
+Options some_options(const ObjectiveEntry& entry, const MechanismInfo& info) {
+  return some_options(entry.options, info, "volume * " + info.parameters[0].name);
+}
+Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
+  return some_options(entry.options(info), info,
+                      shortest(info.parameters[0].nominal) + " - " + info.parameters[0].name);
+}
+
 double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const SurveyPlan& plan) {
-  const Options options = default_options(entry.options);
+  const Options options = some_options(entry, mechanism.info());
   const EntryContext context{mechanism, plan, options};
   Demand demand;
   entry.demand(context, demand);
@@ -56,9 +74,10 @@ double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const Surv
 TEST(ObjectiveContract, IsDescribed) {
   for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
     const SurveyPlan p = plan(mechanism.info(), Method::columns);
-    const Options options = default_options(entry.options);
+    const Options options = some_options(entry, mechanism.info());
     EXPECT_NE(entry.name, "");
     EXPECT_NE(entry.meaning, "");
+    EXPECT_TRUE(!entry.detail || !entry.detail({mechanism, p, options}).empty());
     EXPECT_NE(entry.unit({mechanism, p, options}), "");
     for (const OptionSpec& option : entry.options) EXPECT_NE(option.meaning, "") << option.name;
   });
@@ -107,17 +126,6 @@ TEST(ConstraintContract, RefusalNamesBothSides) {
   });
 }
 
-/// Defaults, and something harmless for what must be given: the first parameter as it is nominally.
-Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
-  const auto specs = entry.options(info);
-  Options options = default_options(specs);
-  for (const OptionSpec& spec : specs) {
-    if (spec.kind == OptionKind::named_numbers) options.set(spec.name, NamedNumbers{{info.parameters[0].name, 1.0}});
-    if (spec.name == "bound") options.set(spec.name, info.parameters[0].nominal);
-  }
-  return options;
-}
-
 double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const std::vector<double>& parameters) {
   const SurveyPlan p = plan(mechanism.info(), Method::columns);
   const Options options = some_options(entry, mechanism.info());
@@ -132,6 +140,7 @@ TEST(ConstraintContract, IsDescribed) {
     const SurveyPlan p = plan(mechanism.info(), Method::columns);
     const Options options = some_options(entry, mechanism.info());
     EXPECT_TRUE(entry.pose_level || !entry.unit({mechanism, p, options}).empty());
+    EXPECT_TRUE(!entry.detail || !entry.detail({mechanism, p, options}).empty());
   });
 }
 
@@ -177,28 +186,36 @@ TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
   for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
     if (!entry.pose_level) return;
     const MechanismInfo& info = mechanism.info();
-    const auto volume = [&](const Options& options) {
-      SurveyPlan p = plan(info, Method::columns);
+    const auto volume = [&](const Sweep& sweep, const Options& options) {
+      SurveyPlan p = plan(info, sweep, Method::columns);
       p.limits = entry.limits(info, options);
       return test::survey(mechanism, nominal(info), p).volume;
     };
-    const double free = test::survey(mechanism, nominal(info), plan(info, Method::columns)).volume;
+    const auto sweeps = sweeps_of(info);
+    const auto uncut = [&](const Sweep& sweep) {
+      return test::survey(mechanism, nominal(info), plan(info, sweep, Method::columns)).volume;
+    };
     const auto specs = entry.options(info);
-    EXPECT_TRUE(!specs.empty() || volume({}) < free);
+    EXPECT_TRUE(!specs.empty() || volume(sweeps[0], {}) < uncut(sweeps[0]));
     for (const OptionSpec& spec : specs) {
       const LimitInfo* limit = find_named(info.limits, spec.name);
       if (!limit) continue;
       // Where nothing, or little, is left; a length without a natural end counts up to 1 m.
       const double end = limit->inactive == limit->lower ? std::min(limit->upper, 1.0) : limit->lower;
-      double before = free;
-      for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-        Options options = default_options(specs);
-        options.set(spec.name, (1 - share) * limit->inactive + share * end);
-        const double cut = volume(options);
-        EXPECT_LE(cut, before * (1 + 1e-8)) << spec.name << ", " << share;
-        before = cut;
+      double least_left = 1;  // a limit may cut nothing of a sweep that holds the very coordinate that it bounds
+      for (const Sweep& sweep : sweeps) {
+        const double free = uncut(sweep);
+        double before = free;
+        for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+          Options options = default_options(specs);
+          options.set(spec.name, (1 - share) * limit->inactive + share * end);
+          const double cut = volume(sweep, options);
+          EXPECT_LE(cut, before * (1 + 1e-8)) << spec.name << ", " << share << ", " << sweep.held;
+          before = cut;
+        }
+        least_left = std::min(least_left, before / free);
       }
-      EXPECT_LT(before, 0.5 * free) << spec.name;
+      EXPECT_LT(least_left, 0.5) << spec.name;
     }
   });
 }

@@ -40,6 +40,7 @@ TEST(Options, ValuesReadLikeTheStudyFile) {
   EXPECT_EQ(to_text(std::int64_t{-4}), "-4");
   EXPECT_EQ(to_text(false), "false");
   EXPECT_EQ(to_text(std::string("mean")), "\"mean\"");
+  EXPECT_EQ(to_text(std::string("a \"b\"\n\tc\\")), "\"a \\\"b\\\"\\n\\tc\\\\\"");
   EXPECT_EQ(to_text(NamedNumbers{{"b", -1}, {"a", 1}}), "{ a = 1, b = -1 }");
 }
 

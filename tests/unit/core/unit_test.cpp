@@ -96,6 +96,13 @@ TEST(Unit, DoesNotDependOnTheLocale) {
   std::setlocale(LC_NUMERIC, before.c_str());
 }
 
+TEST(Unit, KnowsWhichAreSi) {
+  for (const char* unit : {"1", "m", "m^2 rad", "kg m^2", "N m/rad", "1/s", "J", "W", "m rad"})
+    EXPECT_TRUE(is_si_unit(unit)) << unit;
+  for (const char* unit : {"", "mm", "deg", "%", "rpm", "kN", "g", "m^", "m rad EUR", "2", " "})
+    EXPECT_FALSE(is_si_unit(unit)) << unit;
+}
+
 TEST(Unit, WritesNumbersWithTheirUnit) {
   EXPECT_EQ(with_unit(0.1, "m"), "0.1 m");
   EXPECT_EQ(with_unit(0.1, "1"), "0.1");

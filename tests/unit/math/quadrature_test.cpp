@@ -38,17 +38,27 @@ TEST(Quadrature, KronrodRuleHoldsItsGaussRule) {
 TEST(Quadrature, RootLikeEndsBecomeSmooth) {
   std::vector<Integral<double>> scratch;
   const auto half_disc = [](double x) { return std::sqrt(std::fmax(0.0, 1 - x * x)); };
-  const auto mapped = integrate<double>(half_disc, {{-1, 1, true, true}}, 1e-12, scratch);
+  const auto mapped = integrate<double>(half_disc, {{-1, 1, true, true}}, 1e-12, 0, scratch);
   EXPECT_NEAR(mapped.value, kPi / 2, 1e-12);
-  const auto plain = integrate<double>(half_disc, {{-1, 1}}, 1e-12, scratch);
+  const auto plain = integrate<double>(half_disc, {{-1, 1}}, 1e-12, 0, scratch);
   EXPECT_LT(3 * mapped.evaluations, plain.evaluations);
 }
 
 TEST(Quadrature, AKinkIsFoundByHalving) {
   std::vector<Integral<double>> scratch;
-  const auto result = integrate<double>([](double x) { return std::fabs(x - 0.3); }, {{0, 1}}, 1e-8, scratch);
+  const auto result = integrate<double>([](double x) { return std::fabs(x - 0.3); }, {{0, 1}}, 1e-8, 0, scratch);
   EXPECT_NEAR(result.value, 0.5 * (0.09 + 0.49), 1e-8);
   EXPECT_LE(result.error, 1e-8);
+}
+
+TEST(Quadrature, HalvingStopsAtTheFloorOfRounding) {
+  std::vector<Integral<double>> scratch;
+  const auto noisy = [](double x) { return ((1e4 + x * x) - 1e4 - x * x) + 1e-9; };  // rounding of 1e-12
+  const auto endless = integrate<double>(noisy, {{0, 1}}, 1e-8, 0, scratch);
+  const auto result = integrate<double>(noisy, {{0, 1}}, 1e-8, 1e-10, scratch);
+  EXPECT_EQ(result.evaluations, 15);
+  EXPECT_GT(endless.evaluations, 1000 * result.evaluations);
+  EXPECT_NEAR(result.value, 1e-9, 1e-11);
 }
 
 TEST(Quadrature, DerivativesMoveWithTheEnds) {
@@ -57,7 +67,7 @@ TEST(Quadrature, DerivativesMoveWithTheEnds) {
   std::vector<Integral<Scalar>> scratch;
   // integral of sqrt(end - x) over [0, end] is (2/3) end^(3/2); its derivative is sqrt(end)
   const auto result = integrate<Scalar>([&](const Scalar& x) { return root_or_zero(Scalar(end - x)); },
-                                        {{Scalar(0.0), end, false, true}}, 1e-12, scratch);
+                                        {{Scalar(0.0), end, false, true}}, 1e-12, 0, scratch);
   EXPECT_NEAR(result.value.a, 2.0 / 3 * std::pow(0.7, 1.5), 1e-13);
   EXPECT_NEAR(result.value.v[0], std::sqrt(0.7), 1e-12);
 }
@@ -67,6 +77,44 @@ TEST(Statistics, OfWeightedSamplesAndOfNone) {
   EXPECT_EQ(least<double>({0.3, 0.1, 0.2}), 0.1);
   EXPECT_EQ(weighted_mean<double>({}, {}), 0);
   EXPECT_EQ(least<double>({}), 0);
+  EXPECT_EQ(soft_least<double>({}, {}, 100), 0);
+}
+
+TEST(Statistics, SoftLeastLiesAboveTheLeastAndTendsToIt) {
+  const std::vector<double> weight = {0.5, 2, 1, 0.1}, field = {0.31, 0.3, 0.8, 0.55};
+  double before = weighted_mean(weight, field);
+  for (const double sharpness : {1.0, 10.0, 100.0, 1e3, 1e4, 1e5}) {
+    const double soft = soft_least(weight, field, sharpness);
+    EXPECT_GT(soft, 0.3);
+    EXPECT_LT(soft, before);
+    // the least sample alone: 0.3 - ln(2/3.6) / sharpness, and the others push it down
+    EXPECT_LE(soft, 0.3 + std::log(3.6 / 2) / sharpness * (1 + 1e-12)) << sharpness;
+    before = soft;
+  }
+  EXPECT_NEAR(before, 0.3, 1e-5);
+  EXPECT_NEAR(soft_least<double>({1, 7}, {0.25, 0.25}, 50), 0.25, 1e-15);                      // all equal
+  EXPECT_NEAR(soft_least<double>({1, 1}, {0.1, 1e6}, 200), 0.1 + std::log(2.0) / 200, 1e-15);  // nothing overflows
+}
+
+TEST(Statistics, SoftLeastHasTheDerivativesOfItself) {
+  const std::vector<double> weight = {0.5, 2, 1, 0.1}, field = {0.31, 0.3, 0.32, 0.55};
+  const double sharpness = 40;
+  for (int i = 0; i < 4; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    std::vector<Dual4> w(weight.begin(), weight.end()), f(field.begin(), field.end());
+    w[at].v[0] = 1;
+    f[at].v[1] = 1;
+    const Dual4 soft = soft_least(w, f, sharpness);
+    EXPECT_EQ(soft.a, soft_least(weight, field, sharpness));
+    constexpr double kStep = 1e-5;
+    const auto slope = [&](std::vector<double> low_w, std::vector<double> low_f, double dw, double df) {
+      auto high_w = low_w, high_f = low_f;
+      low_w[at] -= dw, high_w[at] += dw, low_f[at] -= df, high_f[at] += df;
+      return (soft_least(high_w, high_f, sharpness) - soft_least(low_w, low_f, sharpness)) / (2 * kStep);
+    };
+    EXPECT_NEAR(soft.v[0], slope(weight, field, kStep, 0), 1e-9);
+    EXPECT_NEAR(soft.v[1], slope(weight, field, 0, kStep), 1e-7);
+  }
 }
 
 }  // namespace

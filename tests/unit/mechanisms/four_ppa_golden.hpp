@@ -48,7 +48,8 @@ inline std::vector<double> design_of(const nlohmann::json& entry) {
 inline LimitSpec limits_of(const nlohmann::json& entry) {
   LimitSpec spec = no_limits(four_ppa().info());
   const auto& limits = four_ppa().info().limits;
-  for (std::size_t i = 0; i < limits.size(); ++i) spec.given[i] = entry["limits"][limits[i].name].get<double>();
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    if (entry["limits"].contains(limits[i].name)) spec.given[i] = entry["limits"][limits[i].name].get<double>();
   return spec;
 }
 

@@ -34,8 +34,9 @@ std::vector<Case> random_cases(int count, unsigned seed) {
     c.p[kD] = uniform(0, 0.3);
     c.p[kL0] = i % 5 == 4 ? uniform(0.8, 1.8) * c.p[kLu] : 2.5;
     if (i % 2 == 1) {
-      c.limits.given = {uniform(0, 0.3),  uniform(0, 0.3), uniform(1.0, 1.5),
-                        uniform(0, 0.12), uniform(0, 0.5), uniform(0, 0.4)};
+      const double drawn[] = {uniform(0, 0.3),  uniform(0, 0.3), uniform(1.0, 1.5),
+                              uniform(0, 0.12), uniform(0, 0.5), uniform(0, 0.4)};
+      std::ranges::copy(drawn, c.limits.given.begin());
     }
     c.y = i % 3 == 2 ? c.p[kL0] * uniform(0.2, 0.8) : c.p[kL0] / 2;
     cases.push_back(c);
@@ -171,12 +172,110 @@ TEST(FourPpaColumns, VolumeEqualsAFineMidpointSum) {
   }
 }
 
+/// Limits so strong that sin_par_min leaves less of the range of beta than beta_max: the corner of the two moves in.
+std::vector<Case> strong_cases(int count, unsigned seed) {
+  Uniform uniform(seed);
+  std::vector<Case> cases = random_cases(count, seed);
+  for (Case& c : cases) {
+    c.p[kB] = uniform(0.2, 1.2);
+    c.p[kLd] = uniform(0.4, 1.2);
+    const double beta_max = uniform(0.5, 1.1);
+    c.limits.given[kBetaMax] = beta_max;
+    c.limits.given[kSinParMin] = uniform(pkm::sincos(beta_max).sin, 1.0);
+  }
+  return cases;
+}
+
+TEST(FourPpaColumns, StrongLimitsTogetherLoseNothing) {
+  int compared = 0;
+  for (const Case& c : strong_cases(400, 11)) {
+    const auto g = geometry(std::span<const double>(c.p));
+    const auto f = frame(g, limits(g, c.limits), c.y);
+    constexpr int kSteps = 4000;
+    const double last = acos(f.l.cos_theta_min);
+    double sum = 0;
+    for (int i = 0; i < kSteps && !f.empty; ++i) {
+      const auto [s, co] = sincos(last * (i + 0.5) / kSteps);
+      sum += area(f, section(f, s, co));
+    }
+    const double expected = 2 * sum * last / kSteps;
+    const auto found = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::value, c.y}));
+    EXPECT_NEAR(found.volume, expected, 1e-5);
+    compared += expected > 1e-3;
+  }
+  EXPECT_GT(compared, 50);
+}
+
+// Pieces are smooth, so a few hundred columns serve any design. Where a workspace is nearly empty, its area's rounding
+// is all that is left of the error, and no halving improves it.
+TEST(FourPpaColumns, NoDesignTakesLong) {
+  int nearly_empty = 0;
+  for (Case c : random_cases(1000, 12)) {
+    const HeldCoordinate held{HeldCoordinate::Kind::value, c.y};
+    EXPECT_LE(survey(c.p, columns(c.limits, held)).columns, 1000);
+    const auto g = geometry(std::span<const double>(c.p));
+    ColumnScratch<double> scratch;
+    find_pieces(frame(g, limits(g, c.limits), c.y), scratch.breaks, scratch.pieces);
+    if (scratch.pieces.empty()) continue;
+    for (const double rest : {1e-4, 1e-6, 1e-8}) {  // of theta, above where the workspace begins
+      c.limits.given[kCosThetaMin] = pkm::sincos(scratch.pieces[0].lower + rest).cos;
+      const auto found = survey(c.p, columns(c.limits, held));
+      EXPECT_LE(found.columns, 1000) << found.volume;
+      nearly_empty += found.volume > 0 && found.volume < 1e-8;
+    }
+  }
+  EXPECT_GT(nearly_empty, 100);
+}
+
+// Where beta_max = pi/2 hands over to beta_min, at w = b - a cos(theta) = l_d, the end of delta has a root.
+TEST(FourPpaColumns, ARootInsideTheRangeOfThetaIsAnEndOfAPiece) {
+  auto p = nominal();
+  p[kB] = 0.7;  // w from 0.5 to 0.7 about l_d = 0.55
+  const auto found = survey(p, columns(no_limits(four_ppa().info())));
+  EXPECT_LE(found.columns, 45);
+}
+
+TEST(FourPpaColumns, PiecesLieWhereBothLimbsHaveDepth) {
+  std::size_t pieces = 0;
+  for (const Case& c : random_cases(300, 16)) {
+    const auto g = geometry(std::span<const double>(c.p));
+    const auto f = frame(g, limits(g, c.limits), c.y);
+    ColumnScratch<double> scratch;
+    find_pieces(f, scratch.breaks, scratch.pieces);
+    pieces += scratch.pieces.size();
+    for (const auto& piece : scratch.pieces)
+      for (const double t : {0.01, 0.5, 0.99}) {
+        const auto [s, co] = sincos(piece.lower + t * (piece.upper - piece.lower));
+        EXPECT_GT(section(f, s, co).depth[0], 0);
+      }
+  }
+  EXPECT_GT(pieces, 300u);
+}
+
+TEST(FourPpaColumns, OnTheMiddlePlaneBothLimbsHaveTheSameBits) {
+  for (const Case& c : random_cases(200, 14)) {
+    const auto g = geometry(std::span<const double>(c.p));
+    const auto f = frame(g, limits(g, c.limits), g.L0 / 2);
+    for (int i = 0; i < 50; ++i) {
+      const auto [s, co] = sincos(0.03 * i);
+      const auto t = section(f, s, co);
+      EXPECT_EQ(t.depth[0], t.depth[1]);
+    }
+  }
+}
+
 TEST(FourPpaColumns, ToleranceIsKept) {
   for (const Case& c : random_cases(300, 6)) {
     const HeldCoordinate held{HeldCoordinate::Kind::value, c.y};
     const double best = survey(c.p, columns(c.limits, held, 1e-13)).volume;
     EXPECT_NEAR(survey(c.p, columns(c.limits, held, 1e-8)).volume, best, 1e-8 * best);
     EXPECT_NEAR(survey(c.p, columns(c.limits, held, 1e-4)).volume, best, 1e-4 * best);
+  }
+  for (Case& c : random_cases(60, 15)) {
+    const HeldCoordinate over_y{HeldCoordinate::Kind::integrated, 0};
+    c.p[kL0] = std::fmin(c.p[kL0], 1.4 * c.p[kLu]);
+    const double best = survey(c.p, columns(c.limits, over_y, 1e-12)).volume;
+    EXPECT_NEAR(survey(c.p, columns(c.limits, over_y, 1e-8)).volume, best, 1e-8 * best);
   }
 }
 
@@ -201,6 +300,28 @@ TEST(FourPpaColumns, IntegratedOverYEqualsTheSumOverPlanes) {
     const auto found = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::integrated, 0}, 1e-8));
     EXPECT_NEAR(found.volume, expected, 2e-4 * (expected + 1e-3));
   }
+}
+
+// All kinks in y are ends of pieces: more nodes change the result no more, but for rare roots near a piece's end.
+TEST(FourPpaColumns, AreasOverYHaveNoKinkInsideAPiece) {
+  const GaussRule few = gauss_legendre(40), many = gauss_legendre(160);
+  Uniform uniform(16);
+  int positive = 0;
+  for (Case& c : random_cases(400, 16)) {
+    c.p[kL0] = uniform(0.8, 3.0) * c.p[kLu];
+    const auto g = geometry(std::span<const double>(c.p));
+    const auto f = frame(g, limits(g, c.limits), g.L0 / 2);
+    if (f.empty) continue;
+    for (int i = 0; i < 10; ++i) {
+      const auto [s, co] = sincos(uniform(0, kPi / 2));
+      const auto t = section_range(f, s, co);
+      if (t.empty) continue;
+      const double expected = area_over_y(f, t, many);
+      EXPECT_NEAR(area_over_y(f, t, few), expected, 2e-9 * expected + 1e-15);
+      positive += expected > 0;
+    }
+  }
+  EXPECT_GT(positive, 1000);
 }
 
 TEST(FourPpaVoxels, IntegratedOverYConvergesToColumns) {

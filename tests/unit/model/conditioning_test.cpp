@@ -122,5 +122,51 @@ TEST(Conditioning, DerivativeEqualsDifferences) {
   }
 }
 
+// Two independent ways: singular vectors, and rotations that carry the derivatives along.
+TEST(Conditioning, DerivativesOfBothWaysAgreeAndKeepTheValuesBits) {
+  using Scalar = Dual<2>;
+  Uniform uniform;
+  int extreme[3] = {0, 0, 0};
+  for (int i = 0; i < 3000; ++i) {
+    Rows3<double> plain;
+    Rows3<Scalar> rows;
+    Scalar columns[3][3];
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) {
+        plain[r][c] = uniform(-1, 1);
+        rows[r][c] = Scalar(plain[r][c], {{uniform(-1, 1), uniform(-1, 1)}});
+        columns[c][r] = rows[r][c];
+      }
+    const Scalar extra = i % 3 == 0 ? Scalar(-1.0) : Scalar(std::pow(10.0, uniform(-3, 1)), {{1, uniform(-1, 1)}});
+    const Scalar closed = inverse_condition(rows, extra), turned = inverse_condition(columns, extra);
+    EXPECT_EQ(closed.a, inverse_condition(plain, extra.a));
+    const double without = inverse_condition(plain);
+    ++extreme[closed.a == without ? 0 : extra.a < 1 ? 1 : 2];
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(closed.v[k], turned.v[k], 1e-9 * (1 + std::fabs(turned.v[k]))) << i;
+  }
+  for (const int count : extreme) EXPECT_GT(count, 300);
+}
+
+TEST(Conditioning, DerivativesAreFiniteWhereSingularValuesMeet) {
+  using Scalar = Dual<1>;
+  Uniform uniform;
+  const double cases[][3] = {{1, 1, 1}, {2, 2, 1}, {5, 1, 1}, {2, 2 - 1e-15, 1}, {2, 2 - 1e-9, 1}, {1e-9, 1e-9, 1e-9}};
+  for (const auto& s : cases)
+    for (int i = 0; i < 100; ++i) {
+      Eigen::Matrix3d m = Eigen::DiagonalMatrix<double, 3>(s[0], s[1], s[2]).toDenseMatrix();
+      if (i > 0) m = rotation(uniform) * m * rotation(uniform);
+      Rows3<Scalar> rows;
+      double largest = 0;
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) {
+          rows[r][c] = Scalar(rows_of(m)[r][c], {{uniform(-1, 1)}});
+          largest = std::fmax(largest, std::fabs(rows[r][c].v[0]));
+        }
+      // |d(least / greatest)| <= (|d least| + |d greatest|) / greatest, and neither is longer than dM
+      EXPECT_LE(std::fabs(inverse_condition(rows).v[0]), 6 * largest / s[0]);
+    }
+  EXPECT_EQ(inverse_condition(Rows3<Scalar>{}).v[0], 0);
+}
+
 }  // namespace
 }  // namespace pkm::testing

@@ -5,21 +5,27 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "engine/math/dual.hpp"
 #include "engine/problem/problem.hpp"
 
 namespace pkm::test {
 
-/// A problem made of one function: it fills the margins and returns the objective.
+/// A problem made of one generic function: it fills the margins and returns the objective. Functions of doubles only
+/// make problems without derivatives.
 class FunctionProblem final : public Problem {
  public:
-  using Function = std::function<double(std::span<const double> design, std::span<double> margins)>;
+  template <class S>
+  using Function = std::function<S(std::span<const S> design, std::span<S> margins)>;
 
-  FunctionProblem(std::vector<Variable> variables, std::size_t margins, Function function,
+  template <class F>
+  FunctionProblem(std::vector<Variable> variables, std::size_t margins, F function,
                   Direction direction = Direction::minimise)
-      : space_(std::move(variables)), function_(std::move(function)) {
+      : space_(std::move(variables)), function_(function) {
+    if constexpr (std::is_invocable_r_v<Dual4, F, std::span<const Dual4>, std::span<Dual4>>) slopes_ = function;
     objectives_.push_back({"f", "1", "", direction});
     for (std::size_t i = 0; i < margins; ++i) margins_.push_back({"g" + std::to_string(i), "1", ""});
   }
@@ -34,11 +40,23 @@ class FunctionProblem final : public Problem {
     result.status = Status::feasible;
     for (const double margin : result.margins)
       if (margin < 0) result.status = Status::infeasible;
+    if (result.detail != Detail::derivatives) return;
+    std::vector<Dual4> x, margins(margins_.size());  // at most four variables
+    for (std::size_t i = 0; i < design.size(); ++i) x.push_back(Dual4::variable(design[i], static_cast<int>(i)));
+    std::vector<Dual4> values = {slopes_(x, margins)};
+    values.insert(values.end(), margins.begin(), margins.end());
+    std::size_t at = 0;
+    for (const Dual4& value : values) {
+      result.slopes[at++] = value.a;
+      for (std::size_t i = 0; i < design.size(); ++i) result.slopes[at++] = value.v[static_cast<int>(i)];
+    }
   }
+  std::string no_derivatives() const override { return slopes_ ? "" : "the function has none"; }
 
  private:
   DesignSpace space_;
-  Function function_;
+  Function<double> function_;
+  Function<Dual4> slopes_;
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;
   std::vector<ReportInfo> reports_;
@@ -53,8 +71,8 @@ inline std::vector<Variable> box(std::size_t dimension, double lower, double upp
 /// Minimum 0 at x_i = 0.3.
 inline FunctionProblem sphere(std::size_t dimension, double step = 0) {
   return {box(dimension, -5, 7, step), 0, [](auto x, auto) {
-            double sum = 0;
-            for (const double v : x) sum += (v - 0.3) * (v - 0.3);
+            auto sum = x[0] * 0.0;
+            for (const auto& v : x) sum += (v - 0.3) * (v - 0.3);
             return sum;
           }};
 }
@@ -63,8 +81,8 @@ inline FunctionProblem sphere(std::size_t dimension, double step = 0) {
 inline FunctionProblem corner() {
   return {box(4, 0, 1), 0,
           [](auto x, auto) {
-            return (1 - 0.8 * x[0]) * (0.4 + 0.6 * x[1]) * (0.5 + 0.7 * x[2] - 0.2 * x[2] * x[2]) *
-                   (0.6 + 0.4 * std::sqrt(x[3]));
+            return (1.0 - 0.8 * x[0]) * (0.4 + 0.6 * x[1]) * (0.5 + 0.7 * x[2] - 0.2 * x[2] * x[2]) *
+                   (0.6 + 0.4 * sqrt(x[3]));
           },
           Direction::maximise};
 }
@@ -74,26 +92,27 @@ inline FunctionProblem welded_beam() {
   return {{{"h", "1", 0.1, 2, 0}, {"l", "1", 0.1, 10, 0}, {"t", "1", 0.1, 10, 0}, {"b", "1", 0.1, 2, 0}},
           5,
           [](auto x, auto g) {
-            const double h = x[0], l = x[1], t = x[2], b = x[3], load = 6000, arm = 14, young = 30e6, shear = 12e6;
-            const double moment = load * (arm + l / 2), r2 = l * l / 4 + (h + t) * (h + t) / 4, r = std::sqrt(r2);
-            const double polar = 2 * std::sqrt(2.0) * h * l * (l * l / 12 + (h + t) * (h + t) / 4);
-            const double t1 = load / (std::sqrt(2.0) * h * l), t2 = moment * r / polar;
-            const double tau = std::sqrt(t1 * t1 + t1 * t2 * l / r + t2 * t2);
-            const double buckling = 4.013 * young * std::sqrt(t * t * std::pow(b, 6) / 36) / (arm * arm) *
-                                    (1 - t / (2 * arm) * std::sqrt(young / (4 * shear)));
-            g[0] = 1 - tau / 13600;
-            g[1] = 1 - 6 * load * arm / (b * t * t) / 30000;
+            const double load = 6000, arm = 14, young = 30e6, shear = 12e6;
+            const auto h = x[0], l = x[1], t = x[2], b = x[3];
+            const auto moment = load * (arm + l / 2.0), r2 = l * l / 4.0 + (h + t) * (h + t) / 4.0, r = sqrt(r2);
+            const auto polar = 2 * std::sqrt(2.0) * h * l * (l * l / 12.0 + (h + t) * (h + t) / 4.0);
+            const auto t1 = load / (std::sqrt(2.0) * h * l), t2 = moment * r / polar;
+            const auto tau = sqrt(t1 * t1 + t1 * t2 * l / r + t2 * t2);
+            const auto buckling = 4.013 * young * t * b * b * b / 6.0 / (arm * arm) *
+                                  (1.0 - t / (2 * arm) * std::sqrt(young / (4 * shear)));
+            g[0] = 1.0 - tau / 13600.0;
+            g[1] = 1.0 - 6 * load * arm / (b * t * t) / 30000.0;
             g[2] = b - h;
             g[3] = 0.25 - 4 * load * arm * arm * arm / (young * t * t * t * b);
-            g[4] = buckling / load - 1;
-            return 1.10471 * h * h * l + 0.04811 * t * b * (14 + l);
+            g[4] = buckling / load - 1.0;
+            return 1.10471 * h * h * l + 0.04811 * t * b * (14.0 + l);
           }};
 }
 
 /// Nothing is feasible; the violation is least, 0.5, at x = (1, 1).
 inline FunctionProblem infeasible_everywhere() {
   return {box(2, 0, 4), 1, [](auto x, auto g) {
-            g[0] = -0.5 - (x[0] - 1) * (x[0] - 1) - (x[1] - 1) * (x[1] - 1);
+            g[0] = -0.5 - (x[0] - 1.0) * (x[0] - 1.0) - (x[1] - 1.0) * (x[1] - 1.0);
             return x[0];
           }};
 }
@@ -101,8 +120,8 @@ inline FunctionProblem infeasible_everywhere() {
 /// NaN on half of the box, where the objective would be best; minimum 1 at (0, 0.5) on the other half.
 inline FunctionProblem partly_undefined() {
   return {box(2, -1, 1), 0, [](auto x, auto) {
-            if (x[0] < 0) return std::numeric_limits<double>::quiet_NaN();
-            return 1 + x[0] + (x[1] - 0.5) * (x[1] - 0.5);
+            const auto hole = value_of(x[0]) < 0 ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+            return 1.0 + x[0] + (x[1] - 0.5) * (x[1] - 0.5) + hole;
           }};
 }
 

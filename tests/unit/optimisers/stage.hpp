@@ -1,6 +1,7 @@
 // Runs one optimiser on one problem and keeps what it reported.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -23,12 +24,16 @@ class Recorder final : public Monitor {
     sizes.push_back(generation.table->size());
     populations.push_back(*generation.population);
     best_rows.push_back(generation.best_row);
+    starts = generation.starts ? *generation.starts : std::vector<StartOutcome>();
     return generation.number < last_;
   }
+  void warn(const std::string& sentence) override { warnings.push_back(sentence); }
 
   std::vector<std::int64_t> numbers, best_rows;
   std::vector<std::size_t> first_rows, sizes;
   std::vector<std::vector<std::int64_t>> populations;
+  std::vector<StartOutcome> starts;  ///< that had ended at the last report
+  std::vector<std::string> warnings;
 
  private:
   std::int64_t last_;
@@ -56,12 +61,36 @@ inline std::unique_ptr<Optimiser> make(const OptimiserEntry& e, const Problem& p
 
 inline Outcome run(const Optimiser& optimiser, const Problem& problem, std::uint64_t seed = 1,
                    std::int64_t last = std::numeric_limits<std::int64_t>::max(), Evaluator* evaluator = nullptr,
-                   std::vector<std::vector<double>> starts = {}) {
+                   const std::vector<std::vector<double>>& starts = {}) {
   SerialEvaluator serial;
-  Outcome outcome{EvaluationTable(problem.shape()), Recorder(last), {}};
-  const StageInput input{problem, evaluator ? *evaluator : serial, outcome.recorder, seed, std::move(starts)};
+  Outcome outcome{EvaluationTable(problem.shape(optimiser.detail())), Recorder(last), {}};
+  StageInput input{problem, evaluator ? *evaluator : serial, outcome.recorder, seed};
+  for (const auto& design : starts) input.starts.push_back({design, "given"});
   outcome.result = optimiser.minimise(input, outcome.table);
   return outcome;
+}
+
+/// Goes on with a stage that was stopped: its rows are served, and the starts that had ended are not run again.
+inline Outcome resume(const Optimiser& optimiser, const Problem& problem, std::uint64_t seed, const Outcome& stopped,
+                      std::int64_t last = std::numeric_limits<std::int64_t>::max(),
+                      const std::vector<std::vector<double>>& starts = {}) {
+  SerialEvaluator serial;
+  ReplayEvaluator replay(serial, stopped.table);
+  Outcome outcome{EvaluationTable(problem.shape(optimiser.detail())), Recorder(last), {}};
+  StageInput input{problem, replay, outcome.recorder, seed};
+  for (const auto& design : starts) input.starts.push_back({design, "given"});
+  input.recorded = &stopped.table;
+  input.recorded_starts = stopped.recorder.starts;
+  outcome.result = optimiser.minimise(input, outcome.table);
+  return outcome;
+}
+
+inline bool same_starts(const std::vector<StartOutcome>& a, const std::vector<StartOutcome>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const StartOutcome& x, const StartOutcome& y) {
+    return x.origin == y.origin && x.first_row == y.first_row && x.rows == y.rows && x.end_row == y.end_row &&
+           x.stop == y.stop && x.message == y.message &&
+           std::memcmp(&x.optimality, &y.optimality, sizeof x.optimality) == 0;
+  });
 }
 
 /// Equal designs, results and order, bit for bit (not the times).
@@ -70,14 +99,15 @@ inline bool same_bits(const EvaluationTable& a, const EvaluationTable& b) {
     return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
   };
   return a.shape() == b.shape() && same(a.designs, b.designs) && same(a.objectives, b.objectives) &&
-         same(a.margins, b.margins) && same(a.reports, b.reports) && same(a.status, b.status);
+         same(a.margins, b.margins) && same(a.reports, b.reports) && same(a.slopes, b.slopes) &&
+         same(a.status, b.status);
 }
 
 inline bool same_bits(const Outcome& a, const Outcome& b) {
   return same_bits(a.table, b.table) && a.recorder.populations == b.recorder.populations &&
          a.recorder.best_rows == b.recorder.best_rows && a.recorder.numbers == b.recorder.numbers &&
          a.recorder.first_rows == b.recorder.first_rows && a.result.reason == b.result.reason &&
-         a.result.best_row == b.result.best_row;
+         a.result.best_row == b.result.best_row && same_starts(a.result.starts, b.result.starts);
 }
 
 }  // namespace pkm::test

@@ -41,7 +41,7 @@ TEST(Evaluator, LeavesEarlierRowsAlone) {
 }
 
 TEST(Evaluator, AnExceptionFailsItsOwnRowOnly) {
-  const FunctionProblem problem(box(1, 0, 1), 1, [](auto x, auto g) {
+  const FunctionProblem problem(box(1, 0, 1), 1, [](std::span<const double> x, std::span<double> g) {
     g[0] = 1;
     if (x[0] > 0.0125 && x[0] < 0.0135) throw std::runtime_error("no");
     return x[0];
@@ -62,7 +62,7 @@ TEST(Evaluator, AnExceptionFailsItsOwnRowOnly) {
 
 TEST(Evaluator, AStatusThatItsNumbersContradictIsFailed) {
   const auto status_of = [](double objective, double margin) {
-    const FunctionProblem problem(box(1, 0, 1), 1, [=](auto, auto g) {
+    const FunctionProblem problem(box(1, 0, 1), 1, [=](std::span<const double>, std::span<double> g) {
       g[0] = margin;
       return objective;
     });
@@ -79,7 +79,7 @@ TEST(Evaluator, AStatusThatItsNumbersContradictIsFailed) {
 }
 
 TEST(Evaluator, RecordsTheTimeOfEachDesign) {
-  const FunctionProblem problem(box(1, 0, 1), 0, [](auto x, auto) {
+  const FunctionProblem problem(box(1, 0, 1), 0, [](std::span<const double> x, std::span<double>) {
     double sum = 0;
     for (int i = 0; i < (x[0] == 0 ? 2000000 : 1); ++i) sum += std::sqrt(static_cast<double>(i));
     return sum;

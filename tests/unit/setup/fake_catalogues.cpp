@@ -143,6 +143,11 @@ void resolve_width(Options& options, const DesignSpace& space) {
   if (!options.has("width")) options.set("width", static_cast<std::int64_t>(3 * space.dimension()));
 }
 
+template <Capabilities kCan>
+Capabilities can(const Options&) {
+  return kCan;
+}
+
 std::vector<OptimiserEntry> make_optimisers() {
   OptionSpec target;
   target.name = "target";
@@ -152,11 +157,11 @@ std::vector<OptimiserEntry> make_optimisers() {
       {"rate", OptionKind::number, "1", 0.5, false, 0, 1, {}, "mutation rate"},
       target,
       {"width", OptionKind::integer, "1", {}, false, 1, 100, {}, "starts per variable (default: 3 per variable)"}};
-  return {{"ga", "evolves", {}, options, make_idle, resolve_width},
-          {"simple", "unconstrained, continuous", {1, false, false, false, true}, {}, make_idle},
-          {"newton", "by derivatives", {1, true, true, true, true}, {}, make_idle},
-          {"sweep", "tries all", {9, true, true, false, false}, {}, make_idle},
-          {"broken", "refuses its options", {}, {}, make_broken}};
+  return {{"ga", "evolves", can<Capabilities{}>, options, make_idle, resolve_width},
+          {"simple", "unconstrained, continuous", can<Capabilities{1, false, false, false, true}>, {}, make_idle},
+          {"newton", "by derivatives", can<Capabilities{1, true, true, true, true}>, {}, make_idle},
+          {"sweep", "tries all", can<Capabilities{9, true, true, false, false}>, {}, make_idle},
+          {"broken", "refuses its options", can<Capabilities{}>, {}, make_broken}};
 }
 
 }  // namespace

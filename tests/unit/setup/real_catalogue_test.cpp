@@ -4,6 +4,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/core/error.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 
@@ -58,7 +59,7 @@ TEST(RealCatalogue, LinearNamesParameters) {
   EXPECT_EQ(
       message_of(kLinear + "coefficients = { l_x = 1 }\nbound = \"1 m\"\n"),
       "s.toml:10: constraint[1]: coefficient of 'l_x', which is no parameter of mechanism 4ppa-2par; expected one "
-      "of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0; did you mean 'l_u'?");
+      "of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s; did you mean 'l_u'?");
 }
 
 TEST(RealCatalogue, PlaneOffTheRailIsWarnedOf) {
@@ -76,6 +77,106 @@ TEST(RealCatalogue, NodesDoNotIntegrateOverThePlane) {
       message_of("[workspace]\ny = \"integrated\"\nnodes = { x = 12, theta = 12 }\n"),
       "s.toml:10: workspace: nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance "
       "instead");
+}
+
+/// A study of another mechanism, its [workspace] being `workspace`.
+Study read_quadrupteron(const std::string& workspace) {
+  return read_study_toml(
+      "[mechanism]\ntype = \"quadrupteron\"\n[variables]\nr = { min = 0.03, max = 0.05 }\n"
+      "[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\n[workspace]\n" +
+          workspace,
+      "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
+}
+
+std::string quadrupteron_message(const std::string& workspace) {
+  try {
+    read_quadrupteron(workspace);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(RealCatalogue, TheHeldCoordinateIsTheOneThatIsGiven) {
+  const auto plan = [](const std::string& workspace) { return read_quadrupteron(workspace).problem->parts().plan; };
+  EXPECT_EQ(plan("").held.coordinate, std::nullopt);
+  EXPECT_EQ(plan("phi = \"30 deg\"").held.coordinate, 3);
+  EXPECT_EQ(plan("phi = \"30 deg\"").held.value, kPi / 6);
+  EXPECT_EQ(plan("x = \"200 mm\"").held.coordinate, 0);
+  EXPECT_EQ(plan("z = \"middle\"").held.coordinate, 2);
+  EXPECT_EQ(plan("z = \"middle\"").held.kind, HeldCoordinate::Kind::middle);
+  // cells, box and nodes are those of the coordinates that are left
+  EXPECT_THAT(plan("method = \"voxels\"\ny = 0.2\ncells = { x = 4, z = 5, phi = 6 }").cells, ElementsAre(4, 5, 6));
+  EXPECT_THAT(plan("y = 0.2\nnodes = { phi = 6, x = 4 }").nodes, ElementsAre(4, 6));
+  EXPECT_THAT(plan("z = 0.2\nnodes = { phi = 6, x = 4 }").nodes, ElementsAre(4, 6)) << "columns along y";
+  EXPECT_THAT(plan("nodes = { y = 6, x = 4 }").nodes, ElementsAre(4, 6));
+  EXPECT_EQ(read_quadrupteron("x = 0.2").problem->objectives()[0].unit, "m^2 rad");
+  EXPECT_EQ(read_quadrupteron("phi = 0").problem->objectives()[0].unit, "m^3");
+  EXPECT_THAT(describe(read_quadrupteron("x = 0.2")), HasSubstr("  x          0.2 m\n"));
+}
+
+TEST(RealCatalogue, WrongHeldCoordinates) {
+  EXPECT_EQ(
+      quadrupteron_message("x = 0.2\nphi = 0"),
+      "s.toml:10: workspace.x: a survey holds one coordinate and sweeps the others, but both phi and x are given");
+  EXPECT_EQ(quadrupteron_message("phi = 30"),
+            "s.toml:10: workspace.phi: found 30; expected an angle in [-pi, pi] rad; write \"30 deg\" for degrees");
+  EXPECT_EQ(quadrupteron_message("x = \"integrated\""),
+            "s.toml:10: workspace.x: the mechanism quadrupteron cannot integrate its workspace over x; give \"middle\" "
+            "or a number in m");
+  EXPECT_THAT(quadrupteron_message("method = \"voxels\"\ny = 0.2\ncells = { x = 4, y = 5, z = 6 }"),
+              HasSubstr("s.toml:12: workspace.cells.y: found an unknown coordinate; expected one of x, z, phi"));
+  EXPECT_THAT(message_of("[workspace]\nx = 0.2\n"), HasSubstr("found an unknown key"));
+}
+
+const std::string kClearance = "[[constraint]]\ntype = \"clearance\"\n";  // lines 10, 11
+
+TEST(RealCatalogue, ClearanceCutsTheWorkspaceByBothMethods) {
+  const auto volume = [](const std::string& more) {
+    const Study study = read(more);
+    Survey<double> survey;
+    const ProblemParts& parts = study.problem->parts();
+    parts.mechanism->prepare(parts.plan, parts.demand)->survey(parts.parameters, survey);
+    return survey.volume;
+  };
+  const std::string columns = "[workspace]\nmethod = \"columns\"\n", voxels = "[workspace]\nmethod = \"voxels\"\n";
+  for (const auto& method : {columns, voxels}) {
+    const double free = volume(method), touching = volume(method + kClearance),
+                 apart = volume(method + kClearance + "min = \"20 mm\"\n");
+    EXPECT_LT(touching, 0.995 * free) << method;
+    EXPECT_LT(apart, 0.999 * touching) << method;
+    EXPECT_EQ(volume(method + "limits = { clearance_min = \"20 mm\" }\n"), apart) << method;
+    EXPECT_EQ(volume(method + "limits = { clearance_min = -2 }\n"), free) << method;
+    EXPECT_EQ(volume(method + kClearance + "min = \"60 mm\"\n"), 0) << "the lower bars are 40 mm from the platform";
+  }
+  EXPECT_NEAR(volume(voxels + kClearance), volume(columns + kClearance), 0.01);
+}
+
+TEST(RealCatalogue, ClearanceIsSpelledOut) {
+  const Study study = read(kClearance);
+  EXPECT_EQ(study.constraints[0].role, "cuts the workspace by clearance_min");
+  EXPECT_EQ(study.constraints[0].options.number("min"), 0);
+  EXPECT_THAT(describe(study),
+              HasSubstr("clearance_min  0 m                     from constraint[1] clearance (line 10)"));
+  EXPECT_THAT(describe(read("")), HasSubstr("clearance_min  -2 m"));
+  EXPECT_EQ(message_of(kClearance + "min = \"-1 mm\"\n"),
+            "s.toml:12: constraint[1].min: found \"-1 mm\"; expected a number in [0, 100] m");
+  EXPECT_EQ(message_of(kClearance + "max = 1\n"),
+            "s.toml:12: constraint[1].max: found an unknown key; expected one of type, min");
+  EXPECT_EQ(
+      message_of("[workspace]\nlimits = { clearance_min = 0 }\n" + kClearance),
+      "s.toml:12: constraint[1]: the threshold clearance_min is set here and in workspace.limits (line 11); set it "
+      "once");
+}
+
+TEST(RealCatalogue, GradientsAreRefusedUnderAClearance) {
+  const std::string gradient = "[[stage]]\noptimiser = \"ipopt\"\n";
+  EXPECT_EQ(message_of(gradient), "accepted");
+  EXPECT_EQ(message_of(kClearance + gradient),
+            "s.toml:13: stage[2].optimiser: the optimiser ipopt needs derivatives, but the study limits the clearance "
+            "of links (clearance_min), which may end columns where no formula says, and such surveys have no "
+            "derivatives; take an optimiser without gradients, or keep the sliders apart by h_min");
+  EXPECT_EQ(message_of(kClearance + "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"bobyqa\"\n"), "accepted");
 }
 
 }  // namespace

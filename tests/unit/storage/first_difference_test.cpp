@@ -58,7 +58,7 @@ TEST(FirstDifference, SeesTheLastBit) {
 TEST(FirstDifference, SeesWhatOnlyOneHas) {
   EXPECT_EQ(difference_after([](StudyContents& s) { s.extensions.pop_back(); }),
             "/extensions/stage: 2 against 1 values");
-  EXPECT_EQ(difference_after([](StudyContents& s) { s.stages.pop_back(); }), "/stages@count: 2 against 1");
+  EXPECT_EQ(difference_after([](StudyContents& s) { s.stages.pop_back(); }), "/stages@count: 3 against 2");
   EXPECT_EQ(difference_after([](StudyContents& s) { s.final.reset(); }), "only one has /final@volume_unit");
   EXPECT_EQ(difference_after([](StudyContents& s) { s.final->baseline.reset(); }),
             "/final/baseline@status against /final/best_exact@status");

@@ -94,6 +94,17 @@ inline StudyContents sample_study() {
   study.stages.push_back(sample_stage(study.problem.shape(), 0, 0));  // begun, nothing evaluated
   study.stages[1].optimiser = "nlopt";
   study.stages[1].options.clear();
+  study.stages.push_back(sample_stage(study.problem.shape(Detail::derivatives), 6, 1));
+  StageRecord& solver = study.stages.back();
+  solver.optimiser = "ipopt";
+  double slope = 0.25;
+  for (double& x : solver.table.slopes) x = slope = 3.9 * slope * (1 - slope);
+  solver.starts = {{"best of stage 1", 0, 2, 1, "converged", "optimal solution found", 3e-8},
+                   {"Sobol point 1", 2, 3, 2, "time limit", "", odd_nan()}};
+  solver.optimality = OptimalityRecord{3e-8,
+                                       {{"rail-length", "constraint", 0.2, "m"}, {"a", "upper bound", 1.5, "m"}},
+                                       {{"a", "m", 1.5, odd_nan()}, {"b", "m", -2, odd_nan()}, {"L0", "m", 0.1, 0.3}}};
+  study.notes = {"stage 3: start 1 began anew."};
   study.best = {0, 8};
   FinalRecord& final = study.final.emplace();
   final.best = sample_design(1);

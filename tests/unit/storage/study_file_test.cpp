@@ -46,7 +46,7 @@ TEST(StudyFile, KeepsEverything) {
   EXPECT_EQ(read.problem.objectives[0].direction, Direction::maximise);
   EXPECT_EQ(read.problem.parameters[2].variable, -1);
   EXPECT_EQ(read.problem.shape(), written.problem.shape());
-  ASSERT_EQ(read.stages.size(), 2u);
+  ASSERT_EQ(read.stages.size(), 3u);
   const EvaluationTable &a = written.stages[0].table, &b = read.stages[0].table;
   EXPECT_EQ(b.shape(), a.shape());
   EXPECT_TRUE(same_bits(a.designs, b.designs));
@@ -59,7 +59,18 @@ TEST(StudyFile, KeepsEverything) {
   EXPECT_THAT(read.stages[0].generations.population_of(1), testing::ElementsAre(4, 5, 6, 7));
   EXPECT_THAT(read.stages[0].generations.population_of(2), testing::ElementsAre(8, 9, 10, 11));
   EXPECT_EQ(read.stages[1].table.size(), 0u);
-  EXPECT_EQ(read.evaluations(), 12);
+  EXPECT_EQ(read.evaluations(), 18);
+  EXPECT_EQ(read.stages[2].table.shape(), written.problem.shape(Detail::derivatives));
+  EXPECT_TRUE(same_bits(written.stages[2].table.slopes, read.stages[2].table.slopes));
+  ASSERT_EQ(read.stages[2].starts.size(), 2u);
+  EXPECT_EQ(read.stages[2].starts[1].origin, "Sobol point 1");
+  EXPECT_EQ(read.stages[2].starts[1].stop, "time limit");
+  ASSERT_TRUE(read.stages[2].optimality);
+  EXPECT_EQ(read.stages[2].optimality->active[0].multiplier, 0.2);
+  EXPECT_TRUE(std::isnan(read.stages[2].optimality->sensitivities[0].reoptimised));
+  EXPECT_FALSE(read.stages[0].optimality);
+  EXPECT_FALSE(read.reproducible());
+  EXPECT_EQ(read.notes, written.notes);
   ASSERT_TRUE(read.final && read.final->best && read.final->baseline && read.final->map);
   EXPECT_FALSE(read.final->rounded);
   EXPECT_TRUE(read.final->best->touches_box);
@@ -91,6 +102,18 @@ TEST(StudyFile, KeepsAStudyWithoutMarginsAndReports) {
   EXPECT_EQ(first_difference(study, read), "");
   EXPECT_EQ(read.stages[0].table.size(), 10u);
   EXPECT_EQ(read.stages[0].table.margin_row(3).size(), 0u);
+}
+
+TEST(StudyFile, StartsMustFollowOneAnother) {
+  const Folder folder;
+  StudyContents study = test::sample_study();
+  study.stages[2].starts[1].first_row = 3;
+  EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
+              HasSubstr("/stages/3: starts do not follow one another within evaluations"));
+  study = test::sample_study();
+  study.stages[2].starts[0].end_row = 2;
+  EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
+              HasSubstr("/stages/3: a start's end is not among its rows"));
 }
 
 TEST(StudyFile, KeepsPopulationsOfDifferentSizes) {
@@ -157,6 +180,23 @@ TEST(StudyFile, OldFilesStillOpen) {
   EXPECT_THAT(study.final->active, testing::ElementsAre("a at its upper bound", "rail-length"));
 }
 
+TEST(StudyFile, FilesOfSchemaTwoStillOpen) {
+  // Written once by write_study when schema 2 was fixed, as schema-1.h5 was. Never to be replaced.
+  const StudyContents study = read_study(PKM_TEST_DATA "/schema-2.h5");
+  ASSERT_EQ(study.stages.size(), 3u);
+  const StageRecord& stage = study.stages[2];
+  EXPECT_EQ(stage.optimiser, "ipopt");
+  ASSERT_EQ(stage.table.shape(), (EvaluationShape{2, 1, 2, 1, Detail::derivatives}));
+  EXPECT_EQ(stage.table.slope_row(0)[0], 3.9 * 0.25 * 0.75);
+  ASSERT_EQ(stage.starts.size(), 2u);
+  EXPECT_EQ(stage.starts[0].message, "optimal solution found");
+  EXPECT_EQ(stage.starts[1].end_row, 2);
+  ASSERT_TRUE(stage.optimality);
+  EXPECT_EQ(stage.optimality->active[1].kind, "upper bound");
+  EXPECT_EQ(stage.optimality->sensitivities[2].reoptimised, 0.3);
+  EXPECT_THAT(study.notes, testing::ElementsAre("stage 3: start 1 began anew."));
+}
+
 TEST(StudyFileRefuses, MissingFile) {
   const Folder folder;
   const std::string path = folder / "none.h5";
@@ -200,10 +240,10 @@ TEST(StudyFileRefuses, NewerSchema) {
   const std::string path = folder / "s.h5";
   write_study(path, StudyContents{});
   std::string bytes = slurp(path);
-  bytes.replace(bytes.find("schema=1"), 8, "schema=2");
+  bytes.replace(bytes.find("schema=2"), 8, "schema=3");
   spill(path, bytes);
   EXPECT_EQ(storage_error([&] { read_study(path); }),
-            path + ": written with study schema 2, but this program reads schemas up to 1; use a newer pkmopt");
+            path + ": written with study schema 3, but this program reads schemas up to 2; use a newer pkmopt");
   EXPECT_EQ(slurp(path), bytes);
 }
 

@@ -163,6 +163,46 @@ TEST_F(RunStudy, RefusesOtherAlgorithmsAndOtherPaths) {
   EXPECT_THAT(message(edited), HasSubstr("b.h5 cannot be continued: "));
 }
 
+// A file from before the mechanism had its last parameters: they are added, at their defaults.
+TEST_F(RunStudy, AParameterGainedSinceIsNoObstacle) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  Progress silent;
+  const auto straight = run_study(study, path("straight.h5"), false, {}, silent).contents;
+  StopAt at(4);
+  StudyContents old = run_study(study, path("a.h5"), false, {}, at).contents;
+  const std::size_t count = old.problem.parameters.size();
+  old.problem.parameters.resize(count - 2);
+  write_study(path("old.h5"), old);
+  EXPECT_EQ(read_study(path("old.h5")).problem.parameters.size(), count - 2);
+  const auto resumed = resume_study(path("old.h5"), catalogues(), {}, {}, silent);
+  EXPECT_EQ(resumed.stopped, "");
+  EXPECT_EQ(first_difference(straight, read_study(path("old.h5"))), "");
+}
+
+TEST_F(RunStudy, RefusesAProblemThatHasChanged) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  StopAt at(3);
+  const auto contents = run_study(study, path("a.h5"), false, {}, at).contents;
+  const auto message = [&](const auto& change) {
+    StudyContents changed = contents;
+    change(changed.problem.parameters);
+    write_study(path("b.h5"), changed);
+    Progress silent;
+    try {
+      resume_study(path("b.h5"), catalogues(), {}, {}, silent);
+    } catch (const StorageError& error) {
+      return std::string(error.what()).substr(path("b.h5").size());
+    }
+    return std::string("accepted");
+  };
+  using Parameters = std::vector<ParameterRecord>;
+  EXPECT_EQ(message([](Parameters& p) { p[4].value = 0.16; }),
+            " cannot be continued: it was begun with d = 0.16 m, where this program takes 0.15 m");
+  EXPECT_EQ(message([](Parameters& p) { p[4].name = "height"; }),
+            " cannot be continued: it has the parameter height, which this program's mechanism 4ppa-2par has not");
+  EXPECT_EQ(message([](Parameters&) {}), "accepted");
+}
+
 TEST_F(RunStudy, RefusesALimitThatTheLastStageHasNot) {
   const Study study = read_study_toml(R"([mechanism]
 type = "4ppa-2par"

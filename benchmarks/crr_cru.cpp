@@ -1,0 +1,48 @@
+// Surveys of (3CRR/R)&CRU and the Quadrupteron, nominal, with margins: for each coordinate that may be held.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "engine/mechanisms/all.hpp"
+
+namespace pkm::benchmarks {
+namespace {
+
+/// @param held  0 to 3; off the middle, where slides' ranges would coincide
+SurveyPlan plan_of(Method method, int held) {
+  SurveyPlan plan;
+  plan.method = method;
+  plan.cells = {32, 34, 60};
+  plan.held = {HeldCoordinate::Kind::value, held == 3 ? 0.3 : 0.21, held};
+  plan.limits = {{0.2, 0.1}, {false, false}};
+  return plan;
+}
+
+template <class S>
+void survey(benchmark::State& state, const char* name, Method method) {
+  const auto& mechanism =
+      **std::ranges::find_if(all_mechanisms(), [&](const auto& m) { return m->info().name == name; });
+  std::vector<S> parameters;
+  for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
+  const auto surveyor = mechanism.prepare(plan_of(method, static_cast<int>(state.range(0))), {});
+  Survey<S> result;
+  for (auto _ : state) {
+    surveyor->survey(std::span<const S>(parameters), result);
+    benchmark::DoNotOptimize(result.volume);
+  }
+}
+
+void jointed_columns(benchmark::State& state) { survey<double>(state, "3crr-r-cru", Method::columns); }
+void jointed_slopes(benchmark::State& state) { survey<Dual4>(state, "3crr-r-cru", Method::columns); }
+void jointed_voxels(benchmark::State& state) { survey<double>(state, "3crr-r-cru", Method::voxels); }
+void rigid_columns(benchmark::State& state) { survey<double>(state, "quadrupteron", Method::columns); }
+void rigid_voxels(benchmark::State& state) { survey<double>(state, "quadrupteron", Method::voxels); }
+
+BENCHMARK(jointed_columns)->Name("crr_cru/columns/held")->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
+BENCHMARK(jointed_slopes)->Name("crr_cru/columns_gradient/held")->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
+BENCHMARK(jointed_voxels)->Name("crr_cru/voxels/held")->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
+BENCHMARK(rigid_columns)->Name("quadrupteron/columns/held")->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
+BENCHMARK(rigid_voxels)->Name("quadrupteron/voxels/held")->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace pkm::benchmarks

@@ -1,0 +1,137 @@
+// (3CRR/R)&CRU and Quadrupteron as mechanisms of the catalogue.
+#include <stdexcept>
+
+#include "engine/core/options.hpp"
+#include "engine/mechanisms/crr_cru_forward.hpp"
+#include "engine/mechanisms/crr_cru_inspect.hpp"
+#include "engine/mechanisms/crr_cru_survey.hpp"
+#include "engine/mechanisms/list.hpp"
+
+namespace pkm {
+namespace {
+
+using namespace crr_cru;
+
+/// "-,-,+,-"
+std::string name_of(const WorkingMode& mode) {
+  std::string name;
+  for (const int sign : mode) name += (name.empty() ? "" : ",") + std::string(sign > 0 ? "+" : "-");
+  return name;
+}
+
+/// All 16, the nominal one first.
+std::vector<WorkingMode> all_modes() {
+  const WorkingMode nominal = {-1, -1, 1, -1};
+  std::vector<WorkingMode> modes = {nominal};
+  for (int bits = 0; bits < 16; ++bits) {
+    const WorkingMode mode = {bits & 8 ? 1 : -1, bits & 4 ? 1 : -1, bits & 2 ? 1 : -1, bits & 1 ? 1 : -1};
+    if (mode != nominal) modes.push_back(mode);
+  }
+  return modes;
+}
+
+MechanismInfo make_info(Platform platform) {
+  const bool jointed = platform == Platform::jointed;
+  MechanismInfo i;
+  i.name = jointed ? "3crr-r-cru" : "quadrupteron";
+  i.title = jointed ? "(3CRR/R)&CRU: three CRR limbs on a middle platform, a CRU limb turns the moving one"
+                    : "Quadrupteron: three CRU limbs and a CRR limb on one platform";
+  i.source =
+      "Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458 ((3CRR/R)&CRU and the "
+      "Quadrupteron that it is derived from)";
+  const double rods[4][2] = {{0.170, 0.225}, {0.237, 0.208}, {0.223, 0.179}, {0.166, 0.223}};
+  for (std::size_t limb = 0; limb < 4; ++limb)
+    for (std::size_t rod = 0; rod < 2; ++rod)
+      i.parameters.push_back(
+          {"l_" + std::to_string(limb + 1) + std::to_string(rod + 1), "m", rods[limb][rod], 1e-3, 100,
+           "length of limb " + std::to_string(limb + 1) + "'s rod next to the " + (rod == 0 ? "slide" : "platform")});
+  const char* const angle = "angle of limb ";
+  i.parameters.insert(
+      i.parameters.end(),
+      {{"r", "m", 0.040, 0, 100, "radius of the circle of the platform joints of limbs 1 to 3"},
+       {"h", "m", 0.020, -100, 100, "height of D above the circle's centre N"},
+       {"l", "m", 0.067, 1e-3, 100, "arm from D to the platform joint of limb 4"},
+       {"L", "m", 0.400, 1e-3, 100, "spacing of the rails"},
+       {"beta_1", "rad", kPi / 3, -4 * kPi, 4 * kPi, angle + std::string("1's joint on the circle")},
+       {"beta_2", "rad", kPi, -4 * kPi, 4 * kPi, angle + std::string("2's joint on the circle")},
+       {"beta_3", "rad", 5 * kPi / 3, -4 * kPi, 4 * kPi, angle + std::string("3's joint on the circle")},
+       {"rho_min", "m", 0, -100, 100, "where the slides' range begins"},
+       {"rho_max", "m", 0.400, -100, 100, "where the slides' range ends"}});
+  i.coordinates = {"x", "y", "z", "phi"};
+  i.joints = {"rho1", "rho2", "rho3", "rho4"};
+  for (const WorkingMode& mode : all_modes()) i.modes.push_back(name_of(mode));
+  i.swept = {0, 1, 2};
+  i.held = 3;
+  i.column = 2;
+  i.volume_unit = "m^3";
+  i.more_sweeps = {{{1, 2, 3}, 0, 2, "m^2 rad"}, {{0, 2, 3}, 1, 2, "m^2 rad"}, {{0, 1, 3}, 2, 1, "m^2 rad"}};
+  i.limits = {
+      {"s_min", "1", 0, 0, 1, "singularity-margin", "", "least |sin(theta_i2)|: distance from limbs' singularities"},
+      {"c_min", "1", 0, 0, 1, "singularity-margin", "", "least kappa_p: distance from the parallel singularity"},
+  };
+  i.characteristic_length = jointed ? "l" : "l + r";
+  return i;
+}
+
+class CrrCru final : public Mechanism {
+ public:
+  explicit CrrCru(Platform platform) : platform_(platform), info_(make_info(platform)) {}
+
+  const MechanismInfo& info() const override { return info_; }
+
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
+    return make_surveyor(platform_, sweep_of(info_, plan).held, plan, demand);
+  }
+  VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
+    return crr_cru::voxel_map(platform_, sweep_of(info_, plan).held, p, plan);
+  }
+  void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
+  void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const override {}
+  double size(std::span<const double>) const override { return 1; }
+  Dual4 size(std::span<const Dual4>) const override { return 1; }
+  using Mechanism::thresholds;
+  void thresholds(std::span<const Dual4>, const LimitSpec& spec, std::span<Dual4> values) const override {
+    const Limits l = limits(spec);
+    values[kSMin] = l.s_min;
+    values[kCMin] = l.c_min;
+  }
+  NamedValues facts(std::span<const double> p, const LimitSpec&) const override {
+    const auto y = yaw(geometry(platform_, p));
+    return {{"R", y.R}, {"delta", offset(y)}};
+  }
+  std::string refuse(std::span<const double> p) const override {
+    for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+      const Parameter& parameter = info_.parameters[i];
+      if (!(p[i] >= parameter.lower && p[i] <= parameter.upper))
+        return parameter.name + " = " + shortest(p[i]) + " is outside the model's range " + shortest(parameter.lower) +
+               " to " + shortest(parameter.upper) + " " + parameter.unit;
+    }
+    if (!(p[kRhoMin] < p[kRhoMax]))
+      return "rho_min = " + shortest(p[kRhoMin]) +
+             " m leaves the slides no range below rho_max = " + shortest(p[kRhoMax]) + " m";
+    const auto g = geometry(platform_, p);
+    if (!(yaw(g).R > 1e-9 * g.l)) return "with r = l and beta_2 = 0 no slide controls the yaw";
+    return {};
+  }
+  PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
+                     const LimitSpec& spec) const override {
+    for (const WorkingMode& known : modes_)
+      if (mode == name_of(known)) return crr_cru::inspect(geometry(platform_, p), limits(spec), pose, known);
+    throw std::invalid_argument("unknown working mode " + mode);
+  }
+  std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& rho) const override {
+    return crr_cru::forward(geometry(platform_, p), rho);
+  }
+
+ private:
+  Platform platform_;
+  MechanismInfo info_;
+  std::vector<WorkingMode> modes_ = all_modes();
+};
+
+}  // namespace
+
+std::shared_ptr<const Mechanism> make_three_crr_r_cru() { return std::make_shared<CrrCru>(Platform::jointed); }
+std::shared_ptr<const Mechanism> make_quadrupteron() { return std::make_shared<CrrCru>(Platform::rigid); }
+
+}  // namespace pkm

@@ -1,0 +1,86 @@
+// (3CRR/R)&CRU and Quadrupteron: the pieces of the outer coordinate on which sections keep their formulas.
+//
+// The area of a section is smooth in the outer coordinate while its structure stays the same. Breaks with a closed
+// form are listed first; the structure's signature is then sampled between them, and each change that is seen is
+// followed to the last bits. Breaks move with the design: a closed form carries its derivative along, the others have
+// that of an implicit function (crr_cru_columns.hpp). Where the area jumps - a slide's range or kappa_p opens or closes
+// the section as a whole - the break has a closed form.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/mechanisms/crr_cru_section.hpp"
+
+namespace pkm::crr_cru {
+
+/// A break: where, and on which sides the area behaves like a square root.
+template <class S>
+struct Break {
+  S at;
+  bool root_below = false;
+  bool root_above = false;
+};
+
+/// Fills `pieces` with those parts between the first and the last break on which the section is not empty.
+/// @param breaks     both ends of the outer coordinate and known breaks, in any order; sorted
+/// @param signature  of the section at a value of the outer coordinate, 0: empty
+/// @param moving     gives a break that was found its derivatives
+/// @param samples    of the signature over the whole range
+template <class S, class Signature, class Moving>
+void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, const Moving& moving, int samples,
+                 std::vector<Piece<S>>& pieces) {
+  pieces.clear();
+  std::sort(breaks.begin(), breaks.end(),
+            [](const Break<S>& a, const Break<S>& b) { return value_of(a.at) < value_of(b.at); });
+  const double whole = value_of(breaks.back().at) - value_of(breaks.front().at);
+  if (!(whole > 0)) return;
+  const double near = 1e-13 * whole;  // breaks nearer than this are one
+  std::uint64_t before = 0;           // signature of the piece before
+  Break<S> from = breaks.front();
+  const auto add = [&](const Break<S>& to, std::uint64_t now) {
+    const bool joins = !pieces.empty() && now == before && value_of(pieces.back().upper) == value_of(from.at);
+    if (now != 0 && joins) {
+      pieces.back().upper = to.at;
+      pieces.back().root_upper = to.root_below;
+    } else if (now != 0) {
+      pieces.push_back({from.at, to.at, from.root_above, to.root_below});
+    }
+    before = now;
+    from = to;
+  };
+  for (std::size_t i = 1; i < breaks.size(); ++i) {
+    const Break<S>& to = breaks[i];
+    const double low = value_of(from.at), high = value_of(to.at), length = high - low;
+    if (length < near) {
+      from.root_above = from.root_above || to.root_above;
+      if (!pieces.empty() && value_of(pieces.back().upper) == low)
+        pieces.back().root_upper = pieces.back().root_upper || to.root_below;
+      continue;
+    }
+    const int steps = std::max(1, static_cast<int>(std::ceil(samples * length / whole)));
+    const double inset = std::min(0.25 * length, 1e-7 * whole);  // off the breaks, where rounding decides
+    double at = low + inset;
+    std::uint64_t now = signature(at);
+    for (int k = 1; k <= steps; ++k) {
+      const double next = k == steps ? high - inset : low + length * (k / static_cast<double>(steps));
+      const std::uint64_t then = signature(next);
+      for (int more = 0; more < 8 && now != then; ++more) {  // several breaks may lie between two samples
+        double same = at, other = next;
+        while (other - same > 1e-15 * (whole + std::fabs(other))) {
+          const double middle = 0.5 * (same + other);
+          (signature(middle) == now ? same : other) = middle;
+        }
+        add({moving(other), true, true}, now);
+        at = other;
+        now = signature(at);
+      }
+      at = next;
+      now = then;
+    }
+    add(to, now);
+  }
+}
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,17 @@
+// (3CRR/R)&CRU and Quadrupteron: the surveys of a plan.
+#pragma once
+
+#include <memory>
+
+#include "engine/mechanisms/crr_cru.hpp"
+#include "engine/workspace/mechanism.hpp"
+
+namespace pkm::crr_cru {
+
+/// @param held  number of the coordinate that the plan holds
+std::unique_ptr<const Surveyor> make_surveyor(Platform platform, int held, const SurveyPlan& plan,
+                                              const Demand& demand);
+
+VoxelMap voxel_map(Platform platform, int held, std::span<const double> parameters, const SurveyPlan& plan);
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,22 @@
+#include "engine/mechanisms/four_ppa_two_par_links.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+std::string link_name(std::size_t link) {
+  for (int limb = 0; limb < 2; ++limb) {
+    const std::string of_limb = " of limb " + std::to_string(limb + 1);
+    const auto within = [&](LinkGroup group) {  // place of the link in the group, or -1
+      const GroupRange range = links_of(group_of(limb, group));
+      return link >= range.first && link < range.end ? static_cast<int>(link - range.first) : -1;
+    };
+    const auto slider = [&](int first_or_second) { return std::to_string(2 * limb + first_or_second + 1); };
+    if (const int i = within(kSliders); i >= 0) return "slider " + slider(i);
+    if (const int i = within(kUpperBars); i >= 0) return "upper bar of slider " + slider(i / 2);
+    if (within(kConnectorSide) >= 0 || within(kLowerBars) == 0) return "upper connector" + of_limb;
+    if (within(kLowerBars) > 0) return "lower bar" + of_limb;
+    if (within(kLowerConnector) >= 0) return "lower connector" + of_limb;
+  }
+  return "platform";
+}
+
+}  // namespace pkm::four_ppa_two_par

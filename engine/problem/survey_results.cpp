@@ -1,0 +1,49 @@
+#include "engine/problem/survey_results.hpp"
+
+#include "engine/math/statistics.hpp"
+#include "engine/problem/conditioning_options.hpp"
+
+namespace pkm {
+namespace {
+
+std::string no_unit(const MechanismInfo&, const SurveyPlan&) { return "1"; }
+bool always(const MechanismInfo&) { return true; }
+void nothing(const EntryContext&, Demand&) {}
+
+/// A result that is a smooth function of the survey.
+template <class F>
+SurveyResult smooth_result(SurveyResult result, F) {
+  result.value = [](const Survey<double>& survey) { return F()(survey); };
+  result.smooth = [](const Survey<Dual4>& survey, double) { return F()(survey); };
+  return result;
+}
+
+/// A result with kinks, and its stand-in.
+template <class F, class G>
+SurveyResult worst_case(SurveyResult result, F, G) {
+  result.value = [](const Survey<double>& survey) { return F()(survey); };
+  result.smooth = [](const Survey<Dual4>& survey, double sharpness) { return G()(survey, sharpness); };
+  result.has_stand_in = true;
+  return result;
+}
+
+}  // namespace
+
+const std::vector<SurveyResult>& survey_results() {
+  static const std::vector<SurveyResult> list = {
+      smooth_result(
+          {"volume", "measure of the feasible poses over the swept coordinates", volume_unit, always, nothing},
+          [](const auto& survey) { return survey.volume; }),
+      smooth_result({"conditioning_mean", "mean inverse condition number of the Jacobian", no_unit, has_jacobian,
+                     demand_conditioning},
+                    [](const auto& survey) { return weighted_mean(survey.weight, survey.conditioning); }),
+      worst_case(
+          {"conditioning_min", "least inverse condition number of the Jacobian", no_unit, has_jacobian,
+           demand_conditioning},
+          [](const auto& survey) { return least(survey.conditioning); },
+          [](const auto& survey, double r) { return soft_least(survey.weight, survey.conditioning, r); }),
+  };
+  return list;
+}
+
+}  // namespace pkm

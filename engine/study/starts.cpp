@@ -1,0 +1,100 @@
+#include "engine/study/starts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/optimisers/order.hpp"
+
+namespace pkm {
+namespace {
+
+/// What a basin is looked for among: the best so many evaluations.
+constexpr std::size_t kMostCandidates = 4000;
+
+std::vector<double> baseline_or_middle(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  std::vector<double> design;
+  for (std::size_t v = 0; v < parts.space.dimension(); ++v)
+    design.push_back(study.baseline ? parts.space.nearest(v, (*study.baseline)[parts.varies[v]])
+                                    : parts.space.from_unit(v, 0.5));
+  return design;
+}
+
+StartDesign best_so_far(const Study& study, const StudyContents& contents) {
+  if (contents.best.row < 0)
+    return {baseline_or_middle(study), study.baseline ? "the baseline" : "the middle of the ranges"};
+  const auto design = contents.stages[static_cast<std::size_t>(contents.best.stage)].table.design(
+      static_cast<std::size_t>(contents.best.row));
+  return {{design.begin(), design.end()}, "best of stage " + std::to_string(contents.best.stage + 1)};
+}
+
+/// Designs that no better one is near to: for each, no better evaluation lies within `radius` of it in every variable,
+/// in units of the ranges. Best first.
+std::vector<StartDesign> basins(const Study& study, const StudyContents& contents, std::size_t most, double radius) {
+  struct Candidate {
+    Ranked rank;
+    std::size_t stage;
+    std::vector<double> unit;
+  };
+  const Problem& problem = *study.problem;
+  std::vector<Candidate> candidates;
+  for (std::size_t s = 0; s < contents.stages.size(); ++s) {
+    const EvaluationTable& table = contents.stages[s].table;
+    for (std::size_t row = 0; row < table.size(); ++row)
+      if (table.status[row] != Status::failed) candidates.push_back({ranked(problem, table, row), s, {}});
+  }
+  const auto by_rank = [](const Candidate& a, const Candidate& b) {
+    if (a.rank.status != b.rank.status) return a.rank.status < b.rank.status;
+    if (a.rank.value != b.rank.value) return a.rank.value < b.rank.value;
+    return std::pair(a.stage, a.rank.row) < std::pair(b.stage, b.rank.row);
+  };
+  std::sort(candidates.begin(), candidates.end(), by_rank);
+  candidates.resize(std::min(candidates.size(), kMostCandidates));
+  std::vector<StartDesign> found;
+  for (std::size_t i = 0; i < candidates.size() && found.size() < most; ++i) {
+    const auto design =
+        contents.stages[candidates[i].stage].table.design(static_cast<std::size_t>(candidates[i].rank.row));
+    for (std::size_t v = 0; v < design.size(); ++v) candidates[i].unit.push_back(problem.space().to_unit(v, design[v]));
+    const auto near = [&](const Candidate& other) {
+      for (std::size_t v = 0; v < design.size(); ++v)
+        if (std::fabs(other.unit[v] - candidates[i].unit[v]) > radius) return false;
+      return true;
+    };
+    if (std::any_of(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(i), near)) continue;
+    found.push_back(
+        {{design.begin(), design.end()},
+         "basin " + std::to_string(found.size() + 1) + ", from stage " + std::to_string(candidates[i].stage + 1)});
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents) {
+  const Capabilities can = stage.entry->capabilities(stage.options);
+  if (!can.starts) {
+    if (contents.best.row < 0 && can.needs_objective) return {};
+    return {best_so_far(study, contents)};
+  }
+  const Options& options = stage.options;
+  std::vector<StartDesign> starts;
+  const std::string& start = options.word("start");
+  if (start == "best-of-basins" && contents.best.row >= 0)
+    starts =
+        basins(study, contents, static_cast<std::size_t>(options.integer("starts")), options.number("basin_radius"));
+  else if (start != "none")
+    starts = {best_so_far(study, contents)};
+  if (options.has("designs")) {
+    const DesignSpace& space = study.problem->space();
+    int number = 0;
+    for (const NamedNumbers& given : options.list("designs")) {
+      StartDesign design{baseline_or_middle(study), "given design " + std::to_string(++number)};
+      for (std::size_t v = 0; v < space.dimension(); ++v)
+        if (const auto value = given.find(space[v].name); value != given.end()) design.design[v] = value->second;
+      starts.push_back(std::move(design));
+    }
+  }
+  return starts;
+}
+
+}  // namespace pkm

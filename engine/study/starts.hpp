@@ -1,0 +1,16 @@
+// Where a stage begins: from what the stages before it found, or from what the study says.
+#pragma once
+
+#include <vector>
+
+#include "engine/setup/study.hpp"
+#include "engine/storage/study_contents.hpp"
+
+namespace pkm {
+
+/// The designs that a stage is given. Solvers choose them by their options (start, starts, basin_radius, designs);
+/// others get the best so far. A first stage that works on one design gets the baseline, moved into the space, or the
+/// middle of the ranges.
+std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents);
+
+}  // namespace pkm

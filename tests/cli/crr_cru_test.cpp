@@ -1,0 +1,119 @@
+// (3CRR/R)&CRU and Quadrupteron through the command line.
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+const json& golden() {
+  static const json data = json::parse(std::ifstream(PKM_TEST_DATA "/3crr-r-cru-and-quadrupteron.json"));
+  return data;
+}
+
+std::string list(const std::vector<std::string>& names, const json& values) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ",") + names[i] + "=" + values[i].dump();
+  return text;
+}
+
+/// "l_11=...,..." of a golden case.
+std::string design_list(const json& entry) {
+  const json& p = entry.contains("params") ? entry["params"] : golden()["nominal"];
+  std::string text =
+      list({"r", "h", "l", "L", "rho_min", "rho_max"}, {p["r"], p["h"], p["l"], p["L"], p["rho_min"], p["rho_max"]}) +
+      "," + list({"beta_1", "beta_2", "beta_3"}, p["beta"]);
+  return text + "," + list({"l_11", "l_21", "l_31", "l_41"}, p["l1"]) + "," +
+         list({"l_12", "l_22", "l_32", "l_42"}, p["l2"]);
+}
+
+TEST(CliCrrCru, PoseAndForwardOfGoldenCases) {
+  for (std::size_t i = 0; i < golden()["cases"].size(); i += 3) {
+    const json& entry = golden()["cases"][i];
+    SCOPED_TRACE(entry["id"].dump());
+    const std::string set = design_list(entry);
+    std::string mode;
+    for (const int sign : entry["sigma"]) mode += std::string(mode.empty() ? "" : ",") + (sign > 0 ? "+" : "-");
+    const auto result = pkmopt({"pose", entry["mechanism"], "--at", list({"x", "y", "z", "phi"}, entry["X"]), "--mode",
+                                mode, "--set", set, "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json pose = result.json();
+    EXPECT_EQ(pose["mode"], mode);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::string n = std::to_string(k + 1);
+      EXPECT_NEAR(pose["joints"]["rho" + n], entry["q"][k].get<double>(), 1e-12);
+      EXPECT_NEAR(pose["angles"]["theta_" + n + "1"], entry["theta1"][k].get<double>(), 1e-12);
+      EXPECT_NEAR(pose["angles"]["theta_" + n + "2"], entry["theta2"][k].get<double>(), 1e-12);
+      for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(pose["J"][k][j], entry["J"][k][j].get<double>(), 1e-12);
+    }
+    EXPECT_NEAR(pose["indices"]["det_J"], entry["det_J"].get<double>(), 1e-12);
+    EXPECT_NEAR(pose["indices"]["kappa_p"], entry["parallel_index"].get<double>(), 1e-12);
+    EXPECT_TRUE(pose["Jq"].is_null());
+
+    const json found = pkmopt({"forward", entry["mechanism"], "--joints",
+                               list({"rho1", "rho2", "rho3", "rho4"}, entry["q"]), "--set", set, "--json"})
+                           .json();
+    ASSERT_EQ(found["poses"].size(), 2u);
+    const json& own = found["poses"][entry["parallel_index"] > 0 ? 0 : 1];
+    const char* const names[4] = {"x", "y", "z", "phi"};
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(own[names[k]], entry["X"][k].get<double>(), 1e-11);
+  }
+}
+
+TEST(CliCrrCru, PrintsWhatExists) {
+  const auto text = pkmopt({"pose", "quadrupteron", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.out, HasSubstr("  mode       -,-,+,-\n"));
+  EXPECT_THAT(text.out, HasSubstr("\nJ, where qdot = J V\n"));
+  EXPECT_THAT(text.out, HasSubstr("  kappa_p"));
+  EXPECT_THAT(text.out, ::testing::Not(HasSubstr("Jq")));
+
+  const auto far = pkmopt({"pose", "quadrupteron", "--at", "x=0.2,y=0.17,z=1.22,phi=0.3", "--json"});
+  EXPECT_EQ(far.exit_code, 1);
+  EXPECT_EQ(far.json()["assembles"], false);
+  for (const char* key : {"joints", "J", "conditioning"}) EXPECT_TRUE(far.json()[key].is_null()) << key;
+  EXPECT_LT(far.json()["margins"]["reach_1"], 0);
+
+  const json info = pkmopt({"list", "mechanisms", "3crr-r-cru", "--json"}).json();
+  EXPECT_EQ(info["modes"].size(), 16u);
+  EXPECT_EQ(info["default_mode"], "-,-,+,-");
+  EXPECT_EQ(info["held"], "phi");
+  EXPECT_EQ(info["other_sweeps"].size(), 3u);
+  EXPECT_EQ(info["other_sweeps"][2]["columns_along"], "y");
+  EXPECT_THAT(pkmopt({"list", "mechanisms", "3crr-r-cru"}).out, HasSubstr("other_sweeps"));
+}
+
+TEST(CliCrrCru, AStudyHoldsTheCoordinateThatItNames) {
+  const StudyFolder folder;
+  const auto study = [&](const std::string& workspace) {
+    return folder.write("s.toml",
+                        "[mechanism]\ntype = \"quadrupteron\"\n[variables]\nr = { min = 0.03, max = 0.05 }\n"
+                        "[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\n"
+                        "population = 4\ngenerations = 1\n[workspace]\n" +
+                            workspace);
+  };
+  const json at_phi = pkmopt({"evaluate", study("phi = \"20 deg\""), "--json"}).json();
+  EXPECT_EQ(at_phi["workspace"]["unit"], "m^3");
+  const json at_z = pkmopt({"evaluate", study("z = \"220 mm\""), "--json"}).json();
+  EXPECT_EQ(at_z["workspace"]["unit"], "m^2 rad");
+  const json voxels =
+      pkmopt({"evaluate", study("z = \"220 mm\"\nmethod = \"voxels\"\ncells = { x = 80, y = 80, phi = 80 }"), "--json"})
+          .json();
+  EXPECT_NEAR(voxels["workspace"]["volume"].get<double>() / at_z["workspace"]["volume"].get<double>(), 1, 0.01);
+  const json check = pkmopt({"check", study("z = \"220 mm\""), "--json"}).json();
+  EXPECT_EQ(check["workspace"]["z"], 0.22);
+  EXPECT_FALSE(check["workspace"].contains("phi"));
+  const auto run = pkmopt({"run", study("z = \"220 mm\""), "--output", folder.path() + "/s.h5", "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+}  // namespace
+}  // namespace pkm::testing

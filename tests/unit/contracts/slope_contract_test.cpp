@@ -1,0 +1,149 @@
+// Laws of the slopes of every objective and every design-level constraint of the catalogues, with every mechanism whose
+// surveys have derivatives. A new entry is tested without a change here.
+#include <gtest/gtest.h>
+
+#include "tests/unit/contracts/everything.hpp"
+#include "tests/unit/contracts/slopes.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr unsigned kDesigns = 1000;
+
+class SlopeContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
+ protected:
+  void SetUp() override {
+    const std::string reason = GetParam()->prepare(plan(), {})->no_derivatives();
+    if (!reason.empty()) GTEST_SKIP() << reason;
+  }
+  const MechanismInfo& info() const { return GetParam()->info(); }
+  SurveyPlan plan() const { return test::plan(info(), Method::columns); }
+  Demand all_fields() const {
+    Demand demand;
+    demand.conditioning = !info().characteristic_length.empty();
+    return demand;
+  }
+
+  /// Compares `kDesigns` random designs with a workspace under random limits.
+  void compare(SurveyPlan p, bool volume_only, double excluded) const {
+    test::SlopeComparison comparison;
+    unsigned compared = 0;
+    for (unsigned k = 0; compared < kDesigns && k < 4 * kDesigns; ++k) {
+      Stream random(1, 0, k, Stream::Use::start);
+      p.limits = test::random_limits(info(), random);
+      const std::vector<double> design = test::random_design(info(), random);
+      if (!(test::survey(*GetParam(), design, p).volume > 0)) continue;
+      std::vector<double> direction;
+      for (std::size_t i = 0; i < design.size(); ++i) direction.push_back(2 * random.u01() - 1);
+      SCOPED_TRACE("design " + std::to_string(k));
+      comparison.compare(test::everything(GetParam(), p, volume_only), design, direction);
+      ++compared;
+    }
+    comparison.expect(kDesigns, excluded);
+  }
+};
+
+TEST_P(SlopeContract, VolumesAndMarginsEqualDifferencesOfTheExactRule) {
+  SurveyPlan p = plan();
+  p.tolerance = 1e-13;  // what is left changes with the number of nodes
+  compare(p, true, 0.005);
+}
+
+TEST_P(SlopeContract, EveryQuantityEqualsDifferencesOfARuleWithFixedNodes) {
+  SurveyPlan p = plan();
+  p.nodes = {6, 6};  // fewer samples, fewer kinks
+  compare(p, false, 0.02);
+}
+
+/// Designs and limits far beyond what is sensible, among them many without a workspace.
+TEST_P(SlopeContract, AreFiniteEverywhereAndZeroWithoutAWorkspace) {
+  int empty = 0, usable = 0;
+  for (unsigned k = 0; k < 2 * kDesigns; ++k) {
+    SCOPED_TRACE("design " + std::to_string(k));
+    Stream random(2, 0, k, Stream::Use::start);
+    SurveyPlan p = plan();
+    p.nodes = {3, 3};
+    p.limits = test::random_limits(info(), random);
+    const LimitSpec absurd = test::absurd_limits(info());
+    for (std::size_t i = 0; i < info().limits.size(); ++i)  // some at one end of their range or the other
+      if (random.chance(0.1) && test::has_slopes(info().limits[i]))
+        p.limits.given[i] = random.chance(0.5) ? info().limits[i].inactive : *absurd.given[i];
+    std::vector<double> design = test::nominal(info());
+    for (std::size_t i = 0; i < design.size(); ++i) {
+      const Parameter& of = info().parameters[i];
+      if (random.chance(0.2)) continue;  // round numbers meet each other
+      design[i] = std::clamp(design[i] * 3 * random.u01(), of.lower, of.upper);
+    }
+    const DesignProblem problem = test::everything(GetParam(), p);
+    const std::vector<double> slopes = problem.slopes(design, problem.parts().varies);
+    for (const double slope : slopes) ASSERT_TRUE(std::isfinite(slope));
+    const bool none = test::survey(*GetParam(), design, p).volume == 0;
+    ++(none ? empty : usable);
+    if (none) {
+      const std::size_t of_objectives = problem.objectives().size() * (1 + design.size());
+      for (std::size_t i = 0; i < of_objectives; ++i) EXPECT_EQ(slopes[i], 0);
+    }
+  }
+  EXPECT_GT(empty, 100);
+  EXPECT_GT(usable, 100);
+}
+
+TEST_P(SlopeContract, SurveysWithDerivativesHaveTheBitsOfThoseWithout) {
+  for (unsigned k = 0; k < 100; ++k) {
+    SCOPED_TRACE("design " + std::to_string(k));
+    Stream random(3, 0, k, Stream::Use::start);
+    SurveyPlan p = plan();
+    p.limits = test::random_limits(info(), random);
+    if (k % 4 == 3) p.nodes = {5, 7};
+    const std::vector<double> design = test::random_design(info(), random);
+    const auto surveyor = GetParam()->prepare(p, all_fields());
+    Survey<double> plain, values;
+    surveyor->survey(design, plain);
+    std::vector<Dual4> moving(design.begin(), design.end());
+    for (int i = 0; i < 4; ++i) moving[static_cast<std::size_t>(i)].v[i] = 1;
+    Survey<Dual4> survey;
+    surveyor->survey(moving, survey);
+    copy_values(survey, values);
+    EXPECT_EQ(values.volume, plain.volume);
+    EXPECT_EQ(values.columns, plain.columns);
+    EXPECT_EQ(values.error, plain.error);
+    EXPECT_EQ(values.weight, plain.weight);
+    EXPECT_EQ(values.conditioning, plain.conditioning);
+  }
+}
+
+/// What an optimiser gets, with and without slopes.
+TEST_P(SlopeContract, EvaluationsWithSlopesHaveTheBitsOfThoseWithout) {
+  for (unsigned k = 0; k < 30; ++k) {
+    Stream random(4, 0, k, Stream::Use::start);
+    SurveyPlan p = plan();
+    p.nodes = {4, 4};
+    p.limits = test::random_limits(info(), random);
+    const DesignProblem problem = test::everything(GetParam(), p);
+    const std::vector<double> design = test::random_design(info(), random);
+    EvaluationTable plain(problem.shape(Detail::complete)), sloped(problem.shape(Detail::derivatives));
+    for (EvaluationTable* table : {&plain, &sloped}) {
+      table->extend(1);
+      problem.evaluate(design, table->slot(0));
+    }
+    EXPECT_EQ(sloped.status, plain.status);
+    EXPECT_EQ(sloped.objectives, plain.objectives);
+    EXPECT_EQ(sloped.margins, plain.margins);
+    EXPECT_EQ(sloped.slopes, problem.slopes(design, problem.parts().varies));
+    // one parameter at a time, so that each is in another place of its pass
+    const std::size_t width = 1 + design.size();
+    for (std::size_t i = 0; i < design.size(); ++i) {
+      const std::vector<double> alone = problem.slopes(design, std::vector<std::size_t>{i});
+      for (std::size_t q = 0; 2 * q < alone.size(); ++q) {
+        EXPECT_EQ(alone[2 * q], sloped.slopes[q * width]);
+        EXPECT_EQ(alone[2 * q + 1], sloped.slopes[q * width + 1 + i]);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SlopeContract, testing::ValuesIn(all_mechanisms()),
+                         [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
+
+}  // namespace
+}  // namespace pkm
