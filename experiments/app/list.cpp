@@ -62,6 +62,16 @@ void print_details(const Json& entry) {
   for (const auto& [title, list] : tables) print_section(std::cout, title, table(*list));
 }
 
+/// A word that several catalogues know is told once per catalogue.
+void print_found(const Json& found) {
+  bool first = true;
+  for (const auto& [kind, entry] : found.items()) {
+    if (found.size() > 1) std::cout << (first ? "" : "\n") << kind << '\n';
+    print_details(entry);
+    first = false;
+  }
+}
+
 void print_overview(const Json& catalogues) {
   bool first = true;
   for (const auto& [kind, entries] : catalogues.items()) {
@@ -90,14 +100,16 @@ const Json& find_entry(const Json& entries, const std::string& kind, const std::
                     nearest_name(name, known));
 }
 
-/// The first entry of any catalogue called `word`, where a catalogue's name was expected.
-const Json& find_anywhere(const Json& catalogues, const std::string& word) {
+/// The entries called `word` by their catalogue, where a catalogue's name was expected.
+Json find_anywhere(const Json& catalogues, const std::string& word) {
   std::vector<std::string> known;
+  Json found = Json::object();
   for (const auto& [kind, entries] : catalogues.items()) {
     known.push_back(kind);
     for (const auto& entry : entries)
-      if (entry["name"] == word) return entry;
+      if (entry["name"] == word) found[kind] = entry;
   }
+  if (!found.empty()) return found;
   const std::string expected = "one of " + join(known) + ", or the name of an entry";
   for (const auto& [kind, entries] : catalogues.items())
     for (const auto& name : entry_names(entries)) known.push_back(name);
@@ -111,8 +123,12 @@ int list(const Catalogues& catalogues, const ListArguments& arguments) {
     const Json listed = kind.empty() ? all : Json{{kind, all[kind]}};
     json ? print_json(std::cout, listed) : print_overview(listed);
   } else {
-    const Json& entry = all.contains(kind) ? find_entry(all[kind], kind, name) : find_anywhere(all, kind);
-    json ? print_json(std::cout, entry) : print_details(entry);
+    Json found = Json::object();
+    if (all.contains(kind))
+      found[kind] = find_entry(all[kind], kind, name);
+    else
+      found = find_anywhere(all, kind);
+    json ? print_json(std::cout, found.size() == 1 ? found.front() : found) : print_found(found);
   }
   return kDone;
 }
