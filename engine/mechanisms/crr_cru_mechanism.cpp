@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "engine/core/options.hpp"
+#include "engine/mechanisms/crr_cru_dynamics.hpp"
 #include "engine/mechanisms/crr_cru_forward.hpp"
 #include "engine/mechanisms/crr_cru_inspect.hpp"
 #include "engine/mechanisms/crr_cru_survey.hpp"
@@ -30,7 +31,10 @@ std::vector<WorkingMode> all_modes() {
   return modes;
 }
 
-MechanismInfo make_info(Platform platform) {
+/// Names of the mass models, in the order of MassModel.
+const std::vector<std::string> kMassModels = {"table", "geometry"};
+
+MechanismInfo make_info(Platform platform, MassModel mass_model) {
   const bool jointed = platform == Platform::jointed;
   MechanismInfo i;
   i.name = jointed ? "3crr-r-cru" : "quadrupteron";
@@ -57,6 +61,10 @@ MechanismInfo make_info(Platform platform) {
        {"beta_3", "rad", 5 * kPi / 3, -4 * kPi, 4 * kPi, angle + std::string("3's joint on the circle")},
        {"rho_min", "m", 0, -100, 100, "where the slides' range begins"},
        {"rho_max", "m", 0.400, -100, 100, "where the slides' range ends"}});
+  for (Parameter& parameter : mass_parameters(mass_model)) i.parameters.push_back(std::move(parameter));
+  i.has_dynamics = true;
+  i.mass_models = kMassModels;
+  i.mass_model = kMassModels[static_cast<std::size_t>(mass_model)];
   i.coordinates = {"x", "y", "z", "phi"};
   i.joints = {"rho1", "rho2", "rho3", "rho4"};
   for (const WorkingMode& mode : all_modes()) i.modes.push_back(name_of(mode));
@@ -75,7 +83,8 @@ MechanismInfo make_info(Platform platform) {
 
 class CrrCru final : public Mechanism {
  public:
-  explicit CrrCru(Platform platform) : platform_(platform), info_(make_info(platform)) {}
+  explicit CrrCru(Platform platform, MassModel mass_model = MassModel::table)
+      : platform_(platform), mass_model_(mass_model), info_(make_info(platform, mass_model)) {}
 
   const MechanismInfo& info() const override { return info_; }
 
@@ -115,16 +124,43 @@ class CrrCru final : public Mechanism {
   }
   PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
-    for (const WorkingMode& known : modes_)
-      if (mode == name_of(known)) return crr_cru::inspect(geometry(platform_, p), limits(spec), pose, known);
-    throw std::invalid_argument("unknown working mode " + mode);
+    return crr_cru::inspect(geometry(platform_, p), limits(spec), pose, mode_called(mode));
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& rho) const override {
     return crr_cru::forward(geometry(platform_, p), rho);
   }
 
+  void dynamics(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
+                std::span<PoseDynamics<double>> out) const override {
+    find_dynamics(p, mode, states, out);
+  }
+  void dynamics(std::span<const Dual4> p, const std::string& mode, std::span<const MotionState<Dual4>> states,
+                std::span<PoseDynamics<Dual4>> out) const override {
+    find_dynamics(p, mode, states, out);
+  }
+  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
+    for (std::size_t k = 0; k < kMassModels.size(); ++k)
+      if (kMassModels[k] == model) return std::make_shared<CrrCru>(platform_, static_cast<MassModel>(k));
+    return nullptr;
+  }
+
  private:
+  const WorkingMode& mode_called(const std::string& name) const {
+    for (const WorkingMode& known : modes_)
+      if (name == name_of(known)) return known;
+    throw std::invalid_argument("unknown working mode " + name);
+  }
+  template <class S>
+  void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const MotionState<S>> states,
+                     std::span<PoseDynamics<S>> out) const {
+    const WorkingMode& signs = mode_called(mode);
+    const auto g = geometry(platform_, p);
+    const auto b = masses(mass_model_, p);
+    for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics(g, b, states[i], signs);
+  }
+
   Platform platform_;
+  MassModel mass_model_;
   MechanismInfo info_;
   std::vector<WorkingMode> modes_ = all_modes();
 };

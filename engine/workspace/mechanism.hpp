@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "engine/core/parameter.hpp"
+#include "engine/dynamics/pose_dynamics.hpp"
+#include "engine/dynamics/reactions.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/model/pose.hpp"
 #include "engine/workspace/plan.hpp"
@@ -61,8 +63,12 @@ struct MechanismInfo {
   std::string integrated_unit;  ///< when integrated over the held coordinate: "m^3 rad"
   std::string size_unit;        ///< unit of size(); "" when the mechanism has no size
   std::string size_meaning;
-  std::string characteristic_length;  ///< formula of the default characteristic length
-  int column = 2;                     ///< as in Sweep
+  std::string characteristic_length;     ///< formula of the default characteristic length
+  bool has_dynamics = false;             ///< Mechanism::dynamics answers
+  bool has_reactions = false;            ///< Mechanism::reactions answers
+  std::vector<std::string> mass_models;  ///< where masses can come from; the first is the default; none: no masses
+  std::string mass_model;                ///< the one in force
+  int column = 2;                        ///< as in Sweep
 };
 
 /// What every voxel surveyor answers when asked for derivatives.
@@ -115,11 +121,31 @@ class Mechanism {
   /// @param mode  one of MechanismInfo::modes
   virtual PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
                              const LimitSpec& limits) const = 0;
+  /// Equations of motion at states of one design, with its masses. Where a state does not assemble,
+  /// PoseDynamics::assembles is false. Throws std::domain_error where a mass is not positive.
+  /// @param mode  one of MechanismInfo::modes
+  virtual void dynamics(std::span<const double>, const std::string&, std::span<const MotionState<double>>,
+                        std::span<PoseDynamics<double>>) const {
+    throw no_masses();
+  }
+  virtual void dynamics(std::span<const Dual4>, const std::string&, std::span<const MotionState<Dual4>>,
+                        std::span<PoseDynamics<Dual4>>) const {
+    throw no_masses();
+  }
+  /// Forces and couples in every joint, for an acceleration under a wrench on the platform (Newton and Euler).
+  virtual Reactions reactions(std::span<const double>, const std::string&, const MotionState<double>&,
+                              const Vector<double, 4>&, const Wrench<double>&) const {
+    throw no_masses();
+  }
+  /// The same mechanism with masses from another of MechanismInfo::mass_models; null: it knows no such model.
+  virtual std::shared_ptr<const Mechanism> with_masses(const std::string&) const { return nullptr; }
+
   /// Every assembly mode for joint values [m]; empty when the joints cannot be reached.
   virtual std::vector<AssemblyMode> forward(std::span<const double> parameters,
                                             const std::array<double, 4>& joints) const = 0;
 
  private:
+  std::logic_error no_masses() const { return std::logic_error("mechanism " + info().name + " has no dynamics"); }
   std::logic_error no_duals() const { return std::logic_error("mechanism " + info().name + " has no derivatives"); }
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace pkm {
@@ -28,11 +29,13 @@ struct HeldCoordinate {
 struct SurveyPlan {
   Method method = Method::columns;
   HeldCoordinate held;
+  std::vector<double> held_values;  ///< not empty: one survey per value of the held coordinate, each of the same weight
   LimitSpec limits;
   std::array<std::int64_t, 3> cells{};  ///< voxels, in the order of Sweep::swept
   std::int64_t held_cells = 0;          ///< voxels integrated over the held coordinate: its number of cells
-  std::optional<std::array<std::array<double, 2>, 3>> box;  ///< voxels; none: derived from each design
-  double tolerance = 1e-8;                                  ///< columns: relative
+  /// Voxels: none is derived from each design. Columns: cuts the workspace where the mechanism's can be cut.
+  std::optional<std::array<std::array<double, 2>, 3>> box;
+  double tolerance = 1e-8;     ///< columns: relative
   std::array<int, 2> nodes{};  ///< columns: fixed nodes per piece and coordinate; 0: chosen from the tolerance
 };
 
@@ -40,6 +43,9 @@ struct SurveyPlan {
 struct Demand {
   bool conditioning = false;
   std::optional<double> characteristic_length;  ///< [m]; none: the mechanism's own
+  bool dci = false;                             ///< dynamic coupling indices of every joint
+  bool inertia_condition = false;               ///< inverse condition number of M_q
+  std::string mode;                             ///< working mode of both; "": the mechanism's default
 };
 
 }  // namespace pkm

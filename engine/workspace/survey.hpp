@@ -1,6 +1,7 @@
 // What a survey of a design's workspace found: voxels and exact columns fill the same structure.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -23,7 +24,9 @@ struct Survey {
   double error = 0;          ///< estimated relative error of the volume
   // per feasible sample, only what was demanded (empty otherwise), all of one length
   std::vector<S> weight;
-  std::vector<S> conditioning;  ///< inverse condition number in [0, 1]
+  std::vector<S> conditioning;        ///< inverse condition number of J in [0, 1]
+  std::array<std::vector<S>, 4> dci;  ///< dynamic coupling index per joint, in [0, 1]
+  std::vector<S> inertia_condition;   ///< inverse condition number of M_q in [0, 1]
 
   void clear() {
     volume = S{};
@@ -32,6 +35,8 @@ struct Survey {
     touches_box = false;
     weight.clear();
     conditioning.clear();
+    for (auto& joint : dci) joint.clear();
+    inertia_condition.clear();
   }
 };
 
@@ -51,6 +56,8 @@ void copy_values(const Survey<S>& from, Survey<double>& to) {
   };
   copy(from.weight, to.weight);
   copy(from.conditioning, to.conditioning);
+  for (std::size_t i = 0; i < to.dci.size(); ++i) copy(from.dci[i], to.dci[i]);
+  copy(from.inertia_condition, to.inertia_condition);
 }
 
 /// Which cells of a voxel box are feasible, for pictures and the study file. Order of axes: Sweep::swept, the last

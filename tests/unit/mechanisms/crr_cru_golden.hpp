@@ -11,7 +11,7 @@
 
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
-#include "engine/mechanisms/crr_cru.hpp"
+#include "engine/mechanisms/crr_cru_masses.hpp"
 
 namespace pkm::testing::crr {
 
@@ -61,6 +61,19 @@ inline std::vector<double> design_of(const nlohmann::json& entry) {
   p[kRails] = from["L"];
   p[kRhoMin] = from["rho_min"];
   p[kRhoMax] = from["rho_max"];
+  for (std::size_t i = 0; i < 4; ++i) {
+    p[kRodMass + 2 * i] = from["mr1"][i];
+    p[kRodMass + 2 * i + 1] = from["mr2"][i];
+    p[kRodInertia + 2 * i] = from["Ir1"][i];
+    p[kRodInertia + 2 * i + 1] = from["Ir2"][i];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    p[kInertia + i] = from["I"][i];
+    p[kInertia1 + i] = from["I1"][i];
+  }
+  p[kMass] = from["m"];
+  p[kMass1] = from["m1"];
+  p[kCentre] = from["c"];
   return p;
 }
 

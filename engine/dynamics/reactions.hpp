@@ -1,0 +1,28 @@
+// What the joints of a mechanism carry.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pkm {
+
+/// One joint: what it transmits, in world axes, acting on the body that is named first.
+struct JointReaction {
+  std::string name;             ///< "a1"
+  std::string on;               ///< the body acted on; the opposite acts on the other
+  std::array<double, 3> force;  ///< [N]
+  /// Couples along x, y, z [N m]: 0 where the joint turns freely; none where the mechanism is overconstrained and
+  /// rigid bodies do not determine them.
+  std::array<std::optional<double>, 3> couple;
+};
+
+/// Source of the model: Newton's and Euler's equations of every body.
+struct Reactions {
+  std::vector<JointReaction> joints;
+  std::array<double, 4> drive_forces;  ///< of the actuators, found with the others [N]
+  int equations = 0, unknowns = 0, rank = 0;
+};
+
+}  // namespace pkm
