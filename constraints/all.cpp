@@ -7,7 +7,7 @@ namespace pkm {
 const std::vector<ConstraintEntry>& all_constraints() {
   static const std::vector<ConstraintEntry> list = {
       interference(), singularity_margin(),    clearance(), workspace_shape(), rail_length(),
-      linear(),       expression_constraint(),
+      task_workspace(), linear(),       expression_constraint(),
   };
   return list;
 }

@@ -10,6 +10,7 @@ ConstraintEntry singularity_margin();
 ConstraintEntry clearance();
 ConstraintEntry workspace_shape();
 ConstraintEntry rail_length();
+ConstraintEntry task_workspace();
 ConstraintEntry linear();
 ConstraintEntry expression_constraint();
 

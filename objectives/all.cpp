@@ -9,6 +9,9 @@ const std::vector<ObjectiveEntry>& all_objectives() {
       workspace_volume(),
       workspace_ratio(),
       conditioning(),
+      dci(),
+      dci_uniformity(),
+      inertia_condition_objective(),
       expression_objective(),
   };
   return list;

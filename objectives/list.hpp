@@ -8,6 +8,9 @@ namespace pkm {
 ObjectiveEntry workspace_volume();
 ObjectiveEntry workspace_ratio();
 ObjectiveEntry conditioning();
+ObjectiveEntry dci();
+ObjectiveEntry dci_uniformity();
+ObjectiveEntry inertia_condition_objective();
 ObjectiveEntry expression_objective();
 
 }  // namespace pkm

@@ -1,6 +1,8 @@
 // Statistics of weighted samples, added in the order of the samples.
 #pragma once
 
+#include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "engine/math/scalar.hpp"
@@ -40,6 +42,63 @@ S soft_least(const std::vector<S>& weight, const std::vector<S>& field, double s
     total += weight[i];
   }
   return shift - log(S(sum / total)) / sharpness;
+}
+
+/// The greatest value; 0 without samples.
+template <class S>
+S greatest(const std::vector<S>& field) {
+  if (field.empty()) return S(0.0);
+  S result = field.front();
+  for (const S& value : field) result = max(result, value);
+  return result;
+}
+
+/// The same aggregate of the greatest value: not above it, and it tends to it as `sharpness` grows.
+template <class S>
+S soft_greatest(const std::vector<S>& weight, const std::vector<S>& field, double sharpness) {
+  if (field.empty()) return S(0.0);
+  const double shift = value_of(greatest(field));
+  S sum(0.0), total(0.0);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    sum += weight[i] * exp(S((field[i] - shift) * sharpness));
+    total += weight[i];
+  }
+  return shift + log(S(sum / total)) / sharpness;
+}
+
+/// Root of the weighted mean square distance from the mean (population); 0 without samples.
+template <class S>
+S weighted_deviation(const std::vector<S>& weight, const std::vector<S>& field) {
+  const S mean = weighted_mean(weight, field);
+  S sum(0.0), total(0.0);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const S off = field[i] - mean;
+    sum += weight[i] * off * off;
+    total += weight[i];
+  }
+  return value_of(total) > 0 ? root_or_zero(S(sum / total)) : S(0.0);
+}
+
+/// The value below which the share p of the weight lies, interpolated between the samples in their order: sample k
+/// stands at the weight of half of itself and all before it, between 0 for the first and 1 for the last. With equal
+/// weights that is position p (count - 1), the usual interpolation of order statistics. 0 without samples.
+inline double weighted_quantile(const std::vector<double>& weight, const std::vector<double>& field, double p) {
+  if (field.empty()) return 0;
+  std::vector<std::size_t> order(field.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return field[a] != field[b] ? field[a] < field[b] : a < b;
+  });
+  double span = 0;
+  for (std::size_t k = 0; k + 1 < order.size(); ++k) span += 0.5 * (weight[order[k]] + weight[order[k + 1]]);
+  double left = p * span;
+  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
+    const double step = 0.5 * (weight[order[k]] + weight[order[k + 1]]);
+    if (left <= step && step > 0)
+      return field[order[k]] + (field[order[k + 1]] - field[order[k]]) * (left / step);
+    left -= step;
+  }
+  return field[order.back()];
 }
 
 }  // namespace pkm

@@ -34,7 +34,8 @@ template <class S>
 void breaks_in_phi(const Sweeping<S>& s, std::vector<Break<S>>& breaks) {
   const Geometry<S>& g = s.design.g;
   const S delta = offset(s.design.yaw), half(acos(s.design.c_min));
-  const S first = -delta - half, last = half - delta;
+  const S first = max(S(-delta - half), S(s.design.box[3][0])), last = min(S(half - delta), S(s.design.box[3][1]));
+  if (!(value_of(first) < value_of(last))) return;
   breaks.push_back({first});
   breaks.push_back({last});
   // held + radius cos(phi + angle) = bound, for the slides along the held coordinate

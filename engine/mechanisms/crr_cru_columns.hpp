@@ -74,7 +74,7 @@ void find_outer_pieces(const Sweeping<S>& s, const Sweeping<double>& plain, cons
   const int samples = s.cuts.outer_is_phi ? 64 : 24;
   scratch.breaks.clear();
   scratch.pieces.clear();
-  if (s.cuts.outer_is_phi) {
+  if (s.cuts.outer_is_phi) {  // the box may leave no phi at all
     breaks_in_phi(s, scratch.breaks);
   } else {
     if (s.frame.singular) return;
@@ -125,27 +125,57 @@ bool ends_like_a_root(const Section<S>& cross, const Column& column, double u) {
   return false;
 }
 
-/// The area by `rule` over u on every smooth piece, of the exact lengths of the columns along v.
+/// Calls visit(column, u, weight) at the nodes of `rule` over u on every smooth piece of the section.
+template <class S, class Visit>
+void visit_columns(const Section<S>& cross, const Structure& structure, const GaussRule& rule, const Visit& visit) {
+  for (const Column& column : structure.columns) {
+    Piece<S> piece{break_at(cross, column.lower), break_at(cross, column.upper)};
+    piece.root_lower = ends_like_a_root(cross, column, value_of(piece.lower));
+    piece.root_upper = ends_like_a_root(cross, column, value_of(piece.upper));
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const auto [u, jacobian] = map_node(piece, rule.node[i]);
+      visit(column, u, S(jacobian * rule.weight[i]));
+    }
+  }
+}
+
+/// The area by `rule` over u, of the exact lengths of the columns along v.
 template <class S>
 S area_of_columns(const Sweeping<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
                   long& columns) {
   const Section<S> cross = section_at(s, outer);
   find_structure(values(cross), scratch.structure);
   S sum(0.0);
-  for (const Column& column : scratch.structure.columns) {
-    Piece<S> piece{break_at(cross, column.lower), break_at(cross, column.upper)};
-    piece.root_lower = ends_like_a_root(cross, column, value_of(piece.lower));
-    piece.root_upper = ends_like_a_root(cross, column, value_of(piece.upper));
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const auto [u, jacobian] = map_node(piece, rule.node[i]);
-      S length(0.0);
-      for (std::size_t k = 0; k < column.ends; k += 2)
-        length += end_at(cross, column.end[k + 1], u) - end_at(cross, column.end[k], u);
-      sum += length * jacobian * rule.weight[i];
-      ++columns;
-    }
-  }
+  visit_columns(cross, scratch.structure, rule, [&](const Column& column, const S& u, const S& weight) {
+    S length(0.0);
+    for (std::size_t k = 0; k < column.ends; k += 2)
+      length += end_at(cross, column.end[k + 1], u) - end_at(cross, column.end[k], u);
+    sum += length * weight;
+    ++columns;
+  });
   return sum;
+}
+
+/// Calls visit(position, weight) at nodes of the section at a value of the outer coordinate: `rule` over u and over
+/// every interval of v.
+template <class S, class Visit>
+void visit_positions(const Sweeping<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
+                     const Visit& visit) {
+  const Section<S> cross = section_at(s, outer);
+  find_structure(values(cross), scratch.structure);
+  Vector3<S> at;
+  at[s.cuts.normal] = s.cuts.outer_is_phi ? s.held : outer;
+  visit_columns(cross, scratch.structure, rule, [&](const Column& column, const S& u, const S& weight) {
+    at[s.cuts.u] = u;
+    for (std::size_t k = 0; k < column.ends; k += 2) {
+      const Piece<S> interval{end_at(cross, column.end[k], u), end_at(cross, column.end[k + 1], u)};
+      for (std::size_t i = 0; i < rule.node.size(); ++i) {
+        const auto [v, jacobian] = map_node(interval, rule.node[i]);
+        at[s.cuts.v] = v;
+        visit(at, S(weight * jacobian * rule.weight[i]));
+      }
+    }
+  });
 }
 
 }  // namespace pkm::crr_cru

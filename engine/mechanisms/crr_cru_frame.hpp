@@ -10,9 +10,17 @@
 // Neither depends on the working mode.
 #pragma once
 
+#include <limits>
+
 #include "engine/mechanisms/crr_cru_yaw.hpp"
 
 namespace pkm::crr_cru {
+
+/// Ranges of x, y, z, phi.
+using PoseBox = std::array<std::array<double, 2>, 4>;
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+inline constexpr PoseBox kEverywhere = {
+    {{-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}}};
 
 /// What all phi of one design have in common.
 template <class S>
@@ -21,11 +29,12 @@ struct Design {
   Yaw<S> yaw;
   double c_min;
   std::array<S, 4> in2, out2;  ///< squared radii of the reaches [m^2]
+  PoseBox box = kEverywhere;   ///< poses outside do not count
 };
 
 template <class S>
-Design<S> design(const Geometry<S>& g, const Limits& l) {
-  Design<S> d{g, yaw(g), l.c_min, {}, {}};
+Design<S> design(const Geometry<S>& g, const Limits& l, const PoseBox& box = kEverywhere) {
+  Design<S> d{g, yaw(g), l.c_min, {}, {}, box};
   const double lost = l.s_min * l.s_min / (1 + std::sqrt((1 - l.s_min) * (1 + l.s_min)));  // 1 - sqrt(1 - s_min^2)
   for (std::size_t i = 0; i < 4; ++i) {
     const S difference = g.l_1[i] - g.l_2[i], sum = g.l_1[i] + g.l_2[i], cut = g.l_1[i] * g.l_2[i] * (2 * lost);
@@ -38,12 +47,14 @@ Design<S> design(const Geometry<S>& g, const Limits& l) {
 /// Which of the coordinates x, y, z a limb's rods move in, the lower first.
 inline constexpr std::array<std::array<std::size_t, 2>, 4> kPlane = {{{1, 2}, {0, 2}, {0, 1}, {0, 2}}};
 
-/// A range of a coordinate, and the limbs whose slides end it.
+/// A range of a coordinate, and the limbs whose slides end it; kBoxLower, kBoxUpper where the box does.
 template <class S>
 struct SlideRange {
   S lower, upper;
   std::size_t lower_limb, upper_limb;
 };
+
+inline constexpr std::size_t kBoxLower = 8, kBoxUpper = 5;  // 4 + upper_limb is a number of its own, too
 
 template <class S>
 struct Frame {
@@ -70,6 +81,11 @@ Frame<S> frame(const Design<S>& d, const S& phi) {
     SlideRange<S>& range = f.range[e];
     if (value_of(lower) > value_of(range.lower)) range = {lower, range.upper, i, range.upper_limb};
     if (value_of(upper) < value_of(range.upper)) range = {range.lower, upper, range.lower_limb, i};
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    SlideRange<S>& range = f.range[k];
+    if (d.box[k][0] > value_of(range.lower)) range = {S(d.box[k][0]), range.upper, kBoxLower, range.upper_limb};
+    if (d.box[k][1] < value_of(range.upper)) range = {range.lower, S(d.box[k][1]), range.lower_limb, kBoxUpper};
   }
   return f;
 }

@@ -5,6 +5,7 @@
 #include "engine/mechanisms/crr_cru_dynamics.hpp"
 #include "engine/mechanisms/crr_cru_forward.hpp"
 #include "engine/mechanisms/crr_cru_inspect.hpp"
+#include "engine/mechanisms/crr_cru_margins.hpp"
 #include "engine/mechanisms/crr_cru_survey.hpp"
 #include "engine/mechanisms/list.hpp"
 
@@ -62,6 +63,8 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
        {"rho_min", "m", 0, -100, 100, "where the slides' range begins"},
        {"rho_max", "m", 0.400, -100, 100, "where the slides' range ends"}});
   for (Parameter& parameter : mass_parameters(mass_model)) i.parameters.push_back(std::move(parameter));
+  i.margin_unit = "m";
+  i.columns_take_box = true;
   i.has_dynamics = true;
   i.mass_models = kMassModels;
   i.mass_model = kMassModels[static_cast<std::size_t>(mass_model)];
@@ -89,7 +92,8 @@ class CrrCru final : public Mechanism {
   const MechanismInfo& info() const override { return info_; }
 
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
-    return make_surveyor(platform_, sweep_of(info_, plan).held, plan, demand);
+    const WorkingMode& mode = demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
+    return make_surveyor(platform_, mass_model_, mode, sweep_of(info_, plan).held, plan, demand);
   }
   VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
     return crr_cru::voxel_map(platform_, sweep_of(info_, plan).held, p, plan);
@@ -128,6 +132,15 @@ class CrrCru final : public Mechanism {
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& rho) const override {
     return crr_cru::forward(geometry(platform_, p), rho);
+  }
+
+  void pose_margins(std::span<const double> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
+                    std::vector<double>& margins) const override {
+    add_margins(design(geometry(platform_, p), limits(spec)), poses, margins);
+  }
+  void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
+                    std::vector<Dual4>& margins) const override {
+    add_margins(design(geometry(platform_, p), limits(spec)), poses, margins);
   }
 
   void dynamics(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,

@@ -32,6 +32,7 @@ template <class S, class Signature, class Moving>
 void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, const Moving& moving, int samples,
                  std::vector<Piece<S>>& pieces) {
   pieces.clear();
+  if (breaks.empty()) return;
   std::sort(breaks.begin(), breaks.end(),
             [](const Break<S>& a, const Break<S>& b) { return value_of(a.at) < value_of(b.at); });
   const double whole = value_of(breaks.back().at) - value_of(breaks.front().at);

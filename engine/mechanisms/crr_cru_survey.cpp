@@ -1,6 +1,7 @@
 #include "engine/mechanisms/crr_cru_survey.hpp"
 
 #include "engine/mechanisms/crr_cru_columns.hpp"
+#include "engine/mechanisms/crr_cru_inertia_tables.hpp"
 #include "engine/mechanisms/crr_cru_voxels.hpp"
 
 namespace pkm::crr_cru {
@@ -20,19 +21,43 @@ void add_conditioning(const Geometry<S>& g, const Demand& demand, const S& phi, 
   survey.conditioning.push_back(conditioning(arms(g, s, c), length));
 }
 
+/// The plan's box as ranges of x, y, z, phi.
+PoseBox pose_box(const Held& held, const SurveyPlan& plan) {
+  PoseBox box = kEverywhere;
+  if (!plan.box) return box;
+  for (std::size_t k = 0, axis = 0; k < 4; ++k)
+    if (k != held.coordinate) box[k] = (*plan.box)[axis++];
+  return box;
+}
+
+/// Adds what was demanded of one pose's inertia.
+template <class S>
+void add_inertia(const Matrix<S, 4, 4>& M_q, const Demand& demand, Survey<S>& survey) {
+  if (demand.dci) {
+    const Vector<S, 4> index = coupling_indices(M_q);
+    for (std::size_t i = 0; i < 4; ++i) survey.dci[i].push_back(index[i]);
+  }
+  if (demand.inertia_condition) survey.inertia_condition.push_back(inertia_condition(M_q));
+}
+
 class ColumnSurveyor final : public Surveyor {
  public:
-  ColumnSurveyor(Platform platform, int held, const SurveyPlan& plan, const Demand& demand)
+  ColumnSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
+                 const Demand& demand)
       : platform_(platform),
+        mass_model_(mass_model),
+        mode_(mode),
         held_(held_of(held, plan)),
+        box_(pose_box(held_, plan)),
         limits_(limits(plan.limits)),
         tolerance_(plan.tolerance),
         fixed_(plan.nodes[0] > 0),
         demand_(demand) {
     // Nodes come in the order of the swept coordinates; phi is the last of them.
     const std::size_t outer = cuts(held_).outer_is_phi ? 1 : 0;
-    outer_rule_ = gauss_legendre(fixed_ ? plan.nodes[outer] : kSampleNodes);
-    if (fixed_) inner_rule_ = gauss_legendre(plan.nodes[1 - outer]);
+    const int usual = needs_inertia() ? kInertiaNodes : kSampleNodes;
+    outer_rule_ = gauss_legendre(fixed_ ? plan.nodes[outer] : usual);
+    inner_rule_ = gauss_legendre(fixed_ ? plan.nodes[1 - outer] : kInertiaNodes);
   }
 
   void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
@@ -41,12 +66,15 @@ class ColumnSurveyor final : public Surveyor {
 
  private:
   static constexpr int kSampleNodes = 32;
+  static constexpr int kInertiaNodes = 8;  // per piece and coordinate
+
+  bool needs_inertia() const { return demand_.dci || demand_.inertia_condition; }
 
   template <class S>
   void run(std::span<const S> parameters, Survey<S>& survey) const {
     thread_local ColumnScratch<S> scratch;
     survey.clear();
-    const auto s = sweeping(design(geometry(platform_, parameters), limits_), held_);
+    const auto s = sweeping(design(geometry(platform_, parameters), limits_, box_), held_);
     find_outer_pieces(s, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     long columns = 0;
     if (!fixed_) {
@@ -58,6 +86,15 @@ class ColumnSurveyor final : public Surveyor {
       columns = volume.evaluations;
     }
     const Geometry<S>& g = s.design.g;
+    if (needs_inertia()) {
+      sample_inertia(s, parameters, scratch, survey);
+      if (fixed_) {
+        for (const S& weight : survey.weight) survey.volume += weight;
+        columns = static_cast<long>(survey.weight.size());
+      }
+      survey.columns = columns;
+      return;
+    }
     if (fixed_ || (demand_.conditioning && s.cuts.outer_is_phi))
       for (const Piece<S>& piece : scratch.pieces)
         for (std::size_t i = 0; i < outer_rule_.node.size(); ++i) {
@@ -71,16 +108,50 @@ class ColumnSurveyor final : public Surveyor {
     survey.columns = columns;
   }
 
+  /// Samples at nodes along all three coordinates.
+  template <class S>
+  void sample_inertia(const Sweeping<S>& s, std::span<const S> parameters, ColumnScratch<S>& scratch,
+                      Survey<S>& survey) const {
+    const Geometry<S>& g = s.design.g;
+    const Masses<S> b = masses(mass_model_, parameters);
+    InertiaFrame<S> frame;
+    S length(0.0), index(0.0);
+    const auto set_phi = [&](const S& phi) {
+      frame = inertia_frame(g, b, phi);
+      if (!demand_.conditioning) return;
+      const auto [sine, cosine] = sincos(phi);
+      length = demand_.characteristic_length ? S(*demand_.characteristic_length) : characteristic_length(g);
+      index = conditioning(arms(g, sine, cosine), length);
+    };
+    if (!s.cuts.outer_is_phi) set_phi(s.held);
+    for (const Piece<S>& piece : scratch.pieces)
+      for (std::size_t i = 0; i < outer_rule_.node.size(); ++i) {
+        const auto [outer, jacobian] = map_node(piece, outer_rule_.node[i]);
+        const S outer_weight = jacobian * outer_rule_.weight[i];
+        if (s.cuts.outer_is_phi) set_phi(outer);
+        visit_positions(s, outer, inner_rule_, scratch, [&](const Vector3<S>& at, const S& weight) {
+          const S measure = outer_weight * weight;
+          if (!(value_of(measure) > 0)) return;
+          survey.weight.push_back(measure);
+          if (demand_.conditioning) survey.conditioning.push_back(index);
+          add_inertia(joint_inertia(g, b, frame, at, mode_), demand_, survey);
+        });
+      }
+  }
+
   /// The design as constants of another scalar.
   template <class To, class From>
   Sweeping<To> still(std::span<const From> parameters) const {
     std::array<To, kParameters> values;
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = To(value_of(parameters[i]));
-    return sweeping(design(geometry(platform_, std::span<const To>(values)), limits_), held_);
+    return sweeping(design(geometry(platform_, std::span<const To>(values)), limits_, box_), held_);
   }
 
   Platform platform_;
+  MassModel mass_model_;
+  WorkingMode mode_;
   Held held_;
+  PoseBox box_;
   Limits limits_;
   double tolerance_;
   bool fixed_;  ///< numbers of nodes are given
@@ -90,8 +161,15 @@ class ColumnSurveyor final : public Surveyor {
 
 class VoxelSurveyor final : public Surveyor {
  public:
-  VoxelSurveyor(Platform platform, int held, const SurveyPlan& plan, const Demand& demand)
-      : platform_(platform), held_(held_of(held, plan)), plan_(plan), limits_(limits(plan.limits)), demand_(demand) {}
+  VoxelSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
+                const Demand& demand)
+      : platform_(platform),
+        mass_model_(mass_model),
+        mode_(mode),
+        held_(held_of(held, plan)),
+        plan_(plan),
+        limits_(limits(plan.limits)),
+        demand_(demand) {}
 
   std::string no_derivatives() const override {
     return "the study surveys voxels, whose sums have no derivatives; take workspace.method = \"columns\"";
@@ -102,29 +180,59 @@ class VoxelSurveyor final : public Surveyor {
     const Design<double> d = design(geometry(platform_, parameters), limits_);
     const VoxelGrid grid = grid_of(d);
     const GridAxes axes = grid_axes(held_);
-    const bool over_phi = cuts(held_).outer_is_phi;
+    const bool over_phi = cuts(held_).outer_is_phi, inertia = demand_.dci || demand_.inertia_condition;
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume();
     std::int64_t plane = -1, in_plane = 0;
     const auto close_plane = [&] {
       survey.feasible_cells += in_plane;
-      if (demand_.conditioning && over_phi && in_plane > 0)
+      if (demand_.conditioning && !inertia && over_phi && in_plane > 0)
         add_conditioning(d.g, demand_, grid.centre(axes.outer, plane),
                          static_cast<double>(in_plane) * survey.cell_volume, survey);
       in_plane = 0;
     };
     const std::int64_t last = grid.cells[axes.v] - 1;
+    thread_local InertiaTables tables;
+    Masses<double> b{};
+    double index = 0;  // conditioning at this phi
+    const std::array<int, 3> coordinates = swept_coordinates();
+    const double held_at = held_value(d.g, held_);
+    const auto set_phi = [&](double phi) {
+      tables.fill(d.g, b, mode_, phi, grid, coordinates, held_at);
+      const auto [s, c] = sincos(phi);
+      index = conditioning(arms(d.g, s, c),
+                           demand_.characteristic_length ? *demand_.characteristic_length : characteristic_length(d.g));
+    };
+    if (inertia) {
+      b = masses(mass_model_, parameters);
+      if (!over_phi) set_phi(held_at);
+    }
     rows().visit_columns(d, held_, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
-      if (outer != plane) close_plane();
+      if (outer != plane) {
+        close_plane();
+        if (inertia && over_phi) set_phi(grid.centre(axes.outer, outer));
+      }
       plane = outer;
       for (const std::uint64_t word : row) in_plane += std::popcount(word);
+      if (inertia) {
+        std::array<std::int64_t, 3> cell{};
+        cell[axes.outer] = outer;
+        cell[axes.u] = u;
+        for (std::size_t w = 0; w < row.size(); ++w)
+          for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
+            cell[axes.v] = static_cast<std::int64_t>(64 * w) + std::countr_zero(bits);
+            survey.weight.push_back(survey.cell_volume);
+            if (demand_.conditioning) survey.conditioning.push_back(index);
+            add_inertia(tables.at(cell), demand_, survey);
+          }
+      }
       survey.touches_box = survey.touches_box || outer == 0 || outer == grid.cells[axes.outer] - 1 || u == 0 ||
                            u == grid.cells[axes.u] - 1 || (row.front() & 1) ||
                            (row.back() >> static_cast<std::size_t>(last % 64) & 1);
     });
     close_plane();
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
-    if (demand_.conditioning && !over_phi)
+    if (demand_.conditioning && !inertia && !over_phi)
       add_conditioning(d.g, demand_, held_value(d.g, held_), survey.volume, survey);
   }
 
@@ -150,12 +258,21 @@ class VoxelSurveyor final : public Surveyor {
   VoxelGrid grid_of(const Design<double>& d) const {
     return {plan_.cells, plan_.box ? *plan_.box : default_box(d, held_)};
   }
+  /// Which coordinate each axis of the grid is: its axes are the swept coordinates in ascending order.
+  std::array<int, 3> swept_coordinates() const {
+    std::array<int, 3> swept{};
+    for (int k = 0, axis = 0; k < 4; ++k)
+      if (static_cast<std::size_t>(k) != held_.coordinate) swept[static_cast<std::size_t>(axis++)] = k;
+    return swept;
+  }
   static VoxelRows& rows() {
     thread_local VoxelRows storage;
     return storage;
   }
 
   Platform platform_;
+  MassModel mass_model_;
+  WorkingMode mode_;
   Held held_;
   SurveyPlan plan_;
   Limits limits_;
@@ -164,14 +281,15 @@ class VoxelSurveyor final : public Surveyor {
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_surveyor(Platform platform, int held, const SurveyPlan& plan,
-                                              const Demand& demand) {
-  if (plan.method == Method::columns) return std::make_unique<ColumnSurveyor>(platform, held, plan, demand);
-  return std::make_unique<VoxelSurveyor>(platform, held, plan, demand);
+std::unique_ptr<const Surveyor> make_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held,
+                                              const SurveyPlan& plan, const Demand& demand) {
+  if (plan.method == Method::columns)
+    return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, demand);
+  return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, demand);
 }
 
 VoxelMap voxel_map(Platform platform, int held, std::span<const double> parameters, const SurveyPlan& plan) {
-  return VoxelSurveyor(platform, held, plan, {}).map(parameters);
+  return VoxelSurveyor(platform, MassModel::table, {}, held, plan, {}).map(parameters);
 }
 
 }  // namespace pkm::crr_cru

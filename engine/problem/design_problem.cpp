@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/workspace/survey_set.hpp"
+
 namespace pkm {
 namespace {
 
@@ -14,10 +16,37 @@ S margin_of(const NamedQuantity& named, const S& value) {
   return value;
 }
 
+/// Whether a quantity reads each survey, the workspace's first.
+std::vector<bool> used_surveys(const ProblemParts& parts) {
+  std::vector<bool> used(1 + parts.regions.size());
+  for (const auto* list : {&parts.objectives, &parts.survey_margins, &parts.reports})
+    for (const auto& q : *list) used[q.survey] = true;
+  return used;
+}
+
+std::unique_ptr<const Surveyor> prepare(const ProblemParts& parts, std::size_t survey) {
+  if (survey == 0) return prepare_survey(*parts.mechanism, parts.plan, parts.demand);
+  const Region& region = parts.regions[survey - 1];
+  return prepare_survey(*parts.mechanism, region.plan, region.demand);
+}
+
 }  // namespace
 
+std::string no_derivatives(const ProblemParts& parts) {
+  const std::vector<bool> used = used_surveys(parts);
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const std::string reason = used[k] ? prepare(parts, k)->no_derivatives() : "";
+    if (!reason.empty()) return reason;
+  }
+  for (const auto* list : {&parts.objectives, &parts.design_margins, &parts.survey_margins})
+    for (const auto& q : *list)
+      if (const std::string reason = q.quantity->no_derivatives(); !reason.empty()) return reason;
+  return {};
+}
+
 DesignProblem::DesignProblem(ProblemParts parts)
-    : parts_(std::move(parts)), surveyor_(parts_.mechanism->prepare(parts_.plan, parts_.demand)) {
+    : parts_(std::move(parts)), used_(used_surveys(parts_)), no_derivatives_(pkm::no_derivatives(parts_)) {
+  for (std::size_t k = 0; k < used_.size(); ++k) surveyors_.push_back(prepare(parts_, k));
   for (const auto& q : parts_.objectives) objectives_.push_back({q.name, q.unit, q.meaning, q.direction});
   for (const auto* list : {&parts_.design_margins, &parts_.survey_margins})
     for (const auto& q : *list) margins_.push_back({q.name, q.unit, q.meaning});
@@ -30,7 +59,18 @@ std::vector<double> DesignProblem::parameters(std::span<const double> design) co
   return all;
 }
 
-Status DesignProblem::compute(std::span<const double> parameters, Survey<double>& survey, EvaluationSlot result) const {
+template <class S>
+void DesignProblem::survey(std::span<const S> parameters, bool all, Surveys<S>& surveys) const {
+  surveys.resize(surveyors_.size());
+  for (std::size_t k = 0; k < surveyors_.size(); ++k)
+    if (used_[k] || (all && k == 0))
+      surveyors_[k]->survey(parameters, surveys[k]);
+    else
+      surveys[k].clear();
+}
+
+Status DesignProblem::compute(std::span<const double> parameters, Surveys<double>& surveys,
+                              EvaluationSlot result) const {
   DesignView<double> view{*parts_.mechanism, parameters, nullptr};
   bool holds = true, usable = true;
   const auto put = [&](double& place, double value) {
@@ -46,33 +86,36 @@ Status DesignProblem::compute(std::span<const double> parameters, Survey<double>
   if (rejected && result.detail == Detail::enough) return Status::rejected;
 
   if (result.detail == Detail::derivatives) {
-    differentiate(parameters, parts_.varies, result.slopes, survey);
+    differentiate(parameters, parts_.varies, result.slopes, surveys);
     for (const double slope : result.slopes) usable = usable && std::isfinite(slope);
   } else {
-    surveyor_->survey(parameters, survey);
+    survey(parameters, result.detail == Detail::complete, surveys);
   }
-  view.survey = &survey;
+  const auto value = [&](const NamedQuantity& q) {
+    view.survey = &surveys[q.survey];
+    return q.quantity->value(view);
+  };
   for (const auto& q : parts_.survey_margins)
-    holds = put(result.margins[margin++], margin_of(q, q.quantity->value(view))) >= 0 && holds;
-  for (std::size_t i = 0; i < parts_.objectives.size(); ++i)
-    put(result.objectives[i], parts_.objectives[i].quantity->value(view));
-  for (std::size_t i = 0; i < parts_.reports.size(); ++i) result.reports[i] = parts_.reports[i].quantity->value(view);
+    holds = put(result.margins[margin++], margin_of(q, value(q))) >= 0 && holds;
+  for (std::size_t i = 0; i < parts_.objectives.size(); ++i) put(result.objectives[i], value(parts_.objectives[i]));
+  for (std::size_t i = 0; i < parts_.reports.size(); ++i) result.reports[i] = value(parts_.reports[i]);
   if (!usable) return Status::failed;
   return rejected ? Status::rejected : holds ? Status::feasible : Status::infeasible;
 }
 
 void DesignProblem::differentiate(std::span<const double> parameters, std::span<const std::size_t> by,
-                                  std::span<double> slopes, Survey<double>& survey) const {
+                                  std::span<double> slopes, Surveys<double>& surveys) const {
   constexpr std::size_t kDirections = 4;
   thread_local std::vector<Dual4> all;
-  thread_local Survey<Dual4> dual_survey;
+  thread_local Surveys<Dual4> dual_surveys;
   const std::size_t width = 1 + by.size();
   for (std::size_t first = 0; first < std::max<std::size_t>(by.size(), 1); first += kDirections) {
     const std::size_t count = std::min(kDirections, by.size() - first);
     all.assign(parameters.begin(), parameters.end());
     for (std::size_t k = 0; k < count; ++k) all[by[first + k]].v[static_cast<int>(k)] = 1;
-    surveyor_->survey(all, dual_survey);
-    if (first == 0) copy_values(dual_survey, survey);
+    survey(std::span<const Dual4>(all), false, dual_surveys);
+    surveys.resize(dual_surveys.size());
+    for (std::size_t k = 0; first == 0 && k < surveys.size(); ++k) copy_values(dual_surveys[k], surveys[k]);
     DesignView<Dual4> view{*parts_.mechanism, all, nullptr};
     std::size_t row = 0;
     const auto put = [&](const Dual4& value) {
@@ -80,32 +123,35 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
       at[0] = value.a;
       for (std::size_t k = 0; k < count; ++k) at[1 + first + k] = value.v[static_cast<int>(k)];
     };
+    const auto smooth = [&](const NamedQuantity& q) {
+      view.survey = &dual_surveys[q.survey];
+      return q.quantity->smooth(view);
+    };
     const auto put_margins = [&](const std::vector<NamedQuantity>& list) {
-      for (const auto& q : list) put(margin_of(q, q.quantity->smooth(view)));
+      for (const auto& q : list) put(margin_of(q, smooth(q)));
     };
     row = parts_.objectives.size();
     put_margins(parts_.design_margins);
-    view.survey = &dual_survey;
     put_margins(parts_.survey_margins);
     row = 0;
-    for (const auto& q : parts_.objectives) put(q.quantity->smooth(view));
+    for (const auto& q : parts_.objectives) put(smooth(q));
   }
 }
 
 std::vector<double> DesignProblem::slopes(std::span<const double> parameters, std::span<const std::size_t> by) const {
   std::vector<double> slopes((objectives_.size() + margins_.size()) * (1 + by.size()));
-  Survey<double> survey;
-  differentiate(parameters, by, slopes, survey);
+  Surveys<double> surveys;
+  differentiate(parameters, by, slopes, surveys);
   return slopes;
 }
 
 void DesignProblem::evaluate(std::span<const double> design, EvaluationSlot result) const {
-  thread_local Survey<double> survey;
+  thread_local Surveys<double> surveys;
   thread_local std::vector<double> all;
   try {
     all.assign(parts_.parameters.begin(), parts_.parameters.end());
     for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
-    result.status = compute(all, survey, result);
+    result.status = compute(all, surveys, result);
   } catch (const std::exception&) {
     result.status = Status::failed;
   }
@@ -119,8 +165,10 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
   report.margins.assign(margins_.size(), nan);
   report.reports.assign(reports_.size(), nan);
   try {
-    report.status = compute(parameters, report.survey,
+    Surveys<double> surveys;
+    report.status = compute(parameters, surveys,
                             {report.objectives, report.margins, report.reports, report.status, Detail::complete});
+    if (!surveys.empty()) report.survey = std::move(surveys.front());
     if (report.status == Status::failed) report.reason = "an objective or a margin is not a finite number";
   } catch (const std::exception& error) {
     report.status = Status::failed;

@@ -17,6 +17,7 @@ struct NamedQuantity {
   std::string meaning;
   Direction direction = Direction::maximise;  ///< objectives only
   std::shared_ptr<const Quantity> quantity;
+  std::size_t survey = 0;  ///< which one it reads: 0 the workspace's, k the k-th region's
   /// Margins made from an objective: margin = value - least, or greatest - value. Neither: the value is the margin.
   std::optional<double> least, greatest;
 };
@@ -28,11 +29,16 @@ struct ProblemParts {
   std::vector<std::size_t> varies;  ///< variable i is parameter varies[i]
   SurveyPlan plan;
   Demand demand;
+  std::vector<Region> regions;
   std::vector<NamedQuantity> objectives;
   std::vector<NamedQuantity> design_margins;  ///< need no survey: computed first
   std::vector<NamedQuantity> survey_margins;  ///< the others
   std::vector<NamedQuantity> reports;
 };
+
+/// "" or one sentence saying why the problem has no derivatives: a survey that is read or a quantity lacks them. Throws
+/// std::invalid_argument where the mechanism cannot serve a survey's plan.
+std::string no_derivatives(const ProblemParts& parts);
 
 /// All that is known of one design, for the command line and /final.
 struct DesignReport {
@@ -52,7 +58,7 @@ class DesignProblem final : public Problem {
   const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level ones first
   const std::vector<ReportInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, EvaluationSlot result) const override;
-  std::string no_derivatives() const override { return surveyor_->no_derivatives(); }
+  std::string no_derivatives() const override { return no_derivatives_; }
 
   const ProblemParts& parts() const { return parts_; }
   /// All parameters of a design given by its variables.
@@ -65,13 +71,21 @@ class DesignProblem final : public Problem {
   std::vector<double> slopes(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
-  Status compute(std::span<const double> parameters, Survey<double>& survey, EvaluationSlot result) const;
-  /// Fills `slopes`; `survey` receives the survey's values.
+  /// The surveys of a design: of the workspace, then of the regions. Empty where no quantity reads it.
+  template <class S>
+  using Surveys = std::vector<Survey<S>>;
+
+  Status compute(std::span<const double> parameters, Surveys<double>& surveys, EvaluationSlot result) const;
+  /// Fills `slopes`; `surveys` receive the surveys' values.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> slopes,
-                     Survey<double>& survey) const;
+                     Surveys<double>& surveys) const;
+  template <class S>
+  void survey(std::span<const S> parameters, bool all, Surveys<S>& surveys) const;
 
   ProblemParts parts_;
-  std::unique_ptr<const Surveyor> surveyor_;
+  std::vector<std::unique_ptr<const Surveyor>> surveyors_;
+  std::vector<bool> used_;  ///< whether a quantity reads the survey
+  std::string no_derivatives_;
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;
   std::vector<ReportInfo> reports_;

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class Quantity {
   virtual double value(const DesignView<double>& design) const = 0;
   /// What gradient solvers are told: the value with derivatives, or a smooth stand-in for it (a worst case).
   virtual Dual4 smooth(const DesignView<Dual4>& design) const = 0;
+  /// "" or one sentence saying why there is no `smooth`.
+  virtual std::string no_derivatives() const { return {}; }
 };
 
 /// Wraps generic functions `[](const auto& design) { ... }` of a DesignView: the value, and its smooth stand-in where
@@ -52,11 +55,36 @@ std::unique_ptr<const Quantity> make_quantity(F function) {
   return make_quantity(function, function);
 }
 
+/// A quantity without derivatives.
+template <class F>
+std::unique_ptr<const Quantity> make_plain_quantity(F function, std::string no_derivatives) {
+  class Wrapped final : public Quantity {
+   public:
+    Wrapped(F f, std::string why) : function_(std::move(f)), no_derivatives_(std::move(why)) {}
+    double value(const DesignView<double>& design) const override { return function_(design); }
+    Dual4 smooth(const DesignView<Dual4>&) const override { throw std::logic_error(no_derivatives_); }
+    std::string no_derivatives() const override { return no_derivatives_; }
+
+   private:
+    F function_;
+    std::string no_derivatives_;
+  };
+  return std::make_unique<Wrapped>(std::move(function), std::move(no_derivatives));
+}
+
+/// A part of the workspace that a study names: surveyed by a plan of its own.
+struct Region {
+  std::string name;
+  SurveyPlan plan;
+  Demand demand;  ///< of all quantities that read it
+};
+
 /// What an entry is given when a study asks for it.
 struct EntryContext {
   const Mechanism& mechanism;
-  const SurveyPlan& plan;
+  const SurveyPlan& plan;  ///< of the survey that the entry reads
   const Options& options;
+  std::span<const Region> regions = {};  ///< that the study names
 };
 
 /// An entry of the catalogue of objectives.
@@ -72,6 +100,7 @@ struct ObjectiveEntry {
   std::unique_ptr<const Quantity> (*make)(const EntryContext&);
   /// What one with these options computes; none: `meaning`.
   std::string (*detail)(const EntryContext&) = nullptr;
+  bool reads_survey = true;  ///< of the workspace, or of the region that a study names
 };
 
 /// An entry of the catalogue of constraints: pose-level ones set thresholds, the others give a margin, of the design

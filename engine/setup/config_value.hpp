@@ -25,6 +25,7 @@ class ConfigValue {
   ConfigValue(const TomlValue& value, std::string file, std::string path);
 
   bool is_table() const { return value_->kind == TomlValue::Kind::table; }
+  bool is_list() const { return value_->kind == TomlValue::Kind::array; }
   bool is_text() const { return value_->kind == TomlValue::Kind::text; }
 
   /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].

@@ -59,10 +59,15 @@ void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
   std::vector<std::string> names;
   for (const auto& mechanism : draft.catalogues.mechanisms) names.push_back(mechanism->info().name);
   const ConfigValue table = root.at("mechanism", "a table [mechanism] with type = one of " + join(names));
-  table.expect_table("a table [mechanism]").allow({"type", "parameters"});
+  table.expect_table("a table [mechanism]").allow({"type", "masses", "parameters"});
   const std::string& type = table.at("type", "one of " + join(names)).word(names);
   for (const auto& mechanism : draft.catalogues.mechanisms)
     if (mechanism->info().name == type) draft.parts.mechanism = mechanism;
+  if (const auto masses = table.find("masses")) {
+    const std::vector<std::string>& models = draft.info().mass_models;
+    if (models.empty()) throw masses->refusal("the mechanism " + type + " has no masses");
+    draft.parts.mechanism = draft.parts.mechanism->with_masses(masses->word(models));
+  }
 
   for (const auto& parameter : draft.info().parameters) draft.parts.parameters.push_back(parameter.nominal);
   if (const auto fixed = table.find("parameters"))

@@ -28,11 +28,34 @@ std::string entry_name(const ConfigValue& table, const std::string& type, const 
   return name;
 }
 
-/// Adds what an entry needs to the demands of those before it. All samples share one characteristic length.
+/// Adds what an entry needs to the demands of those before it. All samples of a survey share one characteristic length
+/// and one working mode.
 void add_demand(const ConfigValue& table, const Demand& own, Demand& demand) {
   if (own.conditioning && demand.conditioning && own.characteristic_length != demand.characteristic_length)
     throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
-  if (own.conditioning) demand = own;
+  if (own.conditioning) {
+    demand.conditioning = true;
+    demand.characteristic_length = own.characteristic_length;
+  }
+  if (!own.dci && !own.inertia_condition) return;
+  if ((demand.dci || demand.inertia_condition) && own.mode != demand.mode)
+    throw table.refusal("the inertia is asked for in two different working modes, " + demand.mode + " and " + own.mode +
+                        "; a survey has one (name another [[region]] for the other)");
+  demand.dci = demand.dci || own.dci;
+  demand.inertia_condition = demand.inertia_condition || own.inertia_condition;
+  demand.mode = own.mode;
+}
+
+/// The survey that an entry reads: 0 the workspace's, k that of the k-th region, which `region = ".."` names.
+std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, const StudyDraft& draft) {
+  const auto named = table.find("region");
+  if (!named) return 0;
+  if (!entry.reads_survey) throw named->refusal("the objective " + entry.name + " reads no survey, so it has no region");
+  std::vector<std::string> names;
+  for (const Region& region : draft.parts.regions) names.push_back(region.name);
+  if (names.empty()) throw named->refusal("the study names no [[region]]");
+  const std::string& name = named->word(names);
+  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()) + 1;
 }
 
 /// What an [[objective]], [[constraint]] or [[report]] made from an entry of the catalogue of objectives has in common.
@@ -40,13 +63,16 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
                              const Options& options, StudyDraft& draft) {
   if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
     throw table.find("type")->refusal(reason);
-  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options};
+  const std::size_t survey = survey_read(table, entry, draft);
+  Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
+  const EntryContext context{*draft.parts.mechanism, region ? region->plan : draft.parts.plan, options,
+                             draft.parts.regions};
   try {
     Demand own;
     entry.demand(context, own);
-    add_demand(table, own, draft.parts.demand);
+    add_demand(table, own, region ? region->demand : draft.parts.demand);
     const std::string meaning = entry.detail ? entry.detail(context) : entry.meaning;
-    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), {}, {}};
+    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), survey, {}, {}};
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());
   }
@@ -56,7 +82,7 @@ void read_objective(const ConfigValue& table, StudyDraft& draft) {
   const auto& catalogue = draft.catalogues.objectives;
   const std::string& type = type_of(table, "type", names_of(catalogue));
   const ObjectiveEntry& entry = *find_named(catalogue, type);
-  allow_options(table, {"type", "name", "direction"}, entry.options);
+  allow_options(table, {"type", "name", "direction", "region"}, entry.options);
   const Options options = read_options(table, entry.options);
   NamedQuantity made = make_objective(table, entry, entry_name(table, type, draft.study.objectives), options, draft);
   if (const auto direction = table.find("direction"))
@@ -71,7 +97,7 @@ void read_report(const ConfigValue& table, StudyDraft& draft) {
   const auto& catalogue = draft.catalogues.objectives;
   const std::string& type = type_of(table, "type", names_of(catalogue));
   const ObjectiveEntry& entry = *find_named(catalogue, type);
-  allow_options(table, {"type", "name"}, entry.options);
+  allow_options(table, {"type", "name", "region"}, entry.options);
   const Options options = read_options(table, entry.options);
   NamedQuantity made = make_objective(table, entry, entry_name(table, type, draft.study.reports), options, draft);
   draft.study.reports.push_back({type, made.name, in_unit(made.unit), entry.options, options});
@@ -80,7 +106,7 @@ void read_report(const ConfigValue& table, StudyDraft& draft) {
 
 /// An objective as a constraint: its value has a least or a greatest allowed value.
 void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entry, StudyDraft& draft) {
-  allow_options(table, {"type", "name", "min", "max"}, entry.options);
+  allow_options(table, {"type", "name", "min", "max", "region"}, entry.options);
   const auto least = table.find("min"), greatest = table.find("max");
   if (!least && !greatest)
     throw table.refusal("the objective " + entry.name + " becomes a constraint by min = .. or max = ..; give one");
@@ -94,7 +120,8 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
   const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
   made.meaning = "margin of " + role + ": " + made.meaning;
   draft.study.constraints.push_back({entry.name, made.name, role, entry.options, options});
-  draft.parts.survey_margins.push_back(std::move(made));
+  // Those that read no survey come first: they may save it.
+  (entry.reads_survey ? draft.parts.survey_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
 /// A constraint that gives a margin, of the design alone or of its survey.
@@ -108,7 +135,7 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
   std::copy_if(specs.begin(), specs.end(), std::back_inserter(first),
                [](const OptionSpec& spec) { return spec.unit != kUnitOfEntry; });
   Options options = read_options(table, first);
-  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options};
+  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions};
   NamedQuantity made;
   made.name = entry_name(table, entry.name, draft.study.constraints);
   bool after_survey = false;

@@ -29,6 +29,8 @@ void read_baseline(const ConfigValue& root, StudyDraft& draft);
 void read_workspace(const ConfigValue& root, StudyDraft& draft);
 /// The [[constraint]]s that cut the workspace: they complete the survey plan, so they come before what uses it.
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
+/// [[region]]: named parts of the workspace with surveys of their own, under the study's limits of a pose.
+void read_regions(const ConfigValue& root, StudyDraft& draft);
 /// [[objective]], the other [[constraint]]s and [[report]]
 void read_quantities(const ConfigValue& root, StudyDraft& draft);
 /// [[reference]]

@@ -8,11 +8,10 @@
 namespace pkm {
 namespace {
 
-/// "" or why the surveys of the study have no derivatives.
-std::string no_derivatives(const ProblemParts& parts) {
-  if (parts.plan.method == Method::voxels) return voxels_have_no_derivatives();
+/// "" or why the study has no derivatives.
+std::string why_no_derivatives(const ProblemParts& parts) {
   try {
-    return parts.mechanism->prepare(parts.plan, parts.demand)->no_derivatives();
+    return no_derivatives(parts);
   } catch (const std::invalid_argument&) {
     return "";  // the survey itself is refused, which is told when the problem is made
   }
@@ -37,7 +36,7 @@ std::string refusal_of(const OptimiserEntry& entry, const Options& options, cons
     if (!can.discrete && variable.step > 0)
       return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
   if (can.needs_gradient)
-    if (const std::string reason = no_derivatives(parts); !reason.empty())
+    if (const std::string reason = why_no_derivatives(parts); !reason.empty())
       return who + "needs derivatives, but " + reason;
   return "";
 }

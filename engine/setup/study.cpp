@@ -126,7 +126,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
   const ConfigValue root(document, file_name, "");
-  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "objective", "constraint", "report",
+  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "objective", "constraint", "report",
               "reference", "stage", "checkpoint", "final"},
              "section");
 
@@ -139,6 +139,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_baseline(root, draft);
   read_workspace(root, draft);
   read_pose_constraints(root, draft);
+  read_regions(root, draft);
   read_quantities(root, draft);
   read_references(root, draft);
   read_stages(root, draft);

@@ -105,8 +105,17 @@ HeldCoordinate read_held(const ConfigValue& value, const MechanismInfo& info, in
   return {Kind::value, number, coordinate};
 }
 
+/// A list of values of the held coordinate.
+void read_held_values(const ConfigValue& list, const MechanismInfo& info, int coordinate, SurveyPlan& plan) {
+  const std::string expected = "a list of values of " + name_of(info, coordinate);
+  for (const ConfigValue& value : list.elements(expected))
+    plan.held_values.push_back(read_held(value, info, coordinate).value);
+  if (plan.held_values.empty()) throw list.error(expected);
+  plan.held = {HeldCoordinate::Kind::value, plan.held_values.front(), coordinate};
+}
+
 /// The one coordinate, of those that the mechanism's surveys can hold, that the study names.
-void read_held_coordinate(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
+void read_held_coordinate(const ConfigValue& table, const MechanismInfo& info, bool of_region, SurveyPlan& plan) {
   std::string first;
   for (const Sweep& sweep : sweeps_of(info)) {
     const std::string& name = name_of(info, sweep.held);
@@ -116,7 +125,10 @@ void read_held_coordinate(const ConfigValue& table, const MechanismInfo& info, S
       throw value->refusal("a survey holds one coordinate and sweeps the others, but both " + first + " and " + name +
                            " are given");
     first = name;
-    plan.held = read_held(*value, info, sweep.held);
+    if (of_region && value->is_list())
+      read_held_values(*value, info, sweep.held, plan);
+    else
+      plan.held = read_held(*value, info, sweep.held);
   }
 }
 
@@ -130,6 +142,40 @@ void read_limits(const ConfigValue& table, StudyDraft& draft) {
     }
 }
 
+/// The keys of a survey, which [workspace] and [[region]] share.
+std::vector<std::string> survey_keys(const MechanismInfo& info) {
+  std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box"};
+  for (const Sweep& sweep : sweeps_of(info)) keys.push_back(name_of(info, sweep.held));
+  return keys;
+}
+
+void read_survey(const ConfigValue& table, const MechanismInfo& info, bool of_region, SurveyPlan& plan) {
+  if (const auto method = table.find("method"))
+    plan.method = method->word({"columns", "voxels"}) == "voxels" ? Method::voxels : Method::columns;
+  const bool voxels = plan.method == Method::voxels;
+  for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
+    const bool of_voxels = key == "cells" || key == "box", of_both = key == "box" && info.columns_take_box;
+    if (!of_both && of_voxels != voxels && table.has(key))
+      throw table.find(key)->refusal(std::string("this key belongs to method = ") +
+                                     (of_voxels ? "\"voxels\", but the study's method is \"columns\""
+                                                : "\"columns\", but the study's method is \"voxels\""));
+  }
+  if (const auto tolerance = table.find("tolerance")) {
+    plan.tolerance = tolerance->number("1", kFinestTolerance, kCoarsestTolerance);
+    if (table.has("nodes"))
+      throw table.find("nodes")->refusal("either tolerance (" + tolerance->line() +
+                                         ") or nodes set the accuracy; give one of them");
+  }
+  read_held_coordinate(table, info, of_region, plan);  // decides which coordinates are swept
+  if (const auto nodes = table.find("nodes")) read_nodes(*nodes, info, plan);
+  if (voxels) {
+    plan.cells = kPaperCells;
+    if (plan.held.kind == HeldCoordinate::Kind::integrated) plan.held_cells = kHeldCells;
+  }
+  if (const auto cells = table.find("cells")) read_cells(*cells, info, plan);
+  if (const auto box = table.find("box")) read_box(*box, info, plan);
+}
+
 }  // namespace
 
 void read_workspace(const ConfigValue& root, StudyDraft& draft) {
@@ -139,36 +185,29 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   draft.study.limit_origins.resize(info.limits.size());
   const auto table = root.find("workspace");
   if (!table) return;
-
-  std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box"};
-  for (const Sweep& sweep : sweeps_of(info)) keys.push_back(name_of(info, sweep.held));
+  std::vector<std::string> keys = survey_keys(info);
   keys.push_back("limits");
   table->expect_table("a table [workspace]").allow(keys, "key");
-  if (const auto method = table->find("method"))
-    plan.method = method->word({"columns", "voxels"}) == "voxels" ? Method::voxels : Method::columns;
-  const bool voxels = plan.method == Method::voxels;
-  for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
-    const bool of_voxels = key == "cells" || key == "box";
-    if (of_voxels != voxels && table->has(key))
-      throw table->find(key)->refusal(std::string("this key belongs to method = ") +
-                                      (of_voxels ? "\"voxels\", but the study's method is \"columns\""
-                                                 : "\"columns\", but the study's method is \"voxels\""));
-  }
-  if (const auto tolerance = table->find("tolerance")) {
-    plan.tolerance = tolerance->number("1", kFinestTolerance, kCoarsestTolerance);
-    if (table->has("nodes"))
-      throw table->find("nodes")->refusal("either tolerance (" + tolerance->line() +
-                                          ") or nodes set the accuracy; give one of them");
-  }
-  read_held_coordinate(*table, info, plan);  // decides which coordinates are swept
-  if (const auto nodes = table->find("nodes")) read_nodes(*nodes, info, plan);
-  if (voxels) {
-    plan.cells = kPaperCells;
-    if (plan.held.kind == HeldCoordinate::Kind::integrated) plan.held_cells = kHeldCells;
-  }
-  if (const auto cells = table->find("cells")) read_cells(*cells, info, plan);
-  if (const auto box = table->find("box")) read_box(*box, info, plan);
+  read_survey(*table, info, false, plan);
   if (const auto limits = table->find("limits")) read_limits(*limits, draft);
+}
+
+void read_regions(const ConfigValue& root, StudyDraft& draft) {
+  const MechanismInfo& info = draft.info();
+  for (const auto& table : tables_of(root, "region")) {
+    std::vector<std::string> keys = survey_keys(info);
+    keys.push_back("name");
+    table.allow(keys, "key");
+    Region region;
+    const ConfigValue name = table.at("name", "the region's name");
+    region.name = name.text("the region's name");
+    if (region.name.empty()) throw name.error("the region's name");
+    for (const Region& other : draft.parts.regions)
+      if (other.name == region.name) throw name.refusal("there is already a region called '" + region.name + "'");
+    region.plan.limits = draft.parts.plan.limits;
+    read_survey(table, info, true, region.plan);
+    draft.parts.regions.push_back(std::move(region));
+  }
 }
 
 }  // namespace pkm

@@ -56,6 +56,7 @@ struct MechanismInfo {
   std::array<int, 3> swept{};              ///< the usual sweep, as in Sweep
   int held = 1;                            ///< as in Sweep
   bool held_can_integrate = false;         ///< HeldCoordinate::Kind::integrated is available
+  bool columns_take_box = false;           ///< column surveys can be cut by SurveyPlan::box
   std::vector<Sweep> more_sweeps;          ///< those that a study may ask for by holding another coordinate
   std::vector<LimitInfo> limits;
   std::vector<DesignMarginInfo> design_margins;
@@ -64,6 +65,7 @@ struct MechanismInfo {
   std::string size_unit;        ///< unit of size(); "" when the mechanism has no size
   std::string size_meaning;
   std::string characteristic_length;     ///< formula of the default characteristic length
+  std::string margin_unit;            ///< of Mechanism::pose_margins, which then has derivatives; "": mixed SI units
   bool has_dynamics = false;             ///< Mechanism::dynamics answers
   bool has_reactions = false;            ///< Mechanism::reactions answers
   std::vector<std::string> mass_models;  ///< where masses can come from; the first is the default; none: no masses
@@ -121,6 +123,21 @@ class Mechanism {
   /// @param mode  one of MechanismInfo::modes
   virtual PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
                              const LimitSpec& limits) const = 0;
+  /// Appends the margins of poses: a pose is feasible where all of its margins are >= 0. They exist, finite, also where
+  /// a pose does not assemble. Here: those of inspect, NaN counting as broken.
+  virtual void pose_margins(std::span<const double> parameters, const LimitSpec& limits,
+                            std::span<const Pose<double>> poses, std::vector<double>& margins) const {
+    for (const Pose<double>& pose : poses) {
+      const PoseReport report = inspect(parameters, pose, info().modes.front(), limits);
+      for (const auto& [name, margin] : report.margins) margins.push_back(margin == margin ? margin : -1);
+      if (!report.assembles) margins.push_back(-1);
+    }
+  }
+  virtual void pose_margins(std::span<const Dual4>, const LimitSpec&, std::span<const Pose<double>>,
+                            std::vector<Dual4>&) const {
+    throw no_duals();
+  }
+
   /// Equations of motion at states of one design, with its masses. Where a state does not assemble,
   /// PoseDynamics::assembles is false. Throws std::domain_error where a mass is not positive.
   /// @param mode  one of MechanismInfo::modes

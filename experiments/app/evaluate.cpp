@@ -25,7 +25,7 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
     const EntryContext context{*target.mechanism, parts.plan, options};
     entry.demand(context, parts.demand);
     parts.objectives.push_back(
-        {entry.name, entry.unit(context), entry.meaning, entry.direction, entry.make(context), {}, {}});
+        {entry.name, entry.unit(context), entry.meaning, entry.direction, entry.make(context), 0, {}, {}});
   }
   try {
     return std::make_shared<const DesignProblem>(std::move(parts));

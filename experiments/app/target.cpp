@@ -40,6 +40,20 @@ Target named_target(const Catalogues& catalogues, const std::string& name) {
                     "a study in TOML, or one of the mechanisms " + join(known), nearest_name(name, known));
 }
 
+void set_masses(Target& target, const std::string& model) {
+  const MechanismInfo& info = target.info();
+  if (target.study)
+    throw ConfigError({"", 0, "--masses"}, "'" + model + "' together with a study",
+                      "a bare mechanism; a study says masses = \"..\" in its [mechanism]");
+  const auto other = target.mechanism->with_masses(model);
+  if (!other && info.mass_models.empty())
+    throw ConfigError({"", 0, "--masses"}, "the mechanism " + info.name + " has no masses");
+  if (!other)
+    throw ConfigError({"", 0, "--masses"}, "'" + model + "'", "one of " + join(info.mass_models),
+                      nearest_name(model, info.mass_models));
+  target = bare_mechanism(other);
+}
+
 }  // namespace
 
 void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
@@ -56,11 +70,15 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
       ->required();
   add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults",
                   false);
+  command
+      .add_option("--masses", arguments.masses, "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself")
+      ->type_name("MODEL");
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }
 
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {
   Target target = named_target(catalogues, arguments.target);
+  if (!arguments.masses.empty()) set_masses(target, arguments.masses);
   const auto given = parse_assignments(arguments.set, "--set", assignable_parameters(target.info()));
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i]) target.parameters[i] = *given[i];

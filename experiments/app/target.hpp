@@ -17,6 +17,7 @@ namespace pkm {
 struct DesignArguments {
   std::string target;            ///< a mechanism's name or the path of a study
   std::vector<std::string> set;  ///< lists of name=value
+  std::string masses;            ///< a mass model; "": the study's, else the mechanism's default
   bool json = false;
 };
 
