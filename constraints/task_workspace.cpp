@@ -31,8 +31,7 @@ std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& in
     throw std::invalid_argument("task-workspace needs a number, or a list of them, for the coordinate that region '" +
                                 region.name + "' holds");
   const Sweep sweep = sweep_of(info, plan);
-  const std::vector<double> held =
-      plan.held_values.empty() ? std::vector<double>{plan.held.value} : plan.held_values;
+  const std::vector<double> held = plan.held_values.empty() ? std::vector<double>{plan.held.value} : plan.held_values;
   const auto at = [&](std::size_t axis, int k) {
     const auto& [lower, upper] = (*plan.box)[axis];
     return k == points - 1 ? upper : lower + (upper - lower) * k / (points - 1);
@@ -103,7 +102,8 @@ ConstraintEntry task_workspace() {
                 {.name = "region",
                  .kind = OptionKind::word,
                  .required = true,
-                 .meaning = "name of the [[region]] whose box, at the value or values that it holds, is to be feasible"},
+                 .meaning =
+                     "name of the [[region]] whose box, at the value or values that it holds, is to be feasible"},
                 {.name = "margin",
                  .kind = OptionKind::number,
                  .unit = kUnitOfEntry,
@@ -130,8 +130,7 @@ ConstraintEntry task_workspace() {
           },
       .refusal = [](const MechanismInfo&) { return std::string(); },
       .limits = nullptr,
-      .make =
-          [](const EntryContext& context) -> std::unique_ptr<const Quantity> {
+      .make = [](const EntryContext& context) -> std::unique_ptr<const Quantity> {
         return std::make_unique<TaskWorkspace>(context);
       },
   };

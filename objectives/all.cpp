@@ -6,12 +6,7 @@ namespace pkm {
 
 const std::vector<ObjectiveEntry>& all_objectives() {
   static const std::vector<ObjectiveEntry> list = {
-      workspace_volume(),
-      workspace_ratio(),
-      conditioning(),
-      dci(),
-      dci_uniformity(),
-      inertia_condition_objective(),
+      workspace_volume(),     workspace_ratio(), conditioning(), dci(), dci_uniformity(), inertia_condition_objective(),
       expression_objective(),
   };
   return list;

@@ -17,7 +17,8 @@ ObjectiveEntry inertia_condition_objective() {
                    .initial = std::string("mean"),
                    .choices = {"mean", "min"},
                    .meaning = "mean over the workspace, or the worst pose"},
-                  mode_option(), sharpness_option("min")},
+                  mode_option(),
+                  sharpness_option("min")},
       .unit = [](const EntryContext&) { return std::string("1"); },
       .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("inertia-condition", mechanism); },
       .demand =

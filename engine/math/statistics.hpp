@@ -86,16 +86,14 @@ inline double weighted_quantile(const std::vector<double>& weight, const std::ve
   if (field.empty()) return 0;
   std::vector<std::size_t> order(field.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return field[a] != field[b] ? field[a] < field[b] : a < b;
-  });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return field[a] != field[b] ? field[a] < field[b] : a < b; });
   double span = 0;
   for (std::size_t k = 0; k + 1 < order.size(); ++k) span += 0.5 * (weight[order[k]] + weight[order[k + 1]]);
   double left = p * span;
   for (std::size_t k = 0; k + 1 < order.size(); ++k) {
     const double step = 0.5 * (weight[order[k]] + weight[order[k + 1]]);
-    if (left <= step && step > 0)
-      return field[order[k]] + (field[order[k + 1]] - field[order[k]]) * (left / step);
+    if (left <= step && step > 0) return field[order[k]] + (field[order[k + 1]] - field[order[k]]) * (left / step);
     left -= step;
   }
   return field[order.back()];

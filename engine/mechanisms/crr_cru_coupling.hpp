@@ -98,8 +98,8 @@ Matrix<S, 4, 4> joint_inertia(const InertiaFrame<S>& f, const PlaneInertia<S>& l
 
 /// M_q at a feasible position [kg].
 template <class S>
-Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const InertiaFrame<S>& f,
-                              const Vector3<S>& at, const WorkingMode& mode) {
+Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const InertiaFrame<S>& f, const Vector3<S>& at,
+                              const WorkingMode& mode) {
   std::array<PlaneInertia<S>, 4> share;
   for (std::size_t i = 0; i < 4; ++i)
     share[i] = limb_share(g, b, i, {at[0] + f.arm[i][0], at[1] + f.arm[i][1], at[2] + f.arm[i][2]}, mode);

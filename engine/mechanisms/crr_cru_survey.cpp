@@ -116,7 +116,9 @@ class ColumnSurveyor final : public Surveyor {
     const Masses<S> b = masses(mass_model_, parameters);
     InertiaFrame<S> frame;
     S length(0.0), index(0.0);
+    S angle(0.0);
     const auto set_phi = [&](const S& phi) {
+      angle = phi;
       frame = inertia_frame(g, b, phi);
       if (!demand_.conditioning) return;
       const auto [sine, cosine] = sincos(phi);
@@ -133,6 +135,7 @@ class ColumnSurveyor final : public Surveyor {
           const S measure = outer_weight * weight;
           if (!(value_of(measure) > 0)) return;
           survey.weight.push_back(measure);
+          if (demand_.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
           if (demand_.conditioning) survey.conditioning.push_back(index);
           add_inertia(joint_inertia(g, b, frame, at, mode_), demand_, survey);
         });
@@ -222,6 +225,7 @@ class VoxelSurveyor final : public Surveyor {
           for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
             cell[axes.v] = static_cast<std::int64_t>(64 * w) + std::countr_zero(bits);
             survey.weight.push_back(survey.cell_volume);
+            if (demand_.poses) survey.pose.push_back(pose_of(cell, grid, held_at));
             if (demand_.conditioning) survey.conditioning.push_back(index);
             add_inertia(tables.at(cell), demand_, survey);
           }
@@ -265,6 +269,13 @@ class VoxelSurveyor final : public Surveyor {
       if (static_cast<std::size_t>(k) != held_.coordinate) swept[static_cast<std::size_t>(axis++)] = k;
     return swept;
   }
+  Pose<double> pose_of(const std::array<std::int64_t, 3>& cell, const VoxelGrid& grid, double held_at) const {
+    std::array<double, 4> x{};
+    const std::array<int, 3> swept = swept_coordinates();
+    x[held_.coordinate] = held_at;
+    for (std::size_t k = 0; k < 3; ++k) x[static_cast<std::size_t>(swept[k])] = grid.centre(k, cell[k]);
+    return {x[0], x[1], x[2], x[3]};
+  }
   static VoxelRows& rows() {
     thread_local VoxelRows storage;
     return storage;
@@ -281,8 +292,8 @@ class VoxelSurveyor final : public Surveyor {
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held,
-                                              const SurveyPlan& plan, const Demand& demand) {
+std::unique_ptr<const Surveyor> make_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
+                                              int held, const SurveyPlan& plan, const Demand& demand) {
   if (plan.method == Method::columns)
     return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, demand);
   return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, demand);

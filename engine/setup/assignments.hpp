@@ -1,6 +1,7 @@
 // The command line's lists of numbers: `--at x=0.3,y=200mm`, `--set a=0.2 --set b=800mm`.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -31,5 +32,16 @@ std::vector<std::optional<double>> parse_assignments(const std::vector<std::stri
 /// The same, when every name must be given.
 std::vector<double> parse_all_assignments(const std::vector<std::string>& lists, const std::string& option,
                                           const std::vector<Assignable>& known);
+
+/// The same, names that are not given being 0.
+std::vector<double> parse_some_assignments(const std::vector<std::string>& lists, const std::string& option,
+                                           const std::vector<Assignable>& known);
+
+/// Values [SI] of `0,30deg`, or `-60deg:60deg:5` (from : to : how many).
+std::vector<double> parse_values(const std::string& text, const std::string& option, const Assignable& what);
+
+/// Ranges [SI] of comma-separated `name=from:to` lists, in the order of `known`; all must be given.
+std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,
+                                                const std::vector<Assignable>& known);
 
 }  // namespace pkm

@@ -50,7 +50,8 @@ void add_demand(const ConfigValue& table, const Demand& own, Demand& demand) {
 std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, const StudyDraft& draft) {
   const auto named = table.find("region");
   if (!named) return 0;
-  if (!entry.reads_survey) throw named->refusal("the objective " + entry.name + " reads no survey, so it has no region");
+  if (!entry.reads_survey)
+    throw named->refusal("the objective " + entry.name + " reads no survey, so it has no region");
   std::vector<std::string> names;
   for (const Region& region : draft.parts.regions) names.push_back(region.name);
   if (names.empty()) throw named->refusal("the study names no [[region]]");

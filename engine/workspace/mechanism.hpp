@@ -65,7 +65,7 @@ struct MechanismInfo {
   std::string size_unit;        ///< unit of size(); "" when the mechanism has no size
   std::string size_meaning;
   std::string characteristic_length;     ///< formula of the default characteristic length
-  std::string margin_unit;            ///< of Mechanism::pose_margins, which then has derivatives; "": mixed SI units
+  std::string margin_unit;               ///< of Mechanism::pose_margins, which then has derivatives; "": mixed SI units
   bool has_dynamics = false;             ///< Mechanism::dynamics answers
   bool has_reactions = false;            ///< Mechanism::reactions answers
   std::vector<std::string> mass_models;  ///< where masses can come from; the first is the default; none: no masses

@@ -43,6 +43,7 @@ struct SurveyPlan {
 struct Demand {
   bool conditioning = false;
   std::optional<double> characteristic_length;  ///< [m]; none: the mechanism's own
+  bool poses = false;                           ///< where the samples of dci and inertia_condition are
   bool dci = false;                             ///< dynamic coupling indices of every joint
   bool inertia_condition = false;               ///< inverse condition number of M_q
   std::string mode;                             ///< working mode of both; "": the mechanism's default

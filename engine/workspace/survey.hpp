@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/math/scalar.hpp"
+#include "engine/model/pose.hpp"
 
 namespace pkm {
 
@@ -24,7 +25,8 @@ struct Survey {
   double error = 0;          ///< estimated relative error of the volume
   // per feasible sample, only what was demanded (empty otherwise), all of one length
   std::vector<S> weight;
-  std::vector<S> conditioning;        ///< inverse condition number of J in [0, 1]
+  std::vector<S> conditioning;  ///< inverse condition number of J in [0, 1]
+  std::vector<Pose<S>> pose;
   std::array<std::vector<S>, 4> dci;  ///< dynamic coupling index per joint, in [0, 1]
   std::vector<S> inertia_condition;   ///< inverse condition number of M_q in [0, 1]
 
@@ -35,6 +37,7 @@ struct Survey {
     touches_box = false;
     weight.clear();
     conditioning.clear();
+    pose.clear();
     for (auto& joint : dci) joint.clear();
     inertia_condition.clear();
   }
@@ -56,6 +59,9 @@ void copy_values(const Survey<S>& from, Survey<double>& to) {
   };
   copy(from.weight, to.weight);
   copy(from.conditioning, to.conditioning);
+  to.pose.clear();
+  for (const Pose<S>& p : from.pose)
+    to.pose.push_back({value_of(p.x), value_of(p.y), value_of(p.z), value_of(p.angle)});
   for (std::size_t i = 0; i < to.dci.size(); ++i) copy(from.dci[i], to.dci[i]);
   copy(from.inertia_condition, to.inertia_condition);
 }

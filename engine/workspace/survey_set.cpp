@@ -42,6 +42,7 @@ class SurveySet final : public Surveyor {
       survey.error = std::max(survey.error, one.error);
       for (const S& weight : one.weight) survey.weight.push_back(weight * share);
       append(one.conditioning, survey.conditioning);
+      append(one.pose, survey.pose);
       for (std::size_t i = 0; i < survey.dci.size(); ++i) append(one.dci[i], survey.dci[i]);
       append(one.inertia_condition, survey.inertia_condition);
     }

@@ -1,6 +1,5 @@
 // `pkmopt pose`: inverse kinematics, Jacobians and limits at one pose.
 
-#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <stdexcept>
@@ -19,14 +18,6 @@ struct PoseArguments : DesignArguments {
   std::vector<std::string> at;
   std::string mode;
 };
-
-/// Refuses a mode that the mechanism does not have; none given: its default.
-std::string known_mode(const MechanismInfo& info, const std::string& mode) {
-  if (mode.empty()) return info.modes.front();
-  if (std::find(info.modes.begin(), info.modes.end(), mode) != info.modes.end()) return mode;
-  throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),
-                    nearest_name(mode, info.modes));
-}
 
 template <class T>
 Json json_or_null(const std::optional<T>& value) {

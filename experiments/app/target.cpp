@@ -1,5 +1,6 @@
 #include "experiments/app/target.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -71,9 +72,17 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
   add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults",
                   false);
   command
-      .add_option("--masses", arguments.masses, "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself")
+      .add_option("--masses", arguments.masses,
+                  "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself")
       ->type_name("MODEL");
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
+}
+
+std::string known_mode(const MechanismInfo& info, const std::string& mode) {
+  if (mode.empty()) return info.modes.front();
+  if (std::find(info.modes.begin(), info.modes.end(), mode) != info.modes.end()) return mode;
+  throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),
+                    nearest_name(mode, info.modes));
 }
 
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {

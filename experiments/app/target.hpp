@@ -39,6 +39,9 @@ struct Target {
   const MechanismInfo& info() const { return mechanism->info(); }
 };
 
+/// Refuses a mode that the mechanism does not have; "": its default.
+std::string known_mode(const MechanismInfo& info, const std::string& mode);
+
 /// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments);
 

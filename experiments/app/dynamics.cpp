@@ -1,0 +1,203 @@
+// `pkmopt dynamics`: inertia, coupling and forces at one pose and motion.
+
+#include <iostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/dynamics/coupling.hpp"
+#include "engine/setup/assignments.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/matrices.hpp"
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+namespace {
+
+struct DynamicsArguments : DesignArguments {
+  std::vector<std::string> at, velocity, acceleration, wrench;
+  std::string mode;
+  bool reactions = false;
+};
+
+/// What the command line asks for, and what was found.
+struct Found {
+  std::string mode;
+  std::vector<double> at, velocity, acceleration, wrench;
+  PoseReport pose;
+  std::optional<PoseDynamics<double>> dynamics;  ///< absent where the pose does not assemble
+  std::optional<Reactions> reactions;
+};
+
+/// The coordinates as names of their rates.
+std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::string& per) {
+  std::vector<Assignable> known;
+  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
+    known.push_back({info.coordinates[i], (i == 3 ? "rad/" : "m/") + per});
+  return known;
+}
+
+const std::vector<Assignable>& wrench_names() {
+  static const std::vector<Assignable> names = {{"Fx", "N"},   {"Fy", "N"},   {"Fz", "N"},
+                                                {"Mx", "N m"}, {"My", "N m"}, {"Mz", "N m"}};
+  return names;
+}
+
+Vector<double, 4> four(const std::vector<double>& v) { return {{v[0], v[1], v[2], v[3]}}; }
+
+Found find(const Target& target, const DynamicsArguments& arguments) {
+  const MechanismInfo& info = target.info();
+  const Mechanism& mechanism = *target.mechanism;
+  if (!info.has_dynamics)
+    throw ConfigError({"", 0, "dynamics"}, "mechanism " + info.name + " has no masses, so no dynamics");
+  if (arguments.reactions && !info.has_reactions)
+    throw ConfigError({"", 0, "--reactions"}, "mechanism " + info.name + " has no model of the forces in its joints");
+  Found f;
+  f.mode = known_mode(info, arguments.mode);
+  f.at = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
+  f.velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
+  f.acceleration = parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(info, "s^2"));
+  f.wrench = parse_some_assignments(arguments.wrench, "--wrench", wrench_names());
+  const MotionState<double> state{{f.at[0], f.at[1], f.at[2], f.at[3]}, four(f.velocity)};
+  f.pose = mechanism.inspect(target.parameters, state.pose, f.mode, target.limits);
+  if (!f.pose.assembles) return f;
+  PoseDynamics<double> d;
+  mechanism.dynamics(std::span<const double>(target.parameters), f.mode, {&state, 1}, {&d, 1});
+  f.dynamics = d;
+  if (!arguments.reactions) return f;
+  Wrench<double> wrench;
+  for (std::size_t i = 0; i < 6; ++i) wrench[i] = f.wrench[i];
+  f.reactions = mechanism.reactions(target.parameters, f.mode, state, four(f.acceleration), wrench);
+  return f;
+}
+
+/// Everything that the joints feel.
+struct Forces {
+  JointSpace<double> at_joints;
+  Vector<double, 4> dci, tau, q_rate, power;
+};
+
+Forces forces(const Found& f) {
+  const PoseDynamics<double>& d = *f.dynamics;
+  Wrench<double> wrench;
+  for (std::size_t i = 0; i < 6; ++i) wrench[i] = f.wrench[i];
+  Forces found{joint_space(d), {}, drive_forces(d, four(f.acceleration), wrench), d.J * four(f.velocity), {}};
+  found.dci = coupling_indices(found.at_joints.M_q);
+  for (std::size_t i = 0; i < 4; ++i) found.power[i] = found.tau[i] * found.q_rate[i];
+  return found;
+}
+
+Json reactions_json(const Reactions& reactions) {
+  Json joints = Json::object();
+  for (const JointReaction& joint : reactions.joints) {
+    Json couple = Json::array();
+    for (const auto& component : joint.couple) couple.push_back(component ? Json(*component) : Json());
+    joints[joint.name] = {{"on", joint.on}, {"force", joint.force}, {"couple", couple}};
+  }
+  Json json = {{"joints", joints}};
+  json["equations"] = reactions.equations;
+  json["unknowns"] = reactions.unknowns;
+  json["rank"] = reactions.rank;
+  return json;
+}
+
+Json dynamics_json(const MechanismInfo& info, const Found& f) {
+  Json pose = Json::object();
+  for (std::size_t i = 0; i < 4; ++i) pose[info.coordinates[i]] = f.at[i];
+  Json json = {{"mechanism", info.name},
+               {"mode", f.mode},
+               {"masses", info.mass_model},
+               {"pose", pose},
+               {"feasible", f.pose.feasible},
+               {"assembles", f.pose.assembles},
+               {"reason", f.pose.reason.empty() ? Json() : Json(f.pose.reason)}};
+  for (const char* key : {"joints", "J", "Mq", "dci", "tau", "coriolis", "gravity", "joint_speeds", "power"})
+    json[key] = nullptr;
+  if (f.dynamics) {
+    const Forces found = forces(f);
+    json["joints"] = Json::object();
+    for (std::size_t i = 0; i < 4; ++i) json["joints"][info.joints[i]] = f.dynamics->q[i];
+    json["J"] = matrix_json(f.dynamics->J);
+    json["Mq"] = matrix_json(found.at_joints.M_q);
+    json["dci"] = vector_json(found.dci);
+    json["tau"] = vector_json(found.tau);
+    json["coriolis"] = vector_json(found.at_joints.c_q);
+    json["gravity"] = vector_json(found.at_joints.G_q);
+    json["joint_speeds"] = vector_json(found.q_rate);
+    json["power"] = vector_json(found.power);
+  }
+  if (f.reactions) json["reactions"] = reactions_json(*f.reactions);
+  return json;
+}
+
+void print_dynamics(const MechanismInfo& info, const Found& f) {
+  std::string pose;
+  for (std::size_t i = 0; i < 4; ++i)
+    pose += (i == 0 ? "" : ", ") + info.coordinates[i] + " = " + number(f.at[i], i == 3 ? "rad" : "m");
+  std::cout << aligned({{"mechanism", info.name},
+                        {"mode", f.mode},
+                        {"masses", info.mass_model},
+                        {"pose", pose},
+                        {"assembles", f.pose.assembles ? "yes" : "no: " + f.pose.reason},
+                        {"feasible", f.pose.feasible ? "yes" : "no"}});
+  if (!f.dynamics) return;
+  const Forces found = forces(f);
+  std::vector<Row> joints = {
+      {"", "position", "speed", "force tau", "of velocities", "of weight", "power", "coupling index"}};
+  for (std::size_t i = 0; i < 4; ++i)
+    joints.push_back({info.joints[i], number(f.dynamics->q[i], "m"), number(found.q_rate[i], "m/s"),
+                      number(found.tau[i], "N"), number(found.at_joints.c_q[i], "N"),
+                      number(found.at_joints.G_q[i], "N"), number(found.power[i], "W"), number(found.dci[i])});
+  print_section(std::cout, "joints", joints);
+  print_matrix(std::cout, "inertia M_q as the joints feel it (kg)", found.at_joints.M_q);
+  print_matrix(std::cout, "J, where qdot = J Xdot", f.dynamics->J);
+  if (!f.reactions) return;
+  std::vector<Row> rows = {{"", "on", "Fx", "Fy", "Fz", "Mx", "My", "Mz"}};
+  for (const JointReaction& joint : f.reactions->joints) {
+    Row row = {joint.name, joint.on};
+    for (const double force : joint.force) row.push_back(number(force));
+    for (const auto& couple : joint.couple) row.push_back(couple ? number(*couple) : "undetermined");
+    rows.push_back(row);
+  }
+  print_section(std::cout,
+                "forces (N) and couples (N m) in the joints: " + std::to_string(f.reactions->equations) +
+                    " equations, " + std::to_string(f.reactions->unknowns) + " unknowns, rank " +
+                    std::to_string(f.reactions->rank),
+                rows);
+}
+
+int dynamics(const Catalogues& catalogues, const DynamicsArguments& arguments) {
+  const Target target = find_target(catalogues, arguments);
+  const Found found = find(target, arguments);
+  if (arguments.json)
+    print_json(std::cout, dynamics_json(target.info(), found));
+  else
+    print_dynamics(target.info(), found);
+  if (!found.dynamics)
+    throw std::runtime_error("the pose does not assemble in mode " + found.mode + ": " + found.pose.reason);
+  return kDone;
+}
+
+}  // namespace
+
+void add_dynamics(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<DynamicsArguments>();
+  CLI::App* command =
+      app.add_subcommand("dynamics", "One pose and motion: inertia, coupling indices, drive forces, joint forces.");
+  add_design_arguments(*command, *arguments);
+  add_list_option(*command, "--at", arguments->at, "The pose: every coordinate", true);
+  add_list_option(*command, "--velocity", arguments->velocity, "Rates of the coordinates; 0 where not given", false);
+  add_list_option(*command, "--acceleration", arguments->acceleration,
+                  "Accelerations of the coordinates; 0 where not given", false);
+  add_list_option(*command, "--wrench", arguments->wrench,
+                  "Fx, Fy, Fz, Mx, My, Mz on the platform at its centre of mass; 0 where not given", false);
+  command->add_option("--mode", arguments->mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
+      ->type_name("MODE");
+  command->add_flag("--reactions", arguments->reactions, "Also the forces and couples in every joint");
+  command->footer(
+      "The forces tau of the actuators give the motion asked for: tau = M_q qddot + coriolis + gravity - wrench.\n"
+      "Example: pkmopt dynamics 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --acceleration x=5");
+  command->callback([&session, arguments] { session.exit_code = dynamics(session.catalogues, *arguments); });
+}
+
+}  // namespace pkm
