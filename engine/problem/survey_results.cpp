@@ -2,6 +2,7 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/problem/conditioning_options.hpp"
+#include "engine/problem/inertia_options.hpp"
 
 namespace pkm {
 namespace {
@@ -27,6 +28,11 @@ SurveyResult worst_case(SurveyResult result, F, G) {
   return result;
 }
 
+template <class S>
+S mean_coupling(const Survey<S>& survey, const char* limb) {
+  return survey.weight.empty() ? S(1.0) : weighted_mean(survey.weight, coupling_of(survey, limb));
+}
+
 }  // namespace
 
 const std::vector<SurveyResult>& survey_results() {
@@ -42,6 +48,12 @@ const std::vector<SurveyResult>& survey_results() {
            demand_conditioning},
           [](const auto& survey) { return least(survey.conditioning); },
           [](const auto& survey, double r) { return soft_least(survey.weight, survey.conditioning, r); }),
+      smooth_result({"dci_mean", "mean coupling index over poses and joints; 1 where no pose is feasible", no_unit,
+                     has_dynamics, demand_dci},
+                    [](const auto& survey) { return mean_coupling(survey, "mean"); }),
+      smooth_result({"dci_worst", "mean over the poses of their largest coupling index; 1 where no pose is feasible",
+                     no_unit, has_dynamics, demand_dci},
+                    [](const auto& survey) { return mean_coupling(survey, "worst"); }),
   };
   return list;
 }

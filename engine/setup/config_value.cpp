@@ -53,7 +53,12 @@ OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
     case OptionKind::flag:
       return value.flag();
     case OptionKind::word:
-      return spec.choices.empty() ? value.text("text") : value.word(spec.choices);
+      if (spec.choices.empty()) return value.text("text");
+      if (value.is_integer()) {  // "limb = 2" is as good as limb = "2"
+        const std::string word = std::to_string(value.integer());
+        if (std::ranges::find(spec.choices, word) != spec.choices.end()) return word;
+      }
+      return value.word(spec.choices);
     case OptionKind::named_numbers:
       return read_named_numbers(value, spec.unit, spec.lower, spec.upper);
     case OptionKind::list_of_numbers:

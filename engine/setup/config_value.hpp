@@ -26,6 +26,7 @@ class ConfigValue {
 
   bool is_table() const { return value_->kind == TomlValue::Kind::table; }
   bool is_list() const { return value_->kind == TomlValue::Kind::array; }
+  bool is_integer() const { return value_->kind == TomlValue::Kind::integer; }
   bool is_text() const { return value_->kind == TomlValue::Kind::text; }
 
   /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].

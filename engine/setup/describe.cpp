@@ -47,22 +47,33 @@ void write_parameters(std::ostream& out, const Study& study) {
   out << aligned(fixed);
 }
 
+/// "x = 0 m to 0.4 m, ..."
+std::string box_text(const MechanismInfo& info, const SurveyPlan& plan) {
+  std::string text;
+  const Sweep sweep = sweep_of(info, plan);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int swept = sweep.swept[k];
+    text += (k == 0 ? "" : ", ") + info.coordinates[static_cast<std::size_t>(swept)] + " = " +
+            range((*plan.box)[k][0], (*plan.box)[k][1], swept == 3 ? "rad" : "m");
+  }
+  return text;
+}
+
 std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
   const auto unit = [](int i) { return std::string(i == 3 ? "rad" : "m"); };
   const Sweep sweep = sweep_of(info, plan);
   std::vector<Row> rows;
   if (plan.method == Method::voxels) {
-    std::string cells, box;
+    std::string cells;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string separator = k == 0 ? "" : ", ";
       const int swept = sweep.swept[k];
       cells += separator + coordinate(swept) + " = " + std::to_string(plan.cells[k]);
-      if (plan.box)
-        box += separator + coordinate(swept) + " = " + range((*plan.box)[k][0], (*plan.box)[k][1], unit(swept));
     }
     if (plan.held_cells > 0) cells += ", " + coordinate(sweep.held) + " = " + std::to_string(plan.held_cells);
-    rows = {{"method", "voxels"}, {"cells", cells}, {"box", plan.box ? box : "derived from each design"}};
+    rows = {
+        {"method", "voxels"}, {"cells", cells}, {"box", plan.box ? box_text(info, plan) : "derived from each design"}};
   } else {
     rows = {{"method", "columns"}};
     std::string nodes;
@@ -70,6 +81,7 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) 
     for (const int swept : sweep.swept)
       if (swept != sweep.column)
         nodes += (nodes.empty() ? "" : ", ") + coordinate(swept) + " = " + std::to_string(plan.nodes[k++]);
+    if (plan.box) rows.push_back({"box", box_text(info, plan)});
     if (plan.nodes[0] > 0)
       rows.push_back({"nodes", nodes + " per piece"});
     else
@@ -79,7 +91,10 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) 
   const std::string held = plan.held.kind == Kind::middle       ? "middle of each design"
                            : plan.held.kind == Kind::integrated ? "integrated over its range"
                                                                 : with_unit(plan.held.value, unit(sweep.held));
-  rows.push_back({coordinate(sweep.held), held});
+  std::string values;
+  for (const double value : plan.held_values)
+    values += (values.empty() ? "" : ", ") + with_unit(value, unit(sweep.held));
+  rows.push_back({coordinate(sweep.held), values.empty() ? held : values});
   return rows;
 }
 
@@ -137,6 +152,10 @@ std::string describe(const Study& study) {
   write_parameters(out, study);
   out << "\nworkspace\n";
   out << aligned(survey_rows(info, parts.plan));
+  for (const Region& region : parts.regions) {
+    out << "\nregion " << region.name << '\n';
+    out << aligned(survey_rows(info, region.plan));
+  }
   out << "\nlimits of a pose" << (info.limits.empty() ? ": none" : "") << '\n';
   out << aligned(limit_rows(study));
   write_entries(out, "objectives", study.objectives);

@@ -103,6 +103,8 @@ Json serving(const List& entries, const MechanismInfo& info) {
 Json mechanism_json(const MechanismInfo& info, const Catalogues& catalogues) {
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
   Json json = {{"name", info.name}, {"meaning", info.title}, {"source", info.source}};
+  json["mass_models"] = info.mass_models;
+  json["masses"] = info.mass_model.empty() ? Json() : Json(info.mass_model);
   json["coordinates"] = info.coordinates;
   json["joints"] = info.joints;
   json["modes"] = info.modes;

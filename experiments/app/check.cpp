@@ -42,6 +42,7 @@ Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
     for (std::size_t k = 0; plan.box && k < 3; ++k) json["box"][coordinate(sweep.swept[k])] = (*plan.box)[k];
   } else {
     json["method"] = "columns";
+    for (std::size_t k = 0; plan.box && k < 3; ++k) json["box"][coordinate(sweep.swept[k])] = (*plan.box)[k];
     const bool fixed = plan.nodes[0] > 0;
     json["tolerance"] = fixed ? Json() : Json(plan.tolerance);
     json["nodes"] = nullptr;  // chosen from the tolerance
@@ -53,6 +54,7 @@ Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
   json[coordinate(sweep.held)] = plan.held.kind == Kind::middle       ? Json("middle")
                                  : plan.held.kind == Kind::integrated ? Json("integrated")
                                                                       : Json(plan.held.value);
+  if (!plan.held_values.empty()) json[coordinate(sweep.held)] = plan.held_values;
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const auto& given = plan.limits.given[i];
     json["limits"][info.limits[i].name] = given                    ? Json(*given)
@@ -65,9 +67,10 @@ Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
 Json study_json(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
-  Json json = {{"name", study.name},     {"file", study.file_name},
-               {"seed", study.seed},     {"output", study.output_file()},
-               {"mechanism", info.name}, {"parameters", Json::object()}};
+  Json json = {{"name", study.name},          {"file", study.file_name},
+               {"seed", study.seed},          {"output", study.output_file()},
+               {"mechanism", info.name},      {"masses", info.mass_model.empty() ? Json() : Json(info.mass_model)},
+               {"parameters", Json::object()}};
   for (std::size_t i = 0; i < info.parameters.size(); ++i)
     if (std::find(parts.varies.begin(), parts.varies.end(), i) == parts.varies.end())
       json["parameters"][info.parameters[i].name] = parts.parameters[i];
@@ -80,6 +83,8 @@ Json study_json(const Study& study) {
                                  {"step", v.step > 0 ? Json(v.step) : Json()}});
   json["baseline"] = study.baseline ? values_by_name(info.parameters, *study.baseline) : Json();
   json["workspace"] = workspace_json(info, parts.plan);
+  json["regions"] = Json::object();
+  for (const Region& region : parts.regions) json["regions"][region.name] = workspace_json(info, region.plan);
   json["objectives"] = entries_json(study.objectives);
   json["constraints"] = entries_json(study.constraints);
   json["reports"] = entries_json(study.reports);
