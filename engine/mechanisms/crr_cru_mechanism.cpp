@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "engine/core/options.hpp"
+#include "engine/mechanisms/crr_cru_bodies.hpp"
 #include "engine/mechanisms/crr_cru_dynamics.hpp"
 #include "engine/mechanisms/crr_cru_forward.hpp"
 #include "engine/mechanisms/crr_cru_inspect.hpp"
@@ -66,6 +67,7 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
   i.margin_unit = "m";
   i.columns_take_box = true;
   i.has_dynamics = true;
+  i.has_reactions = true;
   i.mass_models = kMassModels;
   i.mass_model = kMassModels[static_cast<std::size_t>(mass_model)];
   i.coordinates = {"x", "y", "z", "phi"};
@@ -150,6 +152,11 @@ class CrrCru final : public Mechanism {
   void dynamics(std::span<const Dual4> p, const std::string& mode, std::span<const MotionState<Dual4>> states,
                 std::span<PoseDynamics<Dual4>> out) const override {
     find_dynamics(p, mode, states, out);
+  }
+  Reactions reactions(std::span<const double> p, const std::string& mode, const MotionState<double>& state,
+                      const Vector<double, 4>& acceleration, const Wrench<double>& wrench) const override {
+    return crr_cru::reactions(geometry(platform_, p), masses(mass_model_, p), mode_called(mode), state, acceleration,
+                              wrench);
   }
   std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
     for (std::size_t k = 0; k < kMassModels.size(); ++k)
