@@ -13,6 +13,7 @@ pkm_build_packages=(
 pkm_test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libfcl-dev                                  # distances of capsules, computed by others
+  libsimbody-dev                              # driving forces, computed by others
   python3 python3-numpy python3-h5py          # reads study files independently of us
   clang-14 libomp-14-dev libclang-rt-14-dev   # second compiler, its thread sanitizer
   clang-format-14

@@ -94,7 +94,7 @@ double couple_length(const NewtonEuler& system) {
     const Vector<double, 3> r = joint.point - system.bodies[joint.on].centre;
     sum += dot(r, r);
   }
-  return std::sqrt(sum / static_cast<double>(system.joints.size()));
+  return sum > 0 ? std::sqrt(sum / static_cast<double>(system.joints.size())) : 1;
 }
 
 LeastNorm least_norm(const NewtonEuler& system) {

@@ -69,7 +69,8 @@ struct LeastNorm {
 };
 
 /// Length by which couples are divided to be compared with forces: root mean square distance of the joints from the
-/// centres of the bodies that they act on [m]. The least norm depends on it, what is determined does not.
+/// centres of the bodies that they act on, 1 m where all are in them [m]. The least norm depends on it, what is
+/// determined does not.
 double couple_length(const NewtonEuler& system);
 
 /// By complete orthogonal decomposition; pivots below kRankTolerance of the greatest are 0.

@@ -58,13 +58,11 @@ inline bool feasible(const Model& m, const State& s, double s_min, double c_min)
   return parallel_index(yaw(m.g), sine, cosine) >= c_min;
 }
 
-/// A design up to 15 % off the nominal one, slides and a payload with mass, a pose with the document's default
-/// margins, rates to 1.5 m/s and 4 rad/s, accelerations to 15 m/s^2 and 40 rad/s^2, a wrench of 20 N and 1 N m.
-inline State random_state(Uniform& uniform, const std::string& name, const WorkingMode& mode) {
-  State s{random_design(uniform, 0.15), mode, {}, {}, {}};
-  s.parameters[kTableExtras] = uniform(0, 0.5);
-  s.parameters[kTableExtras + 1] = uniform(0, 0.5);
-  s.parameters[kTableExtras + 2] = uniform(-0.05, 0.1);
+/// A pose of the design with the document's default margins, rates to 1.5 m/s and 4 rad/s, accelerations to 15 m/s^2
+/// and 40 rad/s^2, a wrench of 20 N and 1 N m.
+inline State random_state(Uniform& uniform, const std::string& name, const WorkingMode& mode,
+                          const std::vector<double>& design) {
+  State s{design, mode, {}, {}, {}};
   do {
     s.motion.pose = {uniform(0, 0.4), uniform(0, 0.4), uniform(0, 0.4), uniform(-1.4, 1.4)};
   } while (!feasible(model_of(name, s), s, 0.2, 0.1));
@@ -78,6 +76,15 @@ inline State random_state(Uniform& uniform, const std::string& name, const Worki
     s.wrench[k] = uniform(-most, most);
   }
   return s;
+}
+
+/// The same of a random design up to 15 % off the nominal one, whose slides and payload have masses.
+inline State random_state(Uniform& uniform, const std::string& name, const WorkingMode& mode) {
+  std::vector<double> p = random_design(uniform, 0.15);
+  p[kTableExtras] = uniform(0, 0.5);
+  p[kTableExtras + 1] = uniform(0, 0.5);
+  p[kTableExtras + 2] = uniform(-0.05, 0.1);
+  return random_state(uniform, name, mode, p);
 }
 
 /// Working mode number 0..15.
