@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::json;
 using ::testing::HasSubstr;
 
-constexpr double kAccuracy = 1e-10;  // of the largest force
+constexpr double kAccuracy = 1e-12;  // of the largest force
 
 Reactions reactions_of(const Json& entry) {
   const State s = state_of(entry);
