@@ -6,6 +6,7 @@
 
 #include "engine/mechanisms/four_ppa_two_par_clearance.hpp"
 #include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
+#include "engine/mechanisms/four_ppa_two_par_coupling.hpp"
 #include "engine/mechanisms/four_ppa_two_par_pieces.hpp"
 #include "engine/workspace/survey.hpp"
 
@@ -151,14 +152,72 @@ void feasible_parts(const Frame<S>& f, const Section<S>& t, const Column<S>& col
   scratch.parts.push_back({S(0.0), column.length, true, true});
 }
 
-/// Weighted samples of conditioning over one plane: Gauss nodes in theta, delta and z on every smooth piece. Their
-/// weights, times `weight`, add up to the plane's volume within the rule's accuracy.
-/// @param gamma  a / (2 L_c)
-/// @param test   what a clearance limit leaves to be tested pose by pose, or null
+/// What samples are to hold.
 template <class S>
-void sample_conditioning(const Frame<S>& f, const S& gamma, const S& weight, const GaussRule& theta_rule,
-                         const GaussRule& inner_rule, const ClearanceTest* test, ColumnScratch<S>& scratch,
-                         Survey<S>& survey) {
+struct SampleContents {
+  bool conditioning = false, dci = false, inertia_condition = false;
+  S gamma{};           ///< a / (2 L_c)
+  Masses<S> masses{};  ///< where inertia counts
+
+  bool inertia() const { return dci || inertia_condition; }
+};
+
+/// Adds one sample of what was demanded.
+template <class S>
+void add_sample(const SampleContents<S>& contents, const S& weight, const S& conditioning, const Coupling<S>& coupling,
+                Survey<S>& survey) {
+  survey.weight.push_back(weight);
+  if (contents.conditioning) survey.conditioning.push_back(conditioning);
+  for (std::size_t i = 0; i < 4 && contents.dci; ++i) survey.dci[i].push_back(coupling.dci[i]);
+  if (contents.inertia_condition) survey.inertia_condition.push_back(coupling.condition);
+}
+
+/// Which of the two planes y and L0 - y are sampled, where y <= L0/2 is the frame's.
+enum class Planes { near, far, both };
+
+/// The poses that a node stands for. The section at -theta is that at theta mirrored in x = b/2; where both limbs have
+/// the same depth, each section is symmetric itself; and the plane L0 - y has, at -theta, the section of the plane y.
+/// Conditioning is the same at all of them, so one sample carries their weight together. Coupling indices change
+/// joints, so that every pose has a sample of its own.
+struct Images {
+  bool symmetric;  ///< the half of the section that the node does not lie in is meant too
+  Planes planes;
+
+  double count() const { return (symmetric ? 4.0 : 2.0) * (planes == Planes::both ? 2.0 : 1.0); }
+};
+
+template <class S>
+void add_samples(const Geometry<S>& g, const SampleContents<S>& contents, const Images& images, const S& weight,
+                 const S& s, const S& c, const std::array<S, 2>& x, const std::array<S, 2>& sigma,
+                 const std::array<S, 2>& z_c, Survey<S>& survey) {
+  const S index = contents.conditioning ? conditioning(g, s, c, x, sigma, z_c, contents.gamma) : S(0.0);
+  if (!contents.inertia()) {
+    add_sample(contents, S(weight * images.count()), index, {}, survey);
+    return;
+  }
+  const auto swapped = [](const std::array<S, 2>& of) { return std::array<S, 2>{of[1], of[0]}; };
+  const Coupling<S> here = coupling(joint_inertia(g, contents.masses, s, c, x, sigma, z_c), contents.inertia_condition);
+  const Coupling<S> across = coupling(joint_inertia(g, contents.masses, s, c, swapped(x), swapped(sigma), swapped(z_c)),
+                                      contents.inertia_condition);
+  const bool all = images.symmetric || images.planes == Planes::both;
+  const S each = weight * (images.symmetric && images.planes == Planes::both ? 2.0 : 1.0);
+  if (all || images.planes == Planes::near) {
+    add_sample(contents, each, index, here, survey);               // x, theta
+    add_sample(contents, each, index, across.mirrored(), survey);  // b - x, -theta
+  }
+  if (all || images.planes == Planes::far) {
+    add_sample(contents, each, index, here.mirrored(), survey);  // x, -theta
+    add_sample(contents, each, index, across, survey);           // b - x, theta
+  }
+}
+
+/// Weighted samples over one plane or both: Gauss nodes in theta, delta and z on every smooth piece. Their weights,
+/// over `weight`, add up to the planes' volumes within the rule's accuracy.
+/// @param test  what a clearance limit leaves to be tested pose by pose, or null
+template <class S>
+void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes, const S& weight,
+            const GaussRule& theta_rule, const GaussRule& inner_rule, const ClearanceTest* test,
+            ColumnScratch<S>& scratch, Survey<S>& survey) {
   find_pieces(f, scratch.breaks, scratch.pieces);
   const Geometry<S>& g = f.g;
   for (const Piece<S>& piece : scratch.pieces)
@@ -167,11 +226,11 @@ void sample_conditioning(const Frame<S>& f, const S& gamma, const S& weight, con
       const auto [s, c] = sincos(theta);
       const Section<S> t = section(f, s, c);
       if (t.empty) continue;
-      const bool symmetric = value_of(t.depth[0]) == value_of(t.depth[1]);
-      for (std::size_t leaning = 0; leaning < (symmetric ? 1u : 2u); ++leaning) {
+      const Images images{value_of(t.depth[0]) == value_of(t.depth[1]), planes};
+      for (std::size_t leaning = 0; leaning < (images.symmetric ? 1u : 2u); ++leaning) {
         const Half<S> h = half_section(t, leaning);
         if (h.empty) continue;
-        const S outer = weight * theta_jacobian * (theta_rule.weight[i] * (symmetric ? 4.0 : 2.0));
+        const S outer = weight * theta_jacobian * theta_rule.weight[i];
         feasible_ranges(f, t, h, leaning, test, scratch);
         for (const Piece<S>& range : scratch.ranges)
           for (std::size_t k = 0; k < inner_rule.node.size(); ++k) {
@@ -181,10 +240,10 @@ void sample_conditioning(const Frame<S>& f, const S& gamma, const S& weight, con
             for (const Piece<S>& part : scratch.parts)
               for (std::size_t n = 0; n < inner_rule.node.size(); ++n) {
                 const auto [rise, rise_jacobian] = map_node(part, inner_rule.node[n]);
-                survey.weight.push_back(outer * col.slope * delta_jacobian * rise_jacobian *
-                                        (inner_rule.weight[k] * inner_rule.weight[n]));
-                survey.conditioning.push_back(
-                    conditioning(g, s, c, col.x, col.sigma, {col.z_c(f, rise, 0), col.z_c(f, rise, 1)}, gamma));
+                const S each =
+                    outer * col.slope * delta_jacobian * rise_jacobian * (inner_rule.weight[k] * inner_rule.weight[n]);
+                add_samples(g, contents, images, each, s, c, col.x, col.sigma,
+                            {col.z_c(f, rise, 0), col.z_c(f, rise, 1)}, survey);
               }
           }
       }

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "engine/core/options.hpp"
+#include "engine/mechanisms/four_ppa_two_par_dynamics.hpp"
 #include "engine/mechanisms/four_ppa_two_par_survey.hpp"
 #include "engine/mechanisms/list.hpp"
 
@@ -14,6 +15,9 @@ using namespace four_ppa_two_par;
 constexpr double kNoClearance = -2;
 
 const char* const kModes[4] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
+
+/// The one mass model: every mass is a length times a mass per length.
+const char* const kMassModel = "geometry";
 
 MechanismInfo make_info() {
   MechanismInfo i;
@@ -35,6 +39,10 @@ MechanismInfo make_info() {
       {"R_p", "m", 0.020, 0, 1, "radius of the platform as a capsule"},
       {"R_s", "m", 0.020, 0, 1, "radius of the sliders as capsules"},
   };
+  for (Parameter& parameter : mass_parameters()) i.parameters.push_back(std::move(parameter));
+  i.has_dynamics = true;
+  i.mass_models = {kMassModel};
+  i.mass_model = kMassModel;
   i.coordinates = {"x", "y", "z", "theta"};
   i.joints = {"q1", "q2", "q3", "q4"};
   i.modes.assign(std::begin(kModes), std::end(kModes));
@@ -138,19 +146,40 @@ class FourPpaTwoPar final : public Mechanism {
   }
   PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
-    for (int i = 0; i < 4; ++i)
-      if (mode == kModes[i]) {
-        const auto g = geometry(p);
-        return four_ppa_two_par::inspect(
-            g, limits(g, spec), pose, {i & 2 ? Branch::upper : Branch::lower, i & 1 ? Branch::upper : Branch::lower});
-      }
-    throw std::invalid_argument("unknown working mode " + mode);
+    const auto g = geometry(p);
+    return four_ppa_two_par::inspect(g, limits(g, spec), pose, mode_called(mode));
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& q) const override {
     return four_ppa_two_par::forward(geometry(p), q);
   }
 
+  void dynamics(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
+                std::span<PoseDynamics<double>> out) const override {
+    find_dynamics(p, mode, states, out);
+  }
+  void dynamics(std::span<const Dual4> p, const std::string& mode, std::span<const MotionState<Dual4>> states,
+                std::span<PoseDynamics<Dual4>> out) const override {
+    find_dynamics(p, mode, states, out);
+  }
+  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
+    return model == kMassModel ? std::make_shared<FourPpaTwoPar>() : nullptr;
+  }
+
  private:
+  static WorkingMode mode_called(const std::string& name) {
+    for (int i = 0; i < 4; ++i)
+      if (name == kModes[i]) return {i & 2 ? Branch::upper : Branch::lower, i & 1 ? Branch::upper : Branch::lower};
+    throw std::invalid_argument("unknown working mode " + name);
+  }
+  template <class S>
+  static void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const MotionState<S>> states,
+                            std::span<PoseDynamics<S>> out) {
+    const WorkingMode branches = mode_called(mode);
+    const auto g = geometry(p);
+    const auto b = masses(p);
+    for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics(g, b, states[i], branches);
+  }
+
   MechanismInfo info_ = make_info();
 };
 

@@ -20,6 +20,19 @@ S gamma(const Geometry<S>& g, const Demand& demand) {
   return demand.characteristic_length ? S(g.a / (2 * *demand.characteristic_length)) : S(1.0);  // default L_c = a/2
 }
 
+/// The only mode whose poses are surveyed.
+constexpr const char* kSurveyedMode = "lower,lower";
+
+template <class S>
+SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
+  SampleContents<S> c{
+      demand.conditioning, demand.dci, demand.inertia_condition, gamma(geometry(parameters), demand), {}};
+  if (c.inertia()) c.masses = masses(parameters);
+  return c;
+}
+
+bool needs_samples(const Demand& demand) { return demand.conditioning || demand.dci || demand.inertia_condition; }
+
 class ColumnSurveyor final : public Surveyor {
  public:
   ColumnSurveyor(const SurveyPlan& plan, const Demand& demand)
@@ -51,23 +64,26 @@ class ColumnSurveyor final : public Surveyor {
     std::optional<ClearanceTest> clearance;
     if constexpr (std::is_same_v<S, double>) clearance = take_clearance(g, l);
     const ClearanceTest* const test = clearance ? &*clearance : nullptr;
-    const Frame<S> f = frame(g, l, plane(g, plan_.held));
+    const S y = plane(g, plan_.held);
+    const Frame<S> f = frame(g, l, y);
     const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
     const Integral<S> volume = volume_of(f, test, over_y, scratch);
     survey.volume = volume.value;
     survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
     survey.columns = volume.evaluations;
-    if (!demand_.conditioning) return;
+    if (!needs_samples(demand_)) return;
+    const SampleContents<S> wanted = contents(parameters, demand_);
     if (!over_y) {
-      sample_conditioning(f, gamma(g, demand_), S(1.0), theta_rule_, inner_rule_, test, scratch, survey);
+      sample(f, wanted, value_of(y) > value_of(S(g.L0 - y)) ? Planes::far : Planes::near, S(1.0), theta_rule_,
+             inner_rule_, test, scratch, survey);
       return;
     }
     const Piece<S> half{l.h_min, g.L0 * 0.5, true, false};
     if (!(value_of(half.upper) > value_of(half.lower))) return;
     for (std::size_t i = 0; i < inner_rule_.node.size(); ++i) {
-      const auto [y, jacobian] = map_node(half, inner_rule_.node[i]);
-      sample_conditioning(frame(g, l, y), gamma(g, demand_), S(2.0 * jacobian * inner_rule_.weight[i]), theta_rule_,
-                          inner_rule_, test, scratch, survey);
+      const auto [at, jacobian] = map_node(half, inner_rule_.node[i]);
+      sample(frame(g, l, at), wanted, Planes::both, S(jacobian * inner_rule_.weight[i]), theta_rule_, inner_rule_, test,
+             scratch, survey);
     }
   }
 
@@ -118,6 +134,7 @@ class VoxelSurveyor final : public Surveyor {
     const ClearanceTest* const test = clearance ? &*clearance : nullptr;
     const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
     const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
+    const SampleContents<double> wanted = contents(parameters, demand_);
     const std::int64_t planes = over_y ? plan_.held_cells : 1;
     const double y_step = over_y ? g.L0 / static_cast<double>(planes) : 1;
     survey.cells = grid.count() * planes;
@@ -127,7 +144,7 @@ class VoxelSurveyor final : public Surveyor {
       bool touches = false;
       survey.feasible_cells += counter_.count(g, l, test, y, grid, touches);
       survey.touches_box = survey.touches_box || touches;
-      if (demand_.conditioning) sample(g, l, test, y, grid, survey);
+      if (needs_samples(demand_)) sample(g, l, wanted, test, y, grid, survey);
     }
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
@@ -148,9 +165,8 @@ class VoxelSurveyor final : public Surveyor {
  private:
   static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
 
-  void sample(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
-              const VoxelGrid& grid, Survey<double>& survey) const {
-    const double scale = gamma(g, demand_);
+  void sample(const Geometry<double>& g, const Limits<double>& l, const SampleContents<double>& wanted,
+              const ClearanceTest* test, double y, const VoxelGrid& grid, Survey<double>& survey) const {
     counter_.visit_columns(
         g, l, test, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
           const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
@@ -159,8 +175,12 @@ class VoxelSurveyor final : public Surveyor {
                                                root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
           for (std::int64_t j = first; j < end; ++j) {
             const double z = grid.centre(1, j) + g.d;
-            survey.weight.push_back(survey.cell_volume);
-            survey.conditioning.push_back(conditioning(g, s, c, x_j, sigma, {z + sigma[0], z + sigma[1]}, scale));
+            const std::array<double, 2> z_c = {z + sigma[0], z + sigma[1]};
+            const double index = wanted.conditioning ? conditioning(g, s, c, x_j, sigma, z_c, wanted.gamma) : 0;
+            Coupling<double> inertia{};
+            if (wanted.inertia())
+              inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma, z_c), wanted.inertia_condition);
+            add_sample(wanted, survey.cell_volume, index, inertia, survey);
           }
         });
   }
@@ -173,6 +193,9 @@ class VoxelSurveyor final : public Surveyor {
 }  // namespace
 
 std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Demand& demand) {
+  if ((demand.dci || demand.inertia_condition) && !demand.mode.empty() && demand.mode != kSurveyedMode)
+    throw std::invalid_argument("workspaces of mechanism 4ppa-2par are of the working mode " +
+                                std::string(kSurveyedMode) + ", so inertia is not surveyed in the mode " + demand.mode);
   const bool over_y = plan.held.kind == HeldCoordinate::Kind::integrated;
   if (plan.method == Method::columns && over_y && plan.nodes[0] > 0)
     throw std::invalid_argument(

@@ -53,8 +53,8 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
       {{"evaluate", "/tmp"}, "/tmp: found a folder; expected a study file in TOML"},
       {{"evaluate", mechanism, "--set", "l_uu=0.5"},
        "--set: found the unknown name 'l_uu'; expected one of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, "
-       "R_s; did you "
-       "mean 'l_u'?"},
+       "R_s, lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p; did you mean "
+       "'l_u'?"},
       {{"evaluate", mechanism, "--set", "a=2kg"},
        "--set: found a=2kg; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in"},
       {{"evaluate", mechanism, "--set", "a=0"}, "--set: found a=0; expected a number in [0.001, 100] m"},

@@ -23,9 +23,9 @@ std::string message_of(const std::string& entry) {
 }
 
 const std::string kKnown =
-    "known are a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s, alpha_min, beta_min, beta_max, h_min, "
-    "sin_par_min, "
-    "cos_theta_min, clearance_min, size, volume, conditioning_mean, conditioning_min, pi";
+    "known are a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s, "
+    "lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p, alpha_min, beta_min, beta_max, h_min, "
+    "sin_par_min, cos_theta_min, clearance_min, size, volume, conditioning_mean, conditioning_min, pi";
 const std::string kObjective = "[[objective]]\ntype = \"expression\"\n";  // lines 7, 8
 
 TEST(ExpressionErrors, Objectives) {

@@ -59,7 +59,8 @@ TEST(RealCatalogue, LinearNamesParameters) {
   EXPECT_EQ(
       message_of(kLinear + "coefficients = { l_x = 1 }\nbound = \"1 m\"\n"),
       "s.toml:10: constraint[1]: coefficient of 'l_x', which is no parameter of mechanism 4ppa-2par; expected one "
-      "of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s; did you mean 'l_u'?");
+      "of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s, "
+      "lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p; did you mean 'l_u'?");
 }
 
 TEST(RealCatalogue, PlaneOffTheRailIsWarnedOf) {
