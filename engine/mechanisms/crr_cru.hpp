@@ -23,6 +23,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "engine/math/scalar.hpp"
@@ -57,7 +58,7 @@ enum ParameterIndex {
 };
 
 /// Order of the pose-level limits.
-enum LimitIndex { kSMin, kCMin, kLimits };
+enum LimitIndex { kSMin, kCMin, kClearanceMin, kLimits };
 
 template <class S>
 using Vector3 = std::array<S, 3>;
@@ -93,12 +94,16 @@ Geometry<S> geometry(Platform platform, std::span<const S> p) {
   return g;
 }
 
-/// Thresholds: a pose is feasible where |sin theta_i2| >= s_min in all limbs and kappa_p >= c_min.
+/// Thresholds: a pose is feasible where |sin theta_i2| >= s_min in all limbs and kappa_p >= c_min, and links that are
+/// not joined keep clearance_min.
 struct Limits {
   double s_min = 0, c_min = 0;
+  std::optional<double> clearance_min = std::nullopt;  ///< [m]; none: no capsule is looked at
 };
 
-inline Limits limits(const LimitSpec& spec) { return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0)}; }
+inline Limits limits(const LimitSpec& spec) {
+  return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0), spec.given[kClearanceMin]};
+}
 
 /// Axes of a limb's frame: numbers of the world axes along e, p, q and the signs of p and q.
 struct LimbFrame {

@@ -23,7 +23,8 @@ std::string out_of_reach(const Geometry<double>& g, const Limbs<double>& limbs) 
 
 }  // namespace
 
-PoseReport inspect(const Geometry<double>& g, const Limits& l, const Pose<double>& pose, const WorkingMode& mode) {
+PoseReport inspect(const Geometry<double>& g, const LinkRadii<double>& radii, const Limits& l, const Pose<double>& pose,
+                   const WorkingMode& mode) {
   PoseReport report;
   const Limbs<double> limbs = inverse(g, pose, mode);
   const auto [s, c] = sincos(pose.angle);
@@ -54,9 +55,17 @@ PoseReport inspect(const Geometry<double>& g, const Limits& l, const Pose<double
     least_sine = std::fmin(least_sine, std::fabs(limb.sin_2));
   }
   report.margins.emplace_back("s_min", least_sine - l.s_min);
+  const Nearest<double> nearest = nearest_links(links(g, radii, limbs));
+  report.angles.emplace_back("clearance", nearest.clearance);
+  if (l.clearance_min) report.margins.emplace_back("clearance_min", nearest.clearance - *l.clearance_min);
   report.feasible = true;
   for (const auto& [name, margin] : report.margins) {
-    if (report.feasible && !(margin >= 0)) report.reason = "limit " + name + " is broken";
+    if (report.feasible && !(margin >= 0)) {
+      report.reason = "limit " + name + " is broken";
+      if (name == "clearance_min")
+        report.reason += ": " + link_name(nearest.first, g.platform) + " and " + link_name(nearest.second, g.platform) +
+                         (nearest.clearance < 0 ? " overlap" : " are too near");
+    }
     report.feasible = report.feasible && margin >= 0;
   }
   return report;

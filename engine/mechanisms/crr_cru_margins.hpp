@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/mechanisms/crr_cru_frame.hpp"
+#include "engine/mechanisms/crr_cru_links.hpp"
 
 namespace pkm::crr_cru {
 
@@ -33,6 +34,16 @@ void add_margins(const Design<S>& d, std::span<const Pose<double>> poses, std::v
       margins.push_back(d.g.rho_max - rho);
     }
     margins.push_back(d.yaw.R * (parallel_index(d.yaw, sin, cos) - d.c_min));
+  }
+}
+
+/// Appends the margin of a clearance limit [m] per pose. A pose that does not assemble has none: its reach is broken.
+template <class S>
+void add_clearances(const Geometry<S>& g, const LinkRadii<S>& radii, double least, const WorkingMode& mode,
+                    std::span<const Pose<double>> poses, std::vector<S>& margins) {
+  for (const Pose<double>& at : poses) {
+    const Limbs<S> limbs = inverse(g, Pose<S>{S(at.x), S(at.y), S(at.z), S(at.angle)}, mode);
+    if (limbs.assembles) margins.push_back(nearest_links(links(g, radii, limbs)).clearance - least);
   }
 }
 

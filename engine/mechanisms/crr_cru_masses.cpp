@@ -48,7 +48,11 @@ std::vector<Parameter> mass_parameters(MassModel model) {
   std::vector<Parameter> list = model == MassModel::table ? table_parameters() : geometry_parameters();
   list.insert(list.end(), {{"m_s", "kg", 0, 0, kMostMass, "mass of each slide"},
                            {"m_p", "kg", 0, 0, kMostMass, "payload, a point mass on the moving platform"},
-                           {"c_p", "m", 0, -100, 100, "distance of the payload from D, towards C_4"}});
+                           {"c_p", "m", 0, -100, 100, "distance of the payload from D, towards C_4"},
+                           // radii of the links (crr_cru_links.hpp), last in every mass model
+                           {"R_r", "m", 0.010, 0, 1, "radius of the rods as capsules"},
+                           {"R_p", "m", 0.010, 0, 1, "radius of the platforms' arms as capsules"},
+                           {"R_s", "m", 0.010, 0, 1, "radius of the rails with their slides as capsules"}});
   return list;
 }
 

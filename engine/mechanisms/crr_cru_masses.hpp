@@ -85,7 +85,7 @@ Masses<S> masses(MassModel model, std::span<const S> p) {
   return b;
 }
 
-/// The parameters that follow the lengths.
+/// The parameters that follow the lengths; the radii of the links are the last of them.
 std::vector<Parameter> mass_parameters(MassModel model);
 
 }  // namespace pkm::crr_cru

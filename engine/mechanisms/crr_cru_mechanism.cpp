@@ -15,6 +15,9 @@ namespace {
 
 using namespace crr_cru;
 
+/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
+constexpr double kNoClearance = -2;
+
 /// "-,-,+,-"
 std::string name_of(const WorkingMode& mode) {
   std::string name;
@@ -81,6 +84,8 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
   i.limits = {
       {"s_min", "1", 0, 0, 1, "singularity-margin", "", "least |sin(theta_i2)|: distance from limbs' singularities"},
       {"c_min", "1", 0, 0, 1, "singularity-margin", "", "least kappa_p: distance from the parallel singularity"},
+      {"clearance_min", "m", kNoClearance, kNoClearance, 100, "clearance", "",
+       "least distance of rods of different limbs, platforms and rails; < 0: they may overlap that far"},
   };
   i.characteristic_length = jointed ? "l" : "l + r";
   return i;
@@ -95,10 +100,21 @@ class CrrCru final : public Mechanism {
 
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
     const WorkingMode& mode = demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
-    return make_surveyor(platform_, mass_model_, mode, sweep_of(info_, plan).held, plan, demand);
+    const int held = sweep_of(info_, plan).held;
+    if (plan.limits.given[kClearanceMin].value_or(kNoClearance) > kNoClearance) {
+      if (plan.method == Method::columns)
+        throw std::invalid_argument("mechanism " + info_.name +
+                                    " has no column surveys under a clearance (clearance_min), because rods that meet "
+                                    "end columns where no formula says; take workspace.method = \"voxels\"");
+      if (mode != modes_.front())
+        throw std::invalid_argument("mechanism " + info_.name + " surveys a clearance (clearance_min) in the mode " +
+                                    name_of(modes_.front()) + " only, so inertia is not surveyed in the mode " +
+                                    demand.mode + " beside it");
+    }
+    return make_surveyor(platform_, mass_model_, mode, held, plan, demand);
   }
   VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
-    return crr_cru::voxel_map(platform_, sweep_of(info_, plan).held, p, plan);
+    return crr_cru::voxel_map(platform_, modes_.front(), sweep_of(info_, plan).held, p, plan);
   }
   void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
   void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const override {}
@@ -109,6 +125,7 @@ class CrrCru final : public Mechanism {
     const Limits l = limits(spec);
     values[kSMin] = l.s_min;
     values[kCMin] = l.c_min;
+    values[kClearanceMin] = l.clearance_min.value_or(kNoClearance);
   }
   NamedValues facts(std::span<const double> p, const LimitSpec&) const override {
     const auto y = yaw(geometry(platform_, p));
@@ -130,7 +147,7 @@ class CrrCru final : public Mechanism {
   }
   PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
-    return crr_cru::inspect(geometry(platform_, p), limits(spec), pose, mode_called(mode));
+    return crr_cru::inspect(geometry(platform_, p), link_radii(p), limits(spec), pose, mode_called(mode));
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& rho) const override {
     return crr_cru::forward(geometry(platform_, p), rho);
@@ -138,11 +155,11 @@ class CrrCru final : public Mechanism {
 
   void pose_margins(std::span<const double> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
                     std::vector<double>& margins) const override {
-    add_margins(design(geometry(platform_, p), limits(spec)), poses, margins);
+    find_margins(p, spec, poses, margins);
   }
   void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
                     std::vector<Dual4>& margins) const override {
-    add_margins(design(geometry(platform_, p), limits(spec)), poses, margins);
+    find_margins(p, spec, poses, margins);
   }
 
   void dynamics(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
@@ -169,6 +186,14 @@ class CrrCru final : public Mechanism {
     for (const WorkingMode& known : modes_)
       if (name == name_of(known)) return known;
     throw std::invalid_argument("unknown working mode " + name);
+  }
+  template <class S>
+  void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
+                    std::vector<S>& margins) const {
+    const auto g = geometry(platform_, p);
+    const Limits l = limits(spec);
+    add_margins(design(g, l), poses, margins);
+    if (l.clearance_min) add_clearances(g, link_radii(p), *l.clearance_min, modes_.front(), poses, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const MotionState<S>> states,

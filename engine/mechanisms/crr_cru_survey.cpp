@@ -1,5 +1,6 @@
 #include "engine/mechanisms/crr_cru_survey.hpp"
 
+#include "engine/mechanisms/crr_cru_clear_cells.hpp"
 #include "engine/mechanisms/crr_cru_columns.hpp"
 #include "engine/mechanisms/crr_cru_inertia_tables.hpp"
 #include "engine/mechanisms/crr_cru_voxels.hpp"
@@ -210,7 +211,7 @@ class VoxelSurveyor final : public Surveyor {
       b = masses(mass_model_, parameters);
       if (!over_phi) set_phi(held_at);
     }
-    rows().visit_columns(d, held_, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
+    visit_columns(parameters, d, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
       if (outer != plane) {
         close_plane();
         if (inertia && over_phi) set_phi(grid.centre(axes.outer, outer));
@@ -246,7 +247,7 @@ class VoxelSurveyor final : public Surveyor {
     const GridAxes axes = grid_axes(held_);
     VoxelMap m = grid.map();
     std::array<std::int64_t, 3> cell{};
-    rows().visit_columns(d, held_, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
+    visit_columns(parameters, d, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
       cell[axes.outer] = outer;
       cell[axes.u] = u;
       for (std::int64_t v = 0; v < grid.cells[axes.v]; ++v) {
@@ -276,9 +277,15 @@ class VoxelSurveyor final : public Surveyor {
     for (std::size_t k = 0; k < 3; ++k) x[static_cast<std::size_t>(swept[k])] = grid.centre(k, cell[k]);
     return {x[0], x[1], x[2], x[3]};
   }
-  static VoxelRows& rows() {
-    thread_local VoxelRows storage;
-    return storage;
+  template <class Visit>
+  void visit_columns(std::span<const double> parameters, const Design<double>& d, const VoxelGrid& grid,
+                     const Visit& visit) const {
+    thread_local VoxelRows rows;
+    std::optional<ClearanceTest> test;
+    if (limits_.clearance_min) test = {d.g, link_radii(parameters), mode_, *limits_.clearance_min};
+    const double held_at = held_value(d.g, held_);
+    visit_clear_columns(
+        rows, d, held_, grid, test, [&](const auto& cell) { return pose_of(cell, grid, held_at); }, visit);
   }
 
   Platform platform_;
@@ -299,8 +306,9 @@ std::unique_ptr<const Surveyor> make_surveyor(Platform platform, MassModel mass_
   return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, demand);
 }
 
-VoxelMap voxel_map(Platform platform, int held, std::span<const double> parameters, const SurveyPlan& plan) {
-  return VoxelSurveyor(platform, MassModel::table, {}, held, plan, {}).map(parameters);
+VoxelMap voxel_map(Platform platform, const WorkingMode& mode, int held, std::span<const double> parameters,
+                   const SurveyPlan& plan) {
+  return VoxelSurveyor(platform, MassModel::table, mode, held, plan, {}).map(parameters);
 }
 
 }  // namespace pkm::crr_cru

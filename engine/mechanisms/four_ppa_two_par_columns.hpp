@@ -155,7 +155,7 @@ void feasible_parts(const Frame<S>& f, const Section<S>& t, const Column<S>& col
 /// What samples are to hold.
 template <class S>
 struct SampleContents {
-  bool conditioning = false, dci = false, inertia_condition = false;
+  bool conditioning = false, poses = false, dci = false, inertia_condition = false;
   S gamma{};           ///< a / (2 L_c)
   Masses<S> masses{};  ///< where inertia counts
 
@@ -164,10 +164,11 @@ struct SampleContents {
 
 /// Adds one sample of what was demanded.
 template <class S>
-void add_sample(const SampleContents<S>& contents, const S& weight, const S& conditioning, const Coupling<S>& coupling,
-                Survey<S>& survey) {
+void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S>& pose, const S& conditioning,
+                const Coupling<S>& coupling, Survey<S>& survey) {
   survey.weight.push_back(weight);
   if (contents.conditioning) survey.conditioning.push_back(conditioning);
+  if (contents.poses) survey.pose.push_back(pose);
   for (std::size_t i = 0; i < 4 && contents.dci; ++i) survey.dci[i].push_back(coupling.dci[i]);
   if (contents.inertia_condition) survey.inertia_condition.push_back(coupling.condition);
 }
@@ -178,7 +179,7 @@ enum class Planes { near, far, both };
 /// The poses that a node stands for. The section at -theta is that at theta mirrored in x = b/2; where both limbs have
 /// the same depth, each section is symmetric itself; and the plane L0 - y has, at -theta, the section of the plane y.
 /// Conditioning is the same at all of them, so one sample carries their weight together. Coupling indices change
-/// joints, so that every pose has a sample of its own.
+/// joints, and poses are told apart, so that then every pose has a sample of its own.
 struct Images {
   bool symmetric;  ///< the half of the section that the node does not lie in is meant too
   Planes planes;
@@ -186,28 +187,42 @@ struct Images {
   double count() const { return (symmetric ? 4.0 : 2.0) * (planes == Planes::both ? 2.0 : 1.0); }
 };
 
+/// A node of a plane's section.
 template <class S>
-void add_samples(const Geometry<S>& g, const SampleContents<S>& contents, const Images& images, const S& weight,
-                 const S& s, const S& c, const std::array<S, 2>& x, const std::array<S, 2>& sigma,
-                 const std::array<S, 2>& z_c, Survey<S>& survey) {
-  const S index = contents.conditioning ? conditioning(g, s, c, x, sigma, z_c, contents.gamma) : S(0.0);
-  if (!contents.inertia()) {
-    add_sample(contents, S(weight * images.count()), index, {}, survey);
+struct Node {
+  S theta, sin_theta, cos_theta;
+  std::array<S, 2> x, sigma, z_c;  ///< of the two limbs [m]
+};
+
+template <class S>
+void add_samples(const Frame<S>& f, const SampleContents<S>& contents, const Images& images, const S& weight,
+                 const Node<S>& n, Survey<S>& survey) {
+  const Geometry<S>& g = f.g;
+  const S index =
+      contents.conditioning ? conditioning(g, n.sin_theta, n.cos_theta, n.x, n.sigma, n.z_c, contents.gamma) : S(0.0);
+  if (!contents.inertia() && !contents.poses) {
+    add_sample(contents, S(weight * images.count()), {}, index, {}, survey);
     return;
   }
-  const auto swapped = [](const std::array<S, 2>& of) { return std::array<S, 2>{of[1], of[0]}; };
-  const Coupling<S> here = coupling(joint_inertia(g, contents.masses, s, c, x, sigma, z_c), contents.inertia_condition);
-  const Coupling<S> across = coupling(joint_inertia(g, contents.masses, s, c, swapped(x), swapped(sigma), swapped(z_c)),
-                                      contents.inertia_condition);
-  const bool all = images.symmetric || images.planes == Planes::both;
-  const S each = weight * (images.symmetric && images.planes == Planes::both ? 2.0 : 1.0);
-  if (all || images.planes == Planes::near) {
-    add_sample(contents, each, index, here, survey);               // x, theta
-    add_sample(contents, each, index, across.mirrored(), survey);  // b - x, -theta
-  }
-  if (all || images.planes == Planes::far) {
-    add_sample(contents, each, index, here.mirrored(), survey);  // x, -theta
-    add_sample(contents, each, index, across, survey);           // b - x, theta
+  const auto coupling_at = [&](const std::array<S, 2>& x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c) {
+    if (!contents.inertia()) return Coupling<S>{};
+    return coupling(joint_inertia(g, contents.masses, n.sin_theta, n.cos_theta, x, sigma, z_c),
+                    contents.inertia_condition);
+  };
+  const Coupling<S> here = coupling_at(n.x, n.sigma, n.z_c),
+                    across = coupling_at({n.x[1], n.x[0]}, {n.sigma[1], n.sigma[0]}, {n.z_c[1], n.z_c[0]});
+  const S x = n.x[0] + g.a * n.cos_theta * 0.5, x_across = g.b - x, z = n.z_c[0] - n.sigma[0] - g.d;
+  for (const Planes plane : {Planes::near, Planes::far}) {
+    if (images.planes != Planes::both && images.planes != plane) continue;
+    const S y = plane == Planes::near ? f.y : S(g.L0 - f.y);
+    if (images.symmetric || plane == Planes::near) {
+      add_sample(contents, weight, {x, y, z, n.theta}, index, here, survey);
+      add_sample(contents, weight, {x_across, y, z, S(-n.theta)}, index, across.mirrored(), survey);
+    }
+    if (images.symmetric || plane == Planes::far) {
+      add_sample(contents, weight, {x, y, z, S(-n.theta)}, index, here.mirrored(), survey);
+      add_sample(contents, weight, {x_across, y, z, n.theta}, index, across, survey);
+    }
   }
 }
 
@@ -219,7 +234,6 @@ void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes,
             const GaussRule& theta_rule, const GaussRule& inner_rule, const ClearanceTest* test,
             ColumnScratch<S>& scratch, Survey<S>& survey) {
   find_pieces(f, scratch.breaks, scratch.pieces);
-  const Geometry<S>& g = f.g;
   for (const Piece<S>& piece : scratch.pieces)
     for (std::size_t i = 0; i < theta_rule.node.size(); ++i) {
       const auto [theta, theta_jacobian] = map_node(piece, theta_rule.node[i]);
@@ -242,8 +256,8 @@ void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes,
                 const auto [rise, rise_jacobian] = map_node(part, inner_rule.node[n]);
                 const S each =
                     outer * col.slope * delta_jacobian * rise_jacobian * (inner_rule.weight[k] * inner_rule.weight[n]);
-                add_samples(g, contents, images, each, s, c, col.x, col.sigma,
-                            {col.z_c(f, rise, 0), col.z_c(f, rise, 1)}, survey);
+                const Node<S> node{theta, s, c, col.x, col.sigma, {col.z_c(f, rise, 0), col.z_c(f, rise, 1)}};
+                add_samples(f, contents, images, each, node, survey);
               }
           }
       }

@@ -26,12 +26,13 @@ constexpr const char* kSurveyedMode = "lower,lower";
 template <class S>
 SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
   SampleContents<S> c{
-      demand.conditioning, demand.dci, demand.inertia_condition, gamma(geometry(parameters), demand), {}};
+      demand.conditioning, demand.poses, demand.dci, demand.inertia_condition, gamma(geometry(parameters), demand), {}};
   if (c.inertia()) c.masses = masses(parameters);
   return c;
 }
 
-bool needs_samples(const Demand& demand) { return demand.conditioning || demand.dci || demand.inertia_condition; }
+bool needs_inertia(const Demand& demand) { return demand.dci || demand.inertia_condition; }
+bool needs_samples(const Demand& demand) { return demand.conditioning || demand.poses || needs_inertia(demand); }
 
 class ColumnSurveyor final : public Surveyor {
  public:
@@ -53,7 +54,7 @@ class ColumnSurveyor final : public Surveyor {
   }
 
  private:
-  static constexpr int kSampleNodes = 12;
+  static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
   void run(std::span<const S> parameters, Survey<S>& survey) const {
@@ -80,10 +81,13 @@ class ColumnSurveyor final : public Surveyor {
     }
     const Piece<S> half{l.h_min, g.L0 * 0.5, true, false};
     if (!(value_of(half.upper) > value_of(half.lower))) return;
-    for (std::size_t i = 0; i < inner_rule_.node.size(); ++i) {
-      const auto [at, jacobian] = map_node(half, inner_rule_.node[i]);
-      sample(frame(g, l, at), wanted, Planes::both, S(jacobian * inner_rule_.weight[i]), theta_rule_, inner_rule_, test,
-             scratch, survey);
+    // Over y every node has eight poses: samples that tell them apart make do with a coarser rule.
+    static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);
+    const bool told_apart = wanted.inertia() || wanted.poses;
+    const GaussRule &inner = told_apart ? coarse : inner_rule_, &outer = told_apart ? coarse : theta_rule_;
+    for (std::size_t i = 0; i < inner.node.size(); ++i) {
+      const auto [at, jacobian] = map_node(half, inner.node[i]);
+      sample(frame(g, l, at), wanted, Planes::both, S(jacobian * inner.weight[i]), outer, inner, test, scratch, survey);
     }
   }
 
@@ -180,7 +184,8 @@ class VoxelSurveyor final : public Surveyor {
             Coupling<double> inertia{};
             if (wanted.inertia())
               inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma, z_c), wanted.inertia_condition);
-            add_sample(wanted, survey.cell_volume, index, inertia, survey);
+            add_sample(wanted, survey.cell_volume, {x, y, grid.centre(1, j), grid.centre(2, k)}, index, inertia,
+                       survey);
           }
         });
   }
@@ -193,7 +198,7 @@ class VoxelSurveyor final : public Surveyor {
 }  // namespace
 
 std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Demand& demand) {
-  if ((demand.dci || demand.inertia_condition) && !demand.mode.empty() && demand.mode != kSurveyedMode)
+  if (needs_inertia(demand) && !demand.mode.empty() && demand.mode != kSurveyedMode)
     throw std::invalid_argument("workspaces of mechanism 4ppa-2par are of the working mode " +
                                 std::string(kSurveyedMode) + ", so inertia is not surveyed in the mode " + demand.mode);
   const bool over_y = plan.held.kind == HeldCoordinate::Kind::integrated;

@@ -202,7 +202,7 @@ TEST_P(MechanismContract, AbsurdLimitsLeaveAnEmptyWorkspace) {
   for (const Sweep& sweep : sweeps_of(info()))
     for (const auto method : {Method::voxels, Method::columns}) {
       SurveyPlan p = plan(info(), sweep, method, method == Method::voxels ? 10 : 0);
-      p.limits = test::absurd_limits(info());
+      p.limits = test::absurd_limits(mechanism(), p);
       Demand demand;
       demand.conditioning = !info().characteristic_length.empty();
       const auto empty = survey(mechanism(), parameters(), p, demand);

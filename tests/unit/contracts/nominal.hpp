@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,20 @@ inline LimitSpec absurd_limits(const MechanismInfo& info) {
     spec.given[i] = std::fabs(l.upper - l.inactive) > std::fabs(l.inactive - l.lower) ? l.upper : l.lower;
   }
   return spec;
+}
+
+/// The same for surveys by a method: limits of a clearance, which columns may refuse, are left inactive there.
+inline LimitSpec absurd_limits(const Mechanism& mechanism, const SurveyPlan& plan) {
+  const MechanismInfo& info = mechanism.info();
+  SurveyPlan limited = plan;
+  limited.limits = absurd_limits(info);
+  try {
+    mechanism.prepare(limited, {});
+  } catch (const std::invalid_argument&) {
+    for (std::size_t i = 0; i < info.limits.size(); ++i)
+      if (info.limits[i].group == "clearance") limited.limits.given[i].reset();
+  }
+  return limited.limits;
 }
 
 /// A name that googletest takes.

@@ -96,7 +96,7 @@ TEST(ObjectiveContract, IsDefinedOnAnEmptyWorkspace) {
   for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
     for (const auto method : {Method::voxels, Method::columns}) {
       SurveyPlan p = plan(mechanism.info(), method, method == Method::voxels ? 10 : 0);
-      p.limits = test::absurd_limits(mechanism.info());
+      p.limits = test::absurd_limits(mechanism, p);
       EXPECT_TRUE(std::isfinite(value(entry, mechanism, p)));
     }
   });

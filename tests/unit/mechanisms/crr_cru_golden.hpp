@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -106,7 +107,9 @@ inline std::vector<double> random_design(Uniform& uniform, double share) {
   return p;
 }
 
-inline LimitSpec limit_spec(double s_min, double c_min) { return {{s_min, c_min}, {false, false}}; }
+inline LimitSpec limit_spec(double s_min, double c_min, std::optional<double> clearance_min = {}) {
+  return {{s_min, c_min, clearance_min}, {false, false, false}};
+}
 
 /// The plan that holds coordinate `held` at `value`.
 inline SurveyPlan plan(Method method, int held, double value, const LimitSpec& limits) {

@@ -334,15 +334,31 @@ LimitSpec away() {
   return spec;
 }
 
-const Demand kAll{.conditioning = true, .dci = true, .inertia_condition = true};
+const Demand kAll{.conditioning = true, .poses = true, .dci = true, .inertia_condition = true};
 
 void expect_lengths(const Survey<double>& s) {
   for (const auto& joint : s.dci) EXPECT_EQ(joint.size(), s.weight.size());
   EXPECT_EQ(s.inertia_condition.size(), s.weight.size());
   EXPECT_EQ(s.conditioning.size(), s.weight.size());
+  EXPECT_EQ(s.pose.size(), s.weight.size());
 }
 
-void nst Survey<double>& exact, const Survey<double>& cells, double accuracy) {
+/// Every sample of a column survey is what the equations of motion give at its pose, and feasible.
+void expect_poses(const std::vector<double>& p, const Survey<double>& s, const LimitSpec& limits) {
+  ASSERT_GT(s.pose.size(), 100u);
+  for (std::size_t k = 0; k < s.pose.size(); k += 17) {
+    const Pose<double>& at = s.pose[k];
+    const auto M = joint_inertia(dynamics(p, {{at.x, at.y, at.z, at.angle}}, {}, 0));
+    const Vector4 index = coupling_indices(M);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(s.dci[i][k], index[i], 1e-8);
+    EXPECT_NEAR(s.inertia_condition[k], inertia_condition(M), 1e-8);
+    const PoseReport report = four_ppa().inspect(p, at, "lower,lower", limits);
+    EXPECT_TRUE(report.feasible) << report.reason;
+    EXPECT_NEAR(s.conditioning[k], *report.conditioning, 1e-8);
+  }
+}
+
+void expect_alike(const Survey<double>& exact, const Survey<double>& cells, double accuracy) {
   expect_lengths(exact);
   expect_lengths(cells);
   for (std::size_t i = 0; i < 4; ++i)
@@ -356,10 +372,11 @@ TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
   for (const double y : {1.25, 0.55, 1.9}) {  // both limbs free or alike; one or the other short of stroke
     const HeldCoordinate held{HeldCoordinate::Kind::value, y};
     const auto exact = survey(p, columns(away(), held), kAll);
-    act, survey(p, voxels(away(), {50, 56, 60}, held), kAll), 2e-3);
+    expect_alike(exact, survey(p, voxels(away(), {50, 56, 60}, held), kAll), 2e-3);
     double sum = 0;
     for (const double w : exact.weight) sum += w;
     EXPECT_NEAR(sum, exact.volume, 1e-4 * exact.volume);
+    expect_poses(p, exact, away());
     // the joints do differ, so the comparison tells them apart
     EXPECT_GT(std::fabs(weighted_mean(exact.weight, exact.dci[0]) - weighted_mean(exact.weight, exact.dci[2])), 0.006);
   }
@@ -372,7 +389,7 @@ TEST(FourPpaCoupling, IntegratedOverY) {
   SurveyPlan cells = voxels(away(), {24, 28, 30}, held);
   cells.held_cells = 24;
   const auto exact = survey(p, columns(away(), held, 1e-8), kAll);
-  act, survey(p, cells, kAll), 4e-3);
+  expect_alike(exact, survey(p, cells, kAll), 4e-3);
   double sum = 0;
   for (const double w : exact.weight) sum += w;
   EXPECT_NEAR(sum, exact.volume, 1e-2 * exact.volume);
@@ -396,6 +413,7 @@ TEST(FourPpaCoupling, ASampleIsWhatThePoseHas) {
         ASSERT_LT(sample, found.weight.size());
         for (std::size_t joint = 0; joint < 4; ++joint) EXPECT_NEAR(found.dci[joint][sample], index[joint], 1e-9);
         EXPECT_NEAR(found.inertia_condition[sample], inertia_condition(M), 1e-9);
+        EXPECT_NEAR(found.pose[sample].angle, centre(2, k, 11), 1e-12);
         ++sample;
       }
   EXPECT_EQ(sample, found.weight.size());
