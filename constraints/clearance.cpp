@@ -1,4 +1,4 @@
-// Links that are not joined keep clear of each other: different limbs, the platform, sliders on one rail. Links are
+// Links that are not joined keep clear of each other: different limbs, platforms, sliders on one rail, rails. Links are
 // capsules; which pairs count is written down with the mechanism.
 #include "constraints/list.hpp"
 #include "constraints/pose_level.hpp"
@@ -36,7 +36,7 @@ LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
 ConstraintEntry clearance() {
   return {
       .name = "clearance",
-      .meaning = "links of different limbs, platform and sliders, as capsules, keep a least distance",
+      .meaning = "links that are not joined (limbs, platforms, sliders or rails), as capsules, keep a least distance",
       .pose_level = true,
       .options = options,
       .unit = nullptr,
