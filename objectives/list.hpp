@@ -11,6 +11,8 @@ ObjectiveEntry conditioning();
 ObjectiveEntry dci();
 ObjectiveEntry dci_uniformity();
 ObjectiveEntry inertia_condition_objective();
+ObjectiveEntry peak_force();
+ObjectiveEntry peak_power();
 ObjectiveEntry expression_objective();
 
 }  // namespace pkm

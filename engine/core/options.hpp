@@ -36,7 +36,8 @@ struct OptionSpec {
   double upper = std::numeric_limits<double>::infinity();   ///< and greatest
   std::vector<std::string> choices;                         ///< words only: the words known; empty: any text
   std::string meaning;                                      ///< one line for `pkmopt list`
-  std::vector<std::pair<std::string, std::string>> fields = {};  ///< lists of numbers: names known, and their units
+  std::vector<std::pair<std::string, std::string>> fields =
+      {};  ///< names known, and their units, of lists of numbers; of named numbers where they are given
 };
 
 /// Validated values of one entry's options, defaults included.

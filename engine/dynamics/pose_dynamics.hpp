@@ -7,6 +7,9 @@
 // (9), 2023, 448-458, eqs 36 to 41, with its errata. A mechanism fills PoseDynamics in; the rest is here.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "engine/math/small_matrix.hpp"
 #include "engine/model/pose.hpp"
 
@@ -17,6 +20,11 @@ inline constexpr double kGravity = 9.81;  ///< [m/s^2], along -z
 /// Force and moment on the platform [N, N m]: Fx, Fy, Fz, Mx, My, Mz.
 template <class S>
 using Wrench = Vector<S, 6>;
+
+inline const std::vector<std::string>& wrench_names() {
+  static const std::vector<std::string> names = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
+  return names;
+}
 
 /// A pose on its way: what the equations of motion are evaluated at.
 template <class S>

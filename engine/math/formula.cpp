@@ -66,6 +66,7 @@ S Formula::value(std::span<const S> values) const {
 
 template double Formula::value(std::span<const double>) const;
 template Dual4 Formula::value(std::span<const Dual4>) const;
+template Taylor Formula::value(std::span<const Taylor>) const;
 
 std::string formula_help() {
   return "numbers, pi, + - * / ^, comparisons, && ||, c ? x : y, and the functions " +

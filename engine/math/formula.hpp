@@ -33,7 +33,8 @@ class Formula {
   /// Positions in `names` of those that the formula uses, ascending.
   const std::vector<std::size_t>& used() const { return program_.used; }
 
-  /// The formula's value; S is double or Dual4. Allocates nothing once a thread has computed a formula of this size.
+  /// The formula's value; S is double, Dual4 or Taylor. Allocates nothing once a thread has computed a formula of this
+  /// size.
   /// @param values  one number per name; those not used are not looked at
   template <class S>
   S value(std::span<const S> values) const;

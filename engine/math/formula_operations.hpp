@@ -1,4 +1,4 @@
-// What the steps of a formula do, in the vocabulary of scalar.hpp: for double and for the derivative scalar.
+// What the steps of a formula do, in the vocabulary of scalar.hpp: for double and for the derivative scalars.
 #pragma once
 
 #include <cmath>
@@ -6,6 +6,7 @@
 
 #include "engine/math/dual.hpp"
 #include "engine/math/formula_program.hpp"
+#include "engine/math/taylor.hpp"
 
 namespace pkm::formula {
 
@@ -18,6 +19,7 @@ bool is_constant(const Dual<N>& x) {
     if (x.v[i] != 0) return false;
   return true;
 }
+inline bool is_constant(const Taylor& x) { return x.d == 0 && x.dd == 0; }
 
 /// The portable sine and cosine reduce angles up to 1e5 rad.
 template <class S>
@@ -44,8 +46,8 @@ S power(const S& x, const S& y) {
   const double base = value_of(x), exponent = value_of(y);
   if (exponent == std::nearbyint(exponent) && std::fabs(exponent) <= 1024) {
     S result = whole_power(x, static_cast<int>(exponent));
-    // An exponent that varies adds derivatives, but no value.
-    if (!is_constant(y) && base > 0) result += value_of(result) * log(base) * (y - exponent);
+    // An exponent that varies adds derivatives, but no value: e^0 is 1.
+    if (!is_constant(y) && base > 0) result = result * exp(S((y - exponent) * log(x)));
     return result;
   }
   if (base > 0) return exp(S(y * log(x)));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -18,6 +19,19 @@ S weighted_mean(const std::vector<S>& weight, const std::vector<S>& field) {
     total += weight[i];
   }
   return value_of(total) > 0 ? S(sum / total) : S(0.0);
+}
+
+/// (mean of f^r)^(1/r) of numbers >= 0: a smooth stand-in for the greatest of them, whatever their unit. Not above it,
+/// and it tends to it as r grows; 0 without samples, NaN where one is.
+template <class S>
+S power_mean(const std::vector<S>& field, double r) {
+  double greatest = 0;  // a constant: the result does not depend on what the sum is scaled by
+  for (const S& value : field) greatest = std::fmax(greatest, value_of(value));
+  if (!(greatest > 0)) return S(0.0);
+  S sum(0.0);
+  for (const S& value : field)
+    if (!(value_of(value) <= 0)) sum += exp(S(log(S(value / greatest)) * r));
+  return exp(S(log(S(sum / static_cast<double>(field.size()))) / r)) * greatest;
 }
 
 /// The least value; 0 without samples.

@@ -157,6 +157,23 @@ void DesignProblem::evaluate(std::span<const double> design, EvaluationSlot resu
   }
 }
 
+/// The words of the first quantity without a finite value that has some; margins come first, as they are computed.
+std::string DesignProblem::why_failed(const DesignReport& report) const {
+  const DesignView<double> view{*parts_.mechanism, report.parameters, &report.survey};
+  std::vector<std::pair<const NamedQuantity*, double>> computed;
+  std::size_t margin = 0;
+  for (const auto* list : {&parts_.design_margins, &parts_.survey_margins})
+    for (const auto& q : *list) computed.emplace_back(&q, report.margins[margin++]);
+  for (std::size_t i = 0; i < parts_.objectives.size(); ++i)
+    computed.emplace_back(&parts_.objectives[i], report.objectives[i]);
+  for (const auto& [named, value] : computed) {
+    if (std::isfinite(value)) continue;
+    if (const std::string reason = named->quantity->why_undefined(view); !reason.empty())
+      return named->name + ": " + reason;
+  }
+  return "an objective or a margin is not a finite number";
+}
+
 DesignReport DesignProblem::report(std::span<const double> parameters) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   DesignReport report;
@@ -169,7 +186,7 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
     report.status = compute(parameters, surveys,
                             {report.objectives, report.margins, report.reports, report.status, Detail::complete});
     if (!surveys.empty()) report.survey = std::move(surveys.front());
-    if (report.status == Status::failed) report.reason = "an objective or a margin is not a finite number";
+    if (report.status == Status::failed) report.reason = why_failed(report);
   } catch (const std::exception& error) {
     report.status = Status::failed;
     report.reason = error.what();

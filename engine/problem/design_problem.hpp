@@ -76,6 +76,7 @@ class DesignProblem final : public Problem {
   using Surveys = std::vector<Survey<S>>;
 
   Status compute(std::span<const double> parameters, Surveys<double>& surveys, EvaluationSlot result) const;
+  std::string why_failed(const DesignReport& report) const;
   /// Fills `slopes`; `surveys` receive the surveys' values.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> slopes,
                      Surveys<double>& surveys) const;

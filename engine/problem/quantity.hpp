@@ -10,6 +10,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
+#include "engine/motion/motion.hpp"
 #include "engine/problem/problem.hpp"
 #include "engine/workspace/mechanism.hpp"
 
@@ -32,6 +33,8 @@ class Quantity {
   virtual Dual4 smooth(const DesignView<Dual4>& design) const = 0;
   /// "" or one sentence saying why there is no `smooth`.
   virtual std::string no_derivatives() const { return {}; }
+  /// Why its value is not a finite number, where more can be said than that it is not; "" otherwise.
+  virtual std::string why_undefined(const DesignView<double>&) const { return {}; }
 };
 
 /// Wraps generic functions `[](const auto& design) { ... }` of a DesignView: the value, and its smooth stand-in where
@@ -85,6 +88,7 @@ struct EntryContext {
   const SurveyPlan& plan;  ///< of the survey that the entry reads
   const Options& options;
   std::span<const Region> regions = {};  ///< that the study names
+  std::span<const NamedMotion> motions = {};  ///< the study's
 };
 
 /// An entry of the catalogue of objectives.
@@ -100,7 +104,7 @@ struct ObjectiveEntry {
   std::unique_ptr<const Quantity> (*make)(const EntryContext&);
   /// What one with these options computes; none: `meaning`.
   std::string (*detail)(const EntryContext&) = nullptr;
-  bool reads_survey = true;  ///< of the workspace, or of the region that a study names
+  bool reads_survey = true;  ///< of the workspace, or of the region that a study names; false: the design alone
 };
 
 /// An entry of the catalogue of constraints: pose-level ones set thresholds, the others give a margin, of the design

@@ -24,18 +24,22 @@ NamedNumbers read_named_numbers(const ConfigValue& table, std::string_view unit,
   return numbers;
 }
 
+/// { name = number, ... } with the names and units of `fields`.
+NamedNumbers read_fields(const ConfigValue& table, const OptionSpec& spec) {
+  std::vector<std::string> names;
+  for (const auto& field : spec.fields) names.push_back(field.first);
+  table.expect_table("a table of numbers, { name = number, ... }").allow(names, "name");
+  NamedNumbers numbers;
+  for (const auto& [name, unit] : spec.fields)
+    if (const auto value = table.find(name)) numbers[name] = value->number(unit);
+  return numbers;
+}
+
 /// [{ name = number, ... }, ...] with the names and units of `fields`.
 std::vector<NamedNumbers> read_list_of_numbers(const ConfigValue& array, const OptionSpec& spec) {
-  std::vector<std::string> names;
-  for (const auto& [name, unit] : spec.fields) names.push_back(name);
   std::vector<NamedNumbers> list;
-  for (const auto& table : array.elements("a list of tables, [{ name = number, ... }, ...]")) {
-    table.expect_table("a table of numbers, { name = number, ... }").allow(names, "name");
-    NamedNumbers numbers;
-    for (const auto& [name, unit] : spec.fields)
-      if (const auto value = table.find(name)) numbers[name] = value->number(unit);
-    list.push_back(std::move(numbers));
-  }
+  for (const auto& table : array.elements("a list of tables, [{ name = number, ... }, ...]"))
+    list.push_back(read_fields(table, spec));
   return list;
 }
 
@@ -60,7 +64,8 @@ OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
       }
       return value.word(spec.choices);
     case OptionKind::named_numbers:
-      return read_named_numbers(value, spec.unit, spec.lower, spec.upper);
+      return spec.fields.empty() ? read_named_numbers(value, spec.unit, spec.lower, spec.upper)
+                                 : read_fields(value, spec);
     case OptionKind::list_of_numbers:
       return read_list_of_numbers(value, spec);
     case OptionKind::named_settings:

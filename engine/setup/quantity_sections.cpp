@@ -67,7 +67,7 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
   const std::size_t survey = survey_read(table, entry, draft);
   Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
   const EntryContext context{*draft.parts.mechanism, region ? region->plan : draft.parts.plan, options,
-                             draft.parts.regions};
+                             draft.parts.regions, draft.study.motions};
   try {
     Demand own;
     entry.demand(context, own);
@@ -136,7 +136,8 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
   std::copy_if(specs.begin(), specs.end(), std::back_inserter(first),
                [](const OptionSpec& spec) { return spec.unit != kUnitOfEntry; });
   Options options = read_options(table, first);
-  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions};
+  const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions,
+                             draft.study.motions};
   NamedQuantity made;
   made.name = entry_name(table, entry.name, draft.study.constraints);
   bool after_survey = false;

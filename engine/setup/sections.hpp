@@ -31,6 +31,8 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft);
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
 /// [[region]]: named parts of the workspace with surveys of their own, under the study's limits of a pose.
 void read_regions(const ConfigValue& root, StudyDraft& draft);
+/// [[motion]]
+void read_motions(const ConfigValue& root, StudyDraft& draft);
 /// [[objective]], the other [[constraint]]s and [[report]]
 void read_quantities(const ConfigValue& root, StudyDraft& draft);
 /// [[reference]]

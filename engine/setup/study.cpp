@@ -1,20 +1,17 @@
 #include "engine/setup/study.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
+#include "engine/setup/text_file.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kMostCellsOfACheck = 1'000'000;       // that are surveyed when a study is read
-constexpr std::size_t kLargestFile = std::size_t{16} << 20;  // bytes; a study takes a few thousand
+constexpr std::int64_t kMostCellsOfACheck = 1'000'000;  // that are surveyed when a study is read
 
 std::string stem(const std::string& file_name) { return std::filesystem::path(file_name).stem().string(); }
 
@@ -126,7 +123,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
   const ConfigValue root(document, file_name, "");
-  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "objective", "constraint", "report",
+  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint", "report",
               "reference", "stage", "checkpoint", "final"},
              "section");
 
@@ -140,6 +137,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_workspace(root, draft);
   read_pose_constraints(root, draft);
   read_regions(root, draft);
+  read_motions(root, draft);
   read_quantities(root, draft);
   read_references(root, draft);
   read_stages(root, draft);
@@ -154,17 +152,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
 }
 
 Study load_study_toml(const std::string& path, const Catalogues& catalogues) {
-  const std::string expected = "a study file in TOML";
-  std::error_code unreadable;  // is told below, by the attempt to open
-  if (std::filesystem::is_directory(path, unreadable)) throw ConfigError({path, 0, ""}, "a folder", expected);
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw ConfigError({path, 0, ""}, std::string("no readable file (") + std::strerror(errno) + ")", expected);
-  std::string text(kLargestFile + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kLargestFile) throw ConfigError({path, 0, ""}, "more than 16 MiB", expected);
-  return read_study_toml(text, path, catalogues);
+  return read_study_toml(read_text_file(path, "a study file in TOML"), path, catalogues);
 }
 
 }  // namespace pkm

@@ -67,6 +67,7 @@ struct Study {
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
 
   std::vector<Reference> references;
+  std::vector<NamedMotion> motions;  ///< [[motion]]: what objectives refer to by name
 
   std::vector<StudyEntry> objectives, constraints, reports;
   std::vector<std::string> limit_origins;  ///< per limit of the mechanism: where it was set; "" when it was not

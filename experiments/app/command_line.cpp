@@ -10,6 +10,11 @@
 namespace pkm {
 namespace {
 
+bool takes_list(const std::string& option) {
+  static const std::vector<std::string> options = {"--set", "--at", "--joints", "--velocity", "--forces", "--wrench"};
+  return std::find(options.begin(), options.end(), option) != options.end();
+}
+
 /// "--set a=1 b=2" becomes "--set a=1 --set b=2", for every option that takes a list of name=value.
 std::vector<std::string> spread_lists(const std::vector<std::string>& arguments) {
   std::vector<std::string> spread;
@@ -18,7 +23,7 @@ std::vector<std::string> spread_lists(const std::vector<std::string>& arguments)
     const bool assignment = !argument.starts_with('-') && argument.find('=') != std::string::npos;
     const bool goes_on = assignment && !option.empty() && spread.back() != option;
     if (goes_on) spread.push_back(option);
-    if (!assignment) option = argument == "--set" || argument == "--at" || argument == "--joints" ? argument : "";
+    if (!assignment) option = takes_list(argument) ? argument : "";
     spread.push_back(argument);
   }
   return spread;

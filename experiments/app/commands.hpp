@@ -33,6 +33,8 @@ void add_pose(CLI::App& app, Session& session);
 void add_forward(CLI::App& app, Session& session);
 void add_dynamics(CLI::App& app, Session& session);
 void add_coupling(CLI::App& app, Session& session);
+void add_trajectory(CLI::App& app, Session& session);
+void add_simulate(CLI::App& app, Session& session);
 void add_show(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
 

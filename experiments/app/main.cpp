@@ -41,6 +41,8 @@ int run(int argc, char** argv) {
   pkm::add_forward(app, session);
   pkm::add_dynamics(app, session);
   pkm::add_coupling(app, session);
+  pkm::add_trajectory(app, session);
+  pkm::add_simulate(app, session);
   pkm::add_show(app, session);
   pkm::add_list(app, session);
   if (!pkm::parse_command_line(app, {argv + 1, argv + argc})) return pkm::kDone;

@@ -133,8 +133,7 @@ void add_pose(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("pose", "One pose: joints, Jacobians, singularity indices, limits.");
   add_design_arguments(*command, *arguments);
   add_list_option(*command, "--at", arguments->at, "The pose: every coordinate", true);
-  command->add_option("--mode", arguments->mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
-      ->type_name("MODE");
+  add_mode_option(*command, arguments->mode);
   command->footer(
       "The limits are those of the study; a bare mechanism has none. A pose that breaks a limit is computed all the\n"
       "same (exit code 0); one that does not assemble gives its reason and exit code 1.\n"

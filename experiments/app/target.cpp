@@ -65,6 +65,18 @@ void add_list_option(CLI::App& command, const std::string& option, std::vector<s
       ->required(required);
 }
 
+void add_mode_option(CLI::App& command, std::string& mode) {
+  command.add_option("--mode", mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
+      ->type_name("MODE");
+}
+
+std::string known_mode(const MechanismInfo& info, const std::string& mode) {
+  if (mode.empty()) return info.modes.front();
+  if (std::find(info.modes.begin(), info.modes.end(), mode) != info.modes.end()) return mode;
+  throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),
+                    nearest_name(mode, info.modes));
+}
+
 void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
   command.add_option("MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path")
       ->type_name("")
@@ -76,13 +88,6 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
                   "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself")
       ->type_name("MODEL");
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
-}
-
-std::string known_mode(const MechanismInfo& info, const std::string& mode) {
-  if (mode.empty()) return info.modes.front();
-  if (std::find(info.modes.begin(), info.modes.end(), mode) != info.modes.end()) return mode;
-  throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),
-                    nearest_name(mode, info.modes));
 }
 
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {

@@ -28,6 +28,11 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments);
 void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
                      const std::string& meaning, bool required);
 
+/// Declares --mode.
+void add_mode_option(CLI::App& command, std::string& mode);
+/// Refuses a mode that the mechanism does not have; "": its default.
+std::string known_mode(const MechanismInfo& info, const std::string& mode);
+
 /// One design of a mechanism, and the study that it comes from, if it does.
 struct Target {
   std::shared_ptr<const Mechanism> mechanism;
@@ -38,9 +43,6 @@ struct Target {
 
   const MechanismInfo& info() const { return mechanism->info(); }
 };
-
-/// Refuses a mode that the mechanism does not have; "": its default.
-std::string known_mode(const MechanismInfo& info, const std::string& mode);
 
 /// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments);

@@ -1,0 +1,164 @@
+#include "engine/dynamics/simulation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/core/error.hpp"
+#include "engine/core/unit.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kStages = 3;
+constexpr double kRoot = 3.872983346207417;  // sqrt(15)
+constexpr double kNode[kStages] = {0.5 - kRoot / 10, 0.5, 0.5 + kRoot / 10};
+constexpr double kWeight[kStages] = {5.0 / 18, 4.0 / 9, 5.0 / 18};
+constexpr double kInner[kStages][kStages] = {{5.0 / 36, 2.0 / 9 - kRoot / 15, 5.0 / 36 - kRoot / 30},
+                                             {5.0 / 36 + kRoot / 24, 2.0 / 9, 5.0 / 36 - kRoot / 24},
+                                             {5.0 / 36 + kRoot / 30, 2.0 / 9 + kRoot / 15, 5.0 / 36}};
+constexpr int kMostIterations = 60;
+
+Pose<double> as_pose(const Vector<double, 4>& x) { return {x[0], x[1], x[2], x[3]}; }
+
+double largest(const Vector<double, 4>& x) {
+  double most = 0;
+  for (const double value : x.m) most = std::isfinite(value) ? std::fmax(most, std::fabs(value)) : INFINITY;
+  return most;
+}
+
+/// One state of a step on its way, and the powers there [W].
+struct Stage {
+  Vector<double, 4> velocity, acceleration;
+  double drives = 0, weight = 0, wrench = 0;
+};
+
+class Integrator {
+ public:
+  explicit Integrator(const SimulationSetup& setup) : setup_(setup) {}
+
+  /// "" or why there is no step.
+  std::string begin(const Vector<double, 4>& pose, const Vector<double, 4>& velocity, SimulationState& state) const {
+    state.pose = pose;
+    state.velocity = velocity;
+    return complete(state);
+  }
+
+  std::string step(const SimulationState& from, double end, SimulationState& to) const {
+    const double h = end - from.time;
+    std::array<Stage, kStages> stages;
+    for (Stage& stage : stages) stage = {from.velocity, from.acceleration};
+    if (const std::string reason = solve_stages(from, h, stages); !reason.empty()) return reason;
+    to = from;
+    to.time = end;
+    for (std::size_t i = 0; i < kStages; ++i) {
+      const double weight = h * kWeight[i];
+      to.pose += stages[i].velocity * weight;
+      to.velocity += stages[i].acceleration * weight;
+      to.work_of_drives += weight * stages[i].drives;
+      to.work_of_weight += weight * stages[i].weight;
+      to.work_of_wrench += weight * stages[i].wrench;
+    }
+    return complete(to);
+  }
+
+ private:
+  /// By repetition: each turn takes the accelerations where those of the turn before lead.
+  std::string solve_stages(const SimulationState& from, double h, std::array<Stage, kStages>& stages) const {
+    double before = INFINITY;
+    for (int turn = 0; turn < kMostIterations; ++turn) {
+      std::array<Vector<double, 4>, kStages> pose, velocity;
+      for (std::size_t i = 0; i < kStages; ++i) {
+        pose[i] = from.pose;
+        velocity[i] = from.velocity;
+        for (std::size_t j = 0; j < kStages; ++j) velocity[i] += stages[j].acceleration * (h * kInner[i][j]);
+      }
+      for (std::size_t i = 0; i < kStages; ++i)
+        for (std::size_t j = 0; j < kStages; ++j) pose[i] += velocity[j] * (h * kInner[i][j]);
+      double change = 0, scale = 0;
+      for (std::size_t i = 0; i < kStages; ++i) {
+        const double time = from.time + h * kNode[i];
+        Stage now;
+        if (!evaluate(time, pose[i], velocity[i], now)) return leaves_reach(time);
+        change = std::fmax(change, largest(now.acceleration - stages[i].acceleration));
+        scale = std::fmax(scale, largest(now.acceleration));
+        stages[i] = now;
+      }
+      if (!std::isfinite(scale)) break;
+      const bool settled =
+          change <= 1e-12 * std::fmax(scale, kGravity);  // and then until rounding stops it from falling
+      if (change == 0 || (settled && change >= before)) return {};
+      before = change;
+    }
+    return "at t = " + with_unit(from.time, "s") +
+           " the accelerations do not settle: the mechanism is near a singularity, or the step is too long";
+  }
+
+  bool evaluate(double time, const Vector<double, 4>& pose, const Vector<double, 4>& velocity, Stage& stage) const {
+    const PoseDynamics<double> d = setup_.dynamics({as_pose(pose), velocity});
+    if (!d.assembles) return false;
+    const Vector<double, 4> tau = setup_.forces(time);
+    stage.velocity = velocity;
+    stage.acceleration = acceleration(d, tau, setup_.wrench);
+    stage.drives = dot(tau, d.J * velocity);
+    stage.weight = -dot(d.G_X, velocity);
+    stage.wrench = dot(transpose(d.J_wrench) * setup_.wrench, velocity);
+    return true;
+  }
+
+  /// Acceleration and kinetic energy of a state.
+  std::string complete(SimulationState& state) const {
+    const PoseDynamics<double> d = setup_.dynamics({as_pose(state.pose), state.velocity});
+    if (!d.assembles) return leaves_reach(state.time);
+    state.acceleration = acceleration(d, setup_.forces(state.time), setup_.wrench);
+    state.kinetic_energy = kinetic_energy(d, state.velocity);
+    if (!std::isfinite(largest(state.acceleration)))
+      return "at t = " + with_unit(state.time, "s") + " the mechanism is in a singularity";
+    const std::string refused = setup_.refuse ? setup_.refuse(as_pose(state.pose)) : std::string();
+    return refused.empty() ? refused : "at t = " + with_unit(state.time, "s") + " " + refused;
+  }
+
+  static std::string leaves_reach(double time) {
+    return "at t = " + with_unit(time, "s") + " the mechanism leaves its reach";
+  }
+
+  const SimulationSetup& setup_;
+};
+
+}  // namespace
+
+Simulation simulate(const SimulationSetup& setup, const Vector<double, 4>& pose, const Vector<double, 4>& velocity) {
+  PKM_EXPECTS(setup.duration > 0 && setup.step > 0);
+  const Integrator integrator(setup);
+  Simulation result;
+  SimulationState state;
+  result.stopped = integrator.begin(pose, velocity, state);
+  if (!result.stopped.empty()) return result;
+  result.states.push_back(state);
+  const double at_first = state.kinetic_energy;
+  const auto steps = static_cast<std::size_t>(std::ceil(setup.duration / setup.step * (1 - 1e-12)));
+  result.turned_over = at_first;
+  for (std::size_t k = 1; k <= steps; ++k) {
+    const double end = k == steps ? setup.duration : static_cast<double>(k) * setup.step;
+    SimulationState next;
+    result.stopped = integrator.step(state, end, next);
+    if (!result.stopped.empty()) return result;
+    result.turned_over += std::fabs(next.work_of_drives - state.work_of_drives) +
+                          std::fabs(next.work_of_weight - state.work_of_weight) +
+                          std::fabs(next.work_of_wrench - state.work_of_wrench);
+    const double work = next.work_of_drives + next.work_of_weight + next.work_of_wrench;
+    const double imbalance = std::fabs(next.kinetic_energy - at_first - work);
+    if (!(imbalance <= setup.tolerance * result.turned_over)) {
+      result.stopped = "at t = " + with_unit(end, "s") +
+                       " the energy is no longer conserved: the mechanism is near a singularity, or the step is too "
+                       "long";
+      return result;
+    }
+    result.imbalance = std::fmax(result.imbalance, imbalance);
+    state = next;
+    result.states.push_back(state);
+  }
+  return result;
+}
+
+}  // namespace pkm

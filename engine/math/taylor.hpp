@@ -1,0 +1,73 @@
+// A number that moves with time: its value, first and second derivative by one variable.
+//
+//   (x y)' = x' y + x y'          (x y)'' = x'' y + 2 x' y' + x y''
+//   f(x)'  = f'(x) x'             f(x)''  = f''(x) x'^2 + f'(x) x''
+//
+// Formulas of time are computed with it: position, velocity and acceleration come out of one pass, exact. Values have
+// the bits of the same formula with double.
+#pragma once
+
+#include <cmath>
+
+#include "engine/math/scalar.hpp"
+
+namespace pkm {
+
+struct Taylor {
+  double a = 0;   ///< value
+  double d = 0;   ///< first derivative
+  double dd = 0;  ///< second derivative
+
+  Taylor() = default;
+  Taylor(double value) : a(value) {}  // not explicit: constants mix with it in formulas
+  Taylor(double value, double first, double second) : a(value), d(first), dd(second) {}
+  /// The variable itself.
+  static Taylor variable(double value) { return {value, 1, 0}; }
+
+  friend Taylor operator-(const Taylor& x) { return {-x.a, -x.d, -x.dd}; }
+  friend Taylor operator+(const Taylor& x, const Taylor& y) { return {x.a + y.a, x.d + y.d, x.dd + y.dd}; }
+  friend Taylor operator-(const Taylor& x, const Taylor& y) { return {x.a - y.a, x.d - y.d, x.dd - y.dd}; }
+  friend Taylor operator*(const Taylor& x, const Taylor& y) {
+    return {x.a * y.a, x.d * y.a + x.a * y.d, x.dd * y.a + 2 * x.d * y.d + x.a * y.dd};
+  }
+  friend Taylor operator/(const Taylor& x, const Taylor& y) {  // from x = q y
+    const double q = x.a / y.a, dq = (x.d - q * y.d) / y.a;
+    return {q, dq, (x.dd - 2 * dq * y.d - q * y.dd) / y.a};
+  }
+  Taylor& operator+=(const Taylor& y) { return *this = *this + y; }
+
+  /// f(x) of a function's value and its first two derivatives there.
+  Taylor through(double f, double f1, double f2) const { return {f, f1 * d, f2 * d * d + f1 * dd}; }
+};
+
+// The vocabulary of scalar.hpp.
+
+inline double value_of(const Taylor& x) { return x.a; }
+inline Taylor sqrt(const Taylor& x) {
+  const double root = std::sqrt(x.a);
+  return x.through(root, 0.5 / root, -0.25 / (root * x.a));
+}
+inline SinCosOf<Taylor> sincos(const Taylor& x) {
+  const auto [s, c] = portable::sincos(x.a);
+  return {x.through(s, c, -s), x.through(c, -s, -c)};
+}
+inline Taylor exp(const Taylor& x) {
+  const double e = portable::exp(x.a);
+  return x.through(e, e, e);
+}
+inline Taylor log(const Taylor& x) { return x.through(portable::log(x.a), 1 / x.a, -1 / (x.a * x.a)); }
+inline Taylor asin(const Taylor& x) {  // where the slope is infinite, the derivatives are 0, as in dual.hpp
+  const double cosine = std::sqrt((1 - x.a) * (1 + x.a)), slope = cosine > 0 ? 1 / cosine : 0;
+  return x.through(portable::asin(x.a), slope, x.a * slope * slope * slope);
+}
+inline Taylor acos(const Taylor& x) {
+  const double sine = std::sqrt((1 - x.a) * (1 + x.a)), slope = sine > 0 ? 1 / sine : 0;
+  return x.through(portable::acos(x.a), -slope, -x.a * slope * slope * slope);
+}
+inline Taylor atan2(const Taylor& y, const Taylor& x) {
+  const double n = x.a * x.a + y.a * y.a, dn = 2 * (x.a * x.d + y.a * y.d);
+  const double turn = (x.a * y.d - y.a * x.d) / n;
+  return {portable::atan2(y.a, x.a), turn, (x.a * y.dd - y.a * x.dd - turn * dn) / n};
+}
+
+}  // namespace pkm

@@ -1,0 +1,33 @@
+#include "engine/motion/motion.hpp"
+
+#include <cmath>
+
+#include "engine/core/error.hpp"
+
+namespace pkm {
+
+std::vector<MotionSample> sample(const Motion& motion, std::size_t count) {
+  PKM_EXPECTS(count >= 2);
+  const double end = motion.duration();
+  std::vector<MotionSample> samples;
+  samples.reserve(count);
+  for (std::size_t k = 0; k + 1 < count; ++k)
+    samples.push_back(motion.at(end * static_cast<double>(k) / static_cast<double>(count - 1)));
+  samples.push_back(motion.at(end));
+  return samples;
+}
+
+bool is_periodic(const Motion& motion) {
+  constexpr double kSame = 1e-9;
+  const MotionSample first = motion.at(0), last = motion.at(motion.duration());
+  const auto same = [](double a, double b) { return std::fabs(a - b) <= kSame; };
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double moved = last.pose[i] - first.pose[i];
+    if (!same(i == 3 ? std::remainder(moved, 2 * kPi) : moved, 0) || !same(first.velocity[i], last.velocity[i]) ||
+        !same(first.acceleration[i], last.acceleration[i]))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace pkm

@@ -1,0 +1,47 @@
+// Motions of a platform: the pose, its velocity and acceleration at every time.
+//
+// A motion belongs to no mechanism: it is a curve in (x, y, z, rotation). engine/workspace/trajectory.hpp follows it
+// with one.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/math/small_matrix.hpp"
+#include "engine/model/pose.hpp"
+
+namespace pkm {
+
+/// A motion at one time. Order of coordinates: x, y, z [m], rotation [rad].
+struct MotionSample {
+  double time = 0;                                       ///< [s]
+  Vector<double, 4> pose{}, velocity{}, acceleration{};  ///< with their derivatives by time
+
+  Pose<double> as_pose() const { return {pose[0], pose[1], pose[2], pose[3]}; }
+};
+
+/// Immutable, shared by threads.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  /// [s], > 0; it begins at 0.
+  virtual double duration() const = 0;
+  /// @param time  in [0, duration()]
+  virtual MotionSample at(double time) const = 0;
+};
+
+/// A motion with the name that a study gives it.
+struct NamedMotion {
+  std::string name;
+  std::shared_ptr<const Motion> motion;
+};
+
+/// `count` samples at equal distances in time, both ends included; count >= 2.
+std::vector<MotionSample> sample(const Motion& motion, std::size_t count);
+
+/// Whether it ends as it begins (within 1e-9 of a metre, a radian and their rates), so that it can be repeated without
+/// a jump of pose, velocity or acceleration. A full turn counts as none.
+bool is_periodic(const Motion& motion);
+
+}  // namespace pkm

@@ -1,0 +1,60 @@
+// The kinds of motions: one maker each. All numbers in SI; poses are x, y, z [m], rotation [rad].
+#pragma once
+
+#include <array>
+
+#include "engine/math/formula.hpp"
+#include "engine/motion/motion.hpp"
+#include "engine/motion/time_law.hpp"
+
+namespace pkm {
+
+/// A pause, then a move in a straight line of all four coordinates, from rest to rest.
+struct Move {
+  double wait = 0;       ///< [s], before it
+  Vector<double, 4> to;  ///< where it ends
+  double duration = 0;   ///< [s], > 0
+};
+
+/// From point to point, at rest at each; `wait` [s] at the last.
+std::shared_ptr<const Motion> point_to_point(const Vector<double, 4>& start, const std::vector<Move>& moves,
+                                             double wait, TimeLaw law);
+
+/// Time [s] of a move within peak accelerations of the position and of the rotation; an infinite one bounds nothing. 0
+/// where nothing bounded moves.
+double time_within(TimeLaw law, const Vector<double, 4>& from, const Vector<double, 4>& to, double acceleration,
+                   double angular_acceleration);
+
+/// x = x0 + A sin wt, y = y0 + A cos wt, z = z0 + A sin wt, rotation constant; w = 2 pi/period. Source: Transactions of
+/// the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, eq 35.
+std::shared_ptr<const Motion> oscillation(const Vector<double, 4>& centre, double amplitude, double period,
+                                          double cycles);
+
+/// The handling cycle: lift, reach along a horizontal line and turn, lower. With t_h = T_v - o, t_d = t_h + T_h - o,
+///   z = z0 + Q(t, T_v, lift) - Q(t - t_d, T_v, lift)
+///   (x, y) = (x0, y0) + (cos d, sin d) Q(t - t_h, T_h, reach),   rotation = rotation0 + Q(t - t_h, T_h, turn)
+/// where Q goes from 0 to its last argument by the time law; it takes t_d + T_v.
+struct PickAndPlace {
+  Vector<double, 4> start;
+  double lift = 0.025, reach = 0.305;  ///< [m]
+  double lift_time = 0.1;              ///< T_v [s], > 0
+  double reach_time = 0.3;             ///< T_h [s], > 0
+  double overlap = 0;                  ///< o [s], in [0, min(T_v, T_h)]: 0 stops at the corners
+  double direction = 0;                ///< d [rad], from x towards y
+  double turn = 0;                     ///< [rad]
+  double wait = 0;                     ///< [s], at the end of each way
+  bool back = false;                   ///< the same way back: a whole cycle
+  TimeLaw law = TimeLaw::quintic;
+};
+std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);
+
+/// Four formulas of the time t [s]; derivatives are exact. What is undefined is NaN in the samples.
+std::shared_ptr<const Motion> formulas_of_time(const std::array<Formula, 4>& coordinates, double duration);
+
+/// The only name that formulas of time know.
+inline const std::vector<std::string>& time_name() {
+  static const std::vector<std::string> names = {"t"};
+  return names;
+}
+
+}  // namespace pkm

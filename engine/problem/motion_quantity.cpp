@@ -1,0 +1,171 @@
+#include "engine/problem/motion_quantity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/math/statistics.hpp"
+#include "engine/workspace/drive_along.hpp"
+
+namespace pkm {
+namespace {
+
+const NamedMotion& motion_of(const EntryContext& context) {
+  const std::string& name = context.options.word("motion");
+  if (const NamedMotion* found = find_named(context.motions, name)) return *found;
+  const auto known = names_of(context.motions);
+  if (known.empty())
+    throw std::invalid_argument("the study has no motion called '" + name +
+                                "'; describe it in a table [[motion]] with name = \"" + name + "\"");
+  const std::string nearest = nearest_name(name, known);
+  throw std::invalid_argument("the study has no motion called '" + name + "'; it has " + join(known) +
+                              (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+std::string mode_of(const EntryContext& context) {
+  const auto& modes = context.mechanism.info().modes;
+  if (!context.options.has("mode")) return modes.front();
+  const std::string& mode = context.options.word("mode");
+  if (std::find(modes.begin(), modes.end(), mode) != modes.end()) return mode;
+  const std::string nearest = nearest_name(mode, modes);
+  throw std::invalid_argument("mechanism " + context.mechanism.info().name + " has no working mode '" + mode + "'" +
+                              (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+Wrench<double> wrench_of(const Options& options) {
+  Wrench<double> wrench;
+  if (!options.has("wrench")) return wrench;
+  const NamedNumbers& given = options.numbers("wrench");
+  for (std::size_t i = 0; i < wrench_names().size(); ++i)
+    if (const auto at = given.find(wrench_names()[i]); at != given.end()) wrench[i] = at->second;
+  return wrench;
+}
+
+class AlongMotion final : public Quantity {
+ public:
+  AlongMotion(const EntryContext& context, AppendLoads<double> append, AppendLoads<Dual4> append_smooth)
+      : name_(motion_of(context).name),
+        samples_(sample(*motion_of(context).motion, static_cast<std::size_t>(context.options.integer("samples")))),
+        mode_(mode_of(context)),
+        wrench_(wrench_of(context.options)),
+        joint_(context.options.word("joint")),
+        sharpness_(context.options.number("sharpness")),
+        append_(append),
+        append_smooth_(append_smooth) {
+    for (const MotionSample& at : samples_)
+      for (std::size_t i = 0; i < 4; ++i)
+        if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
+          throw std::invalid_argument("the motion " + name_ + " has no finite pose, velocity and acceleration at t = " +
+                                      with_unit(at.time, "s"));
+  }
+
+  double value(const DesignView<double>& design) const override {
+    thread_local std::vector<double> loads;
+    if (collect(design, append_, loads) < samples_.size()) return std::numeric_limits<double>::quiet_NaN();
+    double greatest = 0;
+    for (const double load : loads) {
+      if (!std::isfinite(load)) return load;
+      greatest = std::fmax(greatest, load);
+    }
+    return greatest;
+  }
+  Dual4 smooth(const DesignView<Dual4>& design) const override {
+    thread_local std::vector<Dual4> loads;
+    if (collect(design, append_smooth_, loads) < samples_.size())
+      return Dual4(std::numeric_limits<double>::quiet_NaN());
+    return power_mean(loads, sharpness_);
+  }
+  std::string why_undefined(const DesignView<double>& design) const override {
+    std::vector<double> loads;
+    const std::size_t last = collect(design, append_, loads);
+    if (last < samples_.size()) {
+      const MotionSample& at = samples_[last];
+      const PoseReport report =
+          design.mechanism.inspect(design.parameters, at.as_pose(), mode_, no_limits(design.mechanism.info()));
+      return "the motion " + name_ + " leaves the reach of the mechanism at t = " + with_unit(at.time, "s") +
+             (report.reason.empty() ? "" : " (" + report.reason + ")");
+    }
+    const auto infinite = std::find_if(loads.begin(), loads.end(), [](double load) { return !std::isfinite(load); });
+    if (infinite == loads.end()) return {};
+    const auto k = static_cast<std::size_t>(infinite - loads.begin()) * samples_.size() / loads.size();
+    return "the motion " + name_ + " meets a singularity at t = " + with_unit(samples_[k].time, "s");
+  }
+
+ private:
+  /// The loads of all samples, or of those before the first at which the mechanism does not assemble.
+  template <class S>
+  std::size_t collect(const DesignView<S>& design, AppendLoads<S> append, std::vector<S>& loads) const {
+    loads.clear();
+    return drive_along<S>(
+        design.mechanism, design.parameters, mode_, samples_, wrench_,
+        [&](std::size_t, const Drive<S>& drive) { append(joint_, drive.forces, drive.speeds, loads); });
+  }
+
+  std::string name_;
+  std::vector<MotionSample> samples_;
+  std::string mode_;
+  Wrench<double> wrench_;
+  std::string joint_;
+  double sharpness_;
+  AppendLoads<double> append_;
+  AppendLoads<Dual4> append_smooth_;
+};
+
+}  // namespace
+
+std::vector<OptionSpec> motion_options(const std::vector<std::string>& joints) {
+  std::vector<std::string> choices = {"1", "2", "3", "4"};
+  choices.insert(choices.end(), joints.begin(), joints.end());
+  std::vector<std::pair<std::string, std::string>> wrench;
+  for (std::size_t i = 0; i < wrench_names().size(); ++i) wrench.emplace_back(wrench_names()[i], i < 3 ? "N" : "N m");
+  return {
+      {.name = "motion", .kind = OptionKind::word, .required = true, .meaning = "name of a [[motion]] of the study"},
+      {.name = "joint",
+       .kind = OptionKind::word,
+       .initial = joints.front(),
+       .choices = choices,
+       .meaning = "the joint looked at; worst: the greatest of all joints" +
+                  std::string(joints.size() > 1 ? "; total: the sum over the joints" : "")},
+      {.name = "samples",
+       .kind = OptionKind::integer,
+       .initial = std::int64_t{201},
+       .lower = 2,
+       .upper = 100'000,
+       .meaning = "poses along the motion, at equal distances in time, both ends included"},
+      {.name = "mode", .kind = OptionKind::word, .meaning = "working mode; default: the mechanism's first"},
+      {.name = "wrench",
+       .kind = OptionKind::named_numbers,
+       .meaning = "force and moment on the platform, the same all the time; default: none",
+       .fields = wrench},
+      {.name = "sharpness",
+       .kind = OptionKind::number,
+       .initial = 200.0,
+       .lower = 1,
+       .upper = 1e6,
+       .meaning = "of the smooth stand-in for the peak that gradient solvers are given, the mean of powers of this "
+                  "exponent: larger is nearer"},
+  };
+}
+
+std::string refusal_without_dynamics(const std::string& objective, const MechanismInfo& mechanism) {
+  return mechanism.has_dynamics
+             ? std::string()
+             : "objective " + objective + " needs dynamics, and mechanism " + mechanism.name + " has none";
+}
+
+std::string motion_detail(const std::string& what, const EntryContext& context) {
+  const std::string& joint = context.options.word("joint");
+  const std::string of = joint == "worst"   ? "the worst joint"
+                         : joint == "total" ? "all joints together"
+                                            : "joint " + joint;
+  return what + " of " + of + " along the motion " + context.options.word("motion");
+}
+
+std::unique_ptr<const Quantity> make_motion_quantity(const EntryContext& context, AppendLoads<double> value,
+                                                     AppendLoads<Dual4> smooth) {
+  return std::make_unique<AlongMotion>(context, value, smooth);
+}
+
+}  // namespace pkm

@@ -1,0 +1,235 @@
+#include "engine/setup/motion_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/core/unit.hpp"
+#include "engine/motion/motions.hpp"
+#include "engine/setup/sections.hpp"
+#include "engine/setup/text_file.hpp"
+
+namespace pkm {
+namespace {
+
+using Names = std::array<std::string, 4>;
+using Keys = std::vector<std::string>;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+const char* unit_of(std::size_t coordinate) { return coordinate == 3 ? "rad" : "m"; }
+
+double positive(const ConfigValue& value, const std::string& unit) {
+  const double number = value.number(unit);
+  if (!(number > 0)) throw value.error("a number > 0 " + unit);
+  return number;
+}
+
+/// A number > 0 that must be there.
+double positive_at(const ConfigValue& table, const std::string& key, const std::string& unit) {
+  return positive(table.at(key, "a number > 0 " + unit), unit);
+}
+
+double number_or(const ConfigValue& table, const std::string& key, const std::string& unit, double otherwise) {
+  const auto value = table.find(key);
+  return value ? value->number(unit) : otherwise;
+}
+
+double time_or_0(const ConfigValue& table, const std::string& key) {
+  const auto value = table.find(key);
+  return value ? value->number("s", 0) : 0;
+}
+
+bool flag_or_false(const ConfigValue& table, const std::string& key) {
+  const auto value = table.find(key);
+  return value && value->flag();
+}
+
+TimeLaw law_of(const ConfigValue& table) {
+  const auto law = table.find("law");
+  if (!law) return TimeLaw::quintic;
+  const auto& names = time_law_names();
+  return static_cast<TimeLaw>(std::find(names.begin(), names.end(), law->word(names)) - names.begin());
+}
+
+void allow(const ConfigValue& table, const Names& coordinates, Keys keys, const Keys& more_keys) {
+  Keys known = more_keys;
+  known.push_back("type");
+  known.insert(known.end(), coordinates.begin(), coordinates.end());
+  known.insert(known.end(), keys.begin(), keys.end());
+  table.allow(known);
+}
+
+/// Every coordinate of a pose.
+Vector<double, 4> pose_at(const ConfigValue& table, const Names& names) {
+  Vector<double, 4> pose;
+  for (std::size_t i = 0; i < 4; ++i) pose[i] = table.at(names[i], quantity_hint(unit_of(i))).number(unit_of(i));
+  return pose;
+}
+
+/// What bounds the time of a move: `time`, or peak accelerations.
+struct Pace {
+  std::optional<double> time;
+  double acceleration = kNone, angular_acceleration = kNone;
+};
+const Keys kPaceKeys = {"time", "acceleration", "angular_acceleration"};
+
+/// The table's own pace, or `general` where it gives none.
+Pace pace_of(const ConfigValue& table, const Pace& general) {
+  Pace pace;
+  if (const auto time = table.find("time")) pace.time = positive(*time, "s");
+  if (const auto a = table.find("acceleration")) pace.acceleration = positive(*a, "m/s^2");
+  if (const auto a = table.find("angular_acceleration")) pace.angular_acceleration = positive(*a, "rad/s^2");
+  const bool bounded = pace.acceleration < kNone || pace.angular_acceleration < kNone;
+  if (pace.time && bounded)
+    throw table.find("time")->refusal("the time follows from the peak acceleration; give one of them");
+  return pace.time || bounded ? pace : general;
+}
+
+/// Throws where the pace says nothing of this move.
+double time_of(const ConfigValue& point, const Vector<double, 4>& from, const Vector<double, 4>& to, const Pace& pace,
+               TimeLaw law) {
+  if (pace.time) return *pace.time;
+  const Vector<double, 4> way = to - from;
+  const bool moves = way[0] != 0 || way[1] != 0 || way[2] != 0, turns = way[3] != 0;
+  if (!moves && !turns) throw point.refusal("it is the point before; give the time to stay there as its wait");
+  if (moves && pace.acceleration == kNone)
+    throw point.refusal("nothing says how fast to move there; give time = .. or acceleration = ..");
+  if (turns && !moves && pace.angular_acceleration == kNone)
+    throw point.refusal("nothing says how fast to turn there; give time = .. or angular_acceleration = ..");
+  return time_within(law, from, to, pace.acceleration, pace.angular_acceleration);
+}
+
+std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+  Keys known = more_keys;
+  for (const char* key : {"type", "points", "law", "back"}) known.emplace_back(key);
+  known.insert(known.end(), kPaceKeys.begin(), kPaceKeys.end());
+  table.allow(known);
+  const std::string expected = "a list of points, [{ " + names[0] + " = .., " + names[1] + " = .., ... }, ...]";
+  const ConfigValue list = table.at("points", expected);
+  const auto points = list.elements(expected);
+  if (points.size() < 2) throw list.error("two points at least");
+  const TimeLaw law = law_of(table);
+  const Pace general = pace_of(table, {});
+  Keys first_keys(names.begin(), names.end()), keys = first_keys;
+  first_keys.emplace_back("wait");
+  keys.emplace_back("wait");
+  keys.insert(keys.end(), kPaceKeys.begin(), kPaceKeys.end());
+  points[0].expect_table("a table of coordinates, { name = value, ... }").allow(first_keys);
+  const Vector<double, 4> start = pose_at(points[0], names);
+  double wait = time_or_0(points[0], "wait");
+  std::vector<Move> moves;
+  Vector<double, 4> at = start;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    const ConfigValue& point = points[k];
+    point.expect_table("a table of coordinates, { name = value, ... }").allow(keys);
+    Vector<double, 4> to = at;
+    for (std::size_t i = 0; i < 4; ++i) to[i] = number_or(point, names[i], unit_of(i), at[i]);
+    moves.push_back({wait, to, time_of(point, at, to, pace_of(point, general), law)});
+    wait = time_or_0(point, "wait");
+    at = to;
+  }
+  if (flag_or_false(table, "back"))
+    for (std::size_t k = points.size() - 1; k > 0; --k) {
+      const double rest = time_or_0(points[k], "wait");
+      moves.push_back({rest, k == 1 ? start : moves[k - 2].to, moves[k - 1].duration});
+      wait = 0;
+    }
+  return point_to_point(start, moves, wait, law);
+}
+
+std::shared_ptr<const Motion> read_oscillation(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+  allow(table, names, {"amplitude", "period", "cycles"}, more_keys);
+  const auto cycles = table.find("cycles");
+  return oscillation(pose_at(table, names), positive_at(table, "amplitude", "m"), positive_at(table, "period", "s"),
+                     cycles ? positive(*cycles, "1") : 1);
+}
+
+std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+  allow(table, names,
+        {"lift", "reach", "lift_time", "reach_time", "overlap", "direction", "turn", "wait", "cycle", "law"},
+        more_keys);
+  PickAndPlace cycle;
+  cycle.start = pose_at(table, names);
+  cycle.lift = table.at("lift", quantity_hint("m")).number("m");
+  cycle.reach = table.at("reach", quantity_hint("m")).number("m");
+  cycle.lift_time = positive_at(table, "lift_time", "s");
+  cycle.reach_time = positive_at(table, "reach_time", "s");
+  if (const auto overlap = table.find("overlap"))
+    cycle.overlap = overlap->number("s", 0, std::fmin(cycle.lift_time, cycle.reach_time));
+  cycle.direction = number_or(table, "direction", "rad", 0);
+  cycle.turn = number_or(table, "turn", "rad", 0);
+  cycle.wait = time_or_0(table, "wait");
+  if (const auto kind = table.find("cycle")) cycle.back = kind->word({"half", "whole"}) == "whole";
+  cycle.law = law_of(table);
+  return pick_and_place(cycle);
+}
+
+/// A number, text with a unit, or a formula of the time.
+Formula coordinate_formula(const ConfigValue& value, const char* unit) {
+  if (!value.is_text()) return Formula(shortest(value.number(unit)), time_name());
+  const std::string& text = value.text("text");
+  try {
+    return Formula(shortest(parse_quantity(text, unit)), time_name());
+  } catch (const std::invalid_argument&) {  // no quantity: then it is a formula
+  }
+  try {
+    return Formula(text, time_name());
+  } catch (const std::invalid_argument& reason) {
+    throw value.refusal(reason.what());
+  }
+}
+
+std::shared_ptr<const Motion> read_formulas(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+  allow(table, names, {"duration"}, more_keys);
+  const double duration = positive_at(table, "duration", "s");
+  const auto formula = [&](std::size_t i) {
+    const std::string unit = unit_of(i);
+    return coordinate_formula(
+        table.at(names[i], "a formula of the time t [s], such as \"0.1*sin(2*pi*t)\", or a number in " + unit),
+        unit_of(i));
+  };
+  return formulas_of_time({formula(0), formula(1), formula(2), formula(3)}, duration);
+}
+
+struct Kind {
+  std::string name;
+  std::shared_ptr<const Motion> (*read)(const ConfigValue&, const Names&, const Keys&);
+};
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> list = {{"points", read_points},
+                                         {"pick-and-place", read_pick_and_place},
+                                         {"oscillation", read_oscillation},
+                                         {"formulas", read_formulas}};
+  return list;
+}
+
+}  // namespace
+
+std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const std::array<std::string, 4>& coordinates,
+                                          const std::vector<std::string>& more_keys) {
+  const std::string& type = type_of(table, "type", names_of(kinds()));
+  return find_named(kinds(), type)->read(table, coordinates, more_keys);
+}
+
+std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const std::array<std::string, 4>& coordinates) {
+  const std::string text = read_text_file(path, "a motion in TOML");
+  const TomlValue document = parse_toml(text, path);
+  if (document.keys.empty())
+    throw ConfigError({path, 0, ""}, "an empty file",
+                      "a motion in TOML, with type = one of " + join(names_of(kinds())));
+  return read_motion(ConfigValue(document, path, ""), coordinates);
+}
+
+void read_motions(const ConfigValue& root, StudyDraft& draft) {
+  for (const auto& table : tables_of(root, "motion")) {
+    const ConfigValue name = table.at("name", "a name for objectives to refer to");
+    const std::string& text = name.text("a name for objectives to refer to");
+    if (text.empty()) throw name.error("a name for objectives to refer to");
+    if (find_named(draft.study.motions, text)) throw name.refusal("there is already a motion called '" + text + "'");
+    draft.study.motions.push_back({text, read_motion(table, draft.info().coordinates, {"name"})});
+  }
+}
+
+}  // namespace pkm

@@ -1,0 +1,174 @@
+// `pkmopt simulate`: how a mechanism moves under given forces.
+
+#include <iostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/core/unit.hpp"
+#include "engine/dynamics/simulation.hpp"
+#include "engine/setup/assignments.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/csv.hpp"
+#include "experiments/app/print.hpp"
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+namespace {
+
+struct SimulateArguments : DesignArguments {
+  std::vector<std::string> at, velocity, forces, wrench;
+  std::string mode, duration, step, csv;
+};
+
+Vector<double, 4> four(const std::vector<double>& x) { return {{x[0], x[1], x[2], x[3]}}; }
+
+double time_of(const std::string& text, const std::string& option) {
+  double value = 0;
+  try {
+    value = parse_quantity(text, "s");
+  } catch (const std::invalid_argument&) {
+    throw ConfigError({"", 0, option}, text, quantity_hint("s"));
+  }
+  if (!(value > 0)) throw ConfigError({"", 0, option}, text, "a number > 0 s");
+  return value;
+}
+
+SimulationSetup setup_of(const Target& target, const std::string& mode, const SimulateArguments& arguments) {
+  constexpr double kMostSteps = 1e7;
+  const MechanismInfo& info = target.info();
+  SimulationSetup setup;
+  setup.dynamics = [&target, mode](const MotionState<double>& state) {
+    PoseDynamics<double> d;
+    target.mechanism->dynamics(target.parameters, mode, {&state, 1}, {&d, 1});
+    return d;
+  };
+  setup.forces = [tau = four(parse_assignments_or_0(arguments.forces, "--forces", assignable_forces(info)))](double) {
+    return tau;
+  };
+  const auto w = parse_assignments_or_0(arguments.wrench, "--wrench", assignable_wrench());
+  setup.wrench = {{w[0], w[1], w[2], w[3], w[4], w[5]}};
+  setup.refuse = [&target, mode](const Pose<double>& pose) {
+    const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
+    return report.feasible ? std::string() : "the pose is no longer feasible: " + report.reason;
+  };
+  setup.duration = time_of(arguments.duration, "--duration");
+  setup.step = time_of(arguments.step, "--step");
+  if (setup.duration / setup.step > kMostSteps)
+    throw ConfigError({"", 0, "--step"}, arguments.step, "at most 1e7 steps in the duration");
+  return setup;
+}
+
+CsvTable table_of(const MechanismInfo& info, const Simulation& run) {
+  std::vector<std::string> columns = {"time"};
+  for (const char* suffix : {"", "_speed", "_acceleration"})
+    for (const auto& name : info.coordinates) columns.push_back(name + suffix);
+  for (const char* name : {"kinetic_energy", "work_of_drives", "work_of_weight", "work_of_wrench"})
+    columns.emplace_back(name);
+  CsvTable table(columns);
+  for (const SimulationState& s : run.states) {
+    table.begin_row();
+    table.add(s.time);
+    for (const auto* values : {&s.pose, &s.velocity, &s.acceleration}) table.add(*values);
+    for (const double value : {s.kinetic_energy, s.work_of_drives, s.work_of_weight, s.work_of_wrench})
+      table.add(value);
+  }
+  return table;
+}
+
+Json by_name(const MechanismInfo& info, const Vector<double, 4>& values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < 4; ++i) object[info.coordinates[i]] = values[i];
+  return object;
+}
+
+Json state_json(const MechanismInfo& info, const SimulationState& s) {
+  return {{"time", s.time},
+          {"pose", by_name(info, s.pose)},
+          {"velocity", by_name(info, s.velocity)},
+          {"acceleration", by_name(info, s.acceleration)},
+          {"kinetic_energy", s.kinetic_energy},
+          {"work_of_drives", s.work_of_drives},
+          {"work_of_weight", s.work_of_weight},
+          {"work_of_wrench", s.work_of_wrench}};
+}
+
+Json run_json(const MechanismInfo& info, const std::string& mode, const Simulation& run) {
+  Json states = Json::array();
+  for (const auto& state : run.states) states.push_back(state_json(info, state));
+  Json json = {{"mechanism", info.name},
+               {"mode", mode},
+               {"imbalance", run.imbalance},
+               {"turned_over", run.turned_over},
+               {"states", states}};
+  json["stopped"] = nullptr;
+  if (!run.stopped.empty()) json["stopped"] = run.stopped;
+  return json;
+}
+
+void print_run(const MechanismInfo& info, const std::string& mode, const Simulation& run) {
+  const SimulationState &first = run.states.front(), &last = run.states.back();
+  std::cout << aligned({{"mechanism", info.name},
+                        {"mode", mode},
+                        {"steps", std::to_string(run.states.size() - 1)},
+                        {"end", number(last.time, "s")}});
+  std::vector<Row> rows = {{"", "begin", "end", "speed at end"}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string unit = i == 3 ? "rad" : "m";
+    rows.push_back({info.coordinates[i], number(first.pose[i], unit), number(last.pose[i], unit),
+                    number(last.velocity[i], unit + "/s")});
+  }
+  print_section(std::cout, "pose", rows);
+  print_section(
+      std::cout, "energy",
+      {{"kinetic energy, begin", number(first.kinetic_energy, "J")},
+       {"work of the actuators", number(last.work_of_drives, "J")},
+       {"work of the weight", number(last.work_of_weight, "J")},
+       {"work of the wrench", number(last.work_of_wrench, "J")},
+       {"kinetic energy, end", number(last.kinetic_energy, "J")},
+       {"greatest imbalance", number(run.imbalance, "J"), "of " + number(run.turned_over, "J") + " turned over"}});
+}
+
+int simulate_target(const Catalogues& catalogues, const SimulateArguments& arguments) {
+  const Target target = find_target(catalogues, arguments);
+  const MechanismInfo& info = target.info();
+  if (!info.has_dynamics) throw ConfigError({}, "simulate needs dynamics, and mechanism " + info.name + " has none");
+  const std::string mode = known_mode(info, arguments.mode);
+  const auto pose = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
+  const auto velocity = parse_assignments_or_0(arguments.velocity, "--velocity", assignable_velocities(info));
+  const Simulation run = simulate(setup_of(target, mode, arguments), four(pose), four(velocity));
+  if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
+  if (!arguments.csv.empty()) table_of(info, run).write(arguments.csv);
+  if (arguments.json)
+    print_json(std::cout, run_json(info, mode, run));
+  else
+    print_run(info, mode, run);
+  if (!run.stopped.empty()) throw std::runtime_error("the simulation ends early: " + run.stopped);
+  return kDone;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<SimulateArguments>();
+  CLI::App* command = app.add_subcommand("simulate", "How a mechanism moves under given forces, from a pose on.");
+  add_design_arguments(*command, *arguments);
+  add_list_option(*command, "--at", arguments->at, "The pose at the beginning: every coordinate", true);
+  add_list_option(*command, "--velocity", arguments->velocity, "Its rates at the beginning; default: at rest", false);
+  add_list_option(*command, "--forces", arguments->forces, "Forces of the actuators, the same all the time; default: 0",
+                  false);
+  add_list_option(*command, "--wrench", arguments->wrench, "Force and moment on the platform, the same all the time",
+                  false);
+  command->add_option("--duration", arguments->duration, "Time to simulate")->type_name("TIME")->required();
+  command->add_option("--step", arguments->step, "Time between two states")->type_name("TIME")->required();
+  add_mode_option(*command, arguments->mode);
+  command->add_option("--csv", arguments->csv, "Write all states to this file, numbers in SI")->type_name("FILE");
+  command->footer(
+      "Ends early, with exit code 1 and a sentence, where the mechanism leaves its reach, its slides' ranges or the\n"
+      "study's limits, nears a singularity, or energy is not conserved to 1e-9 of what was turned over.\n"
+      "Example: pkmopt simulate 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --forces rho3=8 --duration 0.1s --step "
+      "1ms");
+  command->callback([&session, arguments] { session.exit_code = simulate_target(session.catalogues, *arguments); });
+}
+
+}  // namespace pkm

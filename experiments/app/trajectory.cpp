@@ -1,0 +1,211 @@
+// `pkmopt trajectory`: a mechanism along a motion.
+
+#include <iostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/setup/assignments.hpp"
+#include "engine/setup/motion_section.hpp"
+#include "engine/workspace/trajectory.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/csv.hpp"
+#include "experiments/app/print.hpp"
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+namespace {
+
+struct TrajectoryArguments : DesignArguments {
+  std::string motion;
+  std::size_t samples = 201;
+  std::string mode, csv;
+  std::vector<std::string> wrench;
+  bool allow_infeasible = false;
+};
+
+using Values = std::optional<Vector<double, 4>>;
+
+/// A [[motion]] of the study by its name, else a file.
+std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
+  if (target.study)
+    if (const NamedMotion* known = find_named(target.study->motions, name)) return known->motion;
+  return load_motion_toml(name, target.info().coordinates);
+}
+
+CsvTable table_of(const MechanismInfo& info, const Trajectory& trajectory) {
+  std::vector<std::string> columns = {"time"};
+  const auto add_names = [&](const auto& names, const std::string& suffix) {
+    for (const auto& name : names) columns.push_back(name + suffix);
+  };
+  for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.coordinates, suffix);
+  for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.joints, suffix);
+  for (const char* name : {"conditioning", "feasible", "reason"}) columns.emplace_back(name);
+  if (info.has_dynamics) {
+    for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
+    columns.emplace_back("power");
+  }
+  CsvTable table(columns);
+  const auto add = [&table](const Values& values) { values ? table.add(*values) : table.add_empty(4); };
+  for (const TrajectoryPoint& p : trajectory.points) {
+    table.begin_row();
+    table.add(p.motion.time);
+    for (const auto* values : {&p.motion.pose, &p.motion.velocity, &p.motion.acceleration}) table.add(*values);
+    for (const auto* values : {&p.joints, &p.speeds, &p.accelerations}) add(*values);
+    p.conditioning ? table.add(*p.conditioning) : table.add_empty(1);
+    table.add(p.feasible ? 1.0 : 0.0);
+    table.add(p.reason);
+    if (!info.has_dynamics) continue;
+    add(p.forces);
+    add(p.power);
+    p.power ? table.add((*p.power)[0] + (*p.power)[1] + (*p.power)[2] + (*p.power)[3]) : table.add_empty(1);
+  }
+  return table;
+}
+
+template <class Names>
+Json by_name(const Names& names, const Values& values) {
+  if (!values) return {};
+  Json object = Json::object();
+  for (std::size_t i = 0; i < 4; ++i) object[names[i]] = (*values)[i];
+  return object;
+}
+
+Json summary_json(const MechanismInfo& info, const Trajectory& trajectory) {
+  const TrajectorySummary& s = trajectory.summary;
+  Json json = {{"infeasible", s.infeasible}, {"peak_speed", by_name(info.joints, s.peak_speed)}};
+  if (!info.has_dynamics) return json;
+  const auto number_or_null = [&s](double value) { return s.has_forces ? Json(value) : Json(); };
+  const auto values_or_null = [&](const Vector<double, 4>& values) {
+    return by_name(info.joints, s.has_forces ? Values(values) : Values());
+  };
+  json["peak_force"] = values_or_null(s.peak_force);
+  json["rms_force"] = values_or_null(s.rms_force);
+  json["peak_power"] = values_or_null(s.peak_power);
+  json["peak_total_power"] = number_or_null(s.peak_total_power);
+  json["least_total_power"] = number_or_null(s.least_total_power);
+  json["energy"] = number_or_null(s.energy);
+  json["energy_drawn"] = number_or_null(s.energy_drawn);
+  return json;
+}
+
+Json sample_json(const MechanismInfo& info, const TrajectoryPoint& p) {
+  Json json = {{"time", p.motion.time},
+               {"pose", by_name(info.coordinates, p.motion.pose)},
+               {"velocity", by_name(info.coordinates, p.motion.velocity)},
+               {"acceleration", by_name(info.coordinates, p.motion.acceleration)},
+               {"joints", by_name(info.joints, p.joints)},
+               {"speeds", by_name(info.joints, p.speeds)},
+               {"accelerations", by_name(info.joints, p.accelerations)}};
+  json["conditioning"] = nullptr;
+  if (p.conditioning) json["conditioning"] = *p.conditioning;
+  json["feasible"] = p.feasible;
+  json["reason"] = nullptr;
+  if (!p.reason.empty()) json["reason"] = p.reason;
+  if (info.has_dynamics) {
+    json["forces"] = by_name(info.joints, p.forces);
+    json["power"] = by_name(info.joints, p.power);
+  }
+  return json;
+}
+
+Json trajectory_json(const MechanismInfo& info, const std::string& mode, const std::string& motion,
+                     const Trajectory& trajectory) {
+  Json samples = Json::array();
+  for (const auto& point : trajectory.points) samples.push_back(sample_json(info, point));
+  return {{"mechanism", info.name},
+          {"mode", mode},
+          {"motion", motion},
+          {"duration", trajectory.duration},
+          {"periodic", trajectory.periodic},
+          {"summary", summary_json(info, trajectory)},
+          {"samples", samples}};
+}
+
+void print_trajectory(const MechanismInfo& info, const std::string& mode, const std::string& motion,
+                      const Trajectory& trajectory) {
+  const TrajectorySummary& s = trajectory.summary;
+  const std::string all = std::to_string(trajectory.points.size());
+  std::cout << aligned(
+      {{"mechanism", info.name},
+       {"mode", mode},
+       {"motion", motion + (trajectory.periodic ? " (ends as it begins)" : "")},
+       {"duration", number(trajectory.duration, "s")},
+       {"samples", all},
+       {"feasible", s.infeasible == 0 ? "yes" : "not at " + std::to_string(s.infeasible) + " samples"}});
+  std::vector<Row> rows = {{"", info.joints[0], info.joints[1], info.joints[2], info.joints[3]}};
+  const auto add = [&rows](const std::string& title, const Vector<double, 4>& values) {
+    rows.push_back({title});
+    for (const double value : values.m) rows.back().push_back(number(value));
+  };
+  add("peak speed [m/s]", s.peak_speed);
+  if (s.has_forces) {
+    add("peak force [N]", s.peak_force);
+    add("RMS force [N]", s.rms_force);
+    add("peak power [W]", s.peak_power);
+  }
+  print_section(std::cout, "joints", rows);
+  if (!info.has_dynamics) std::cout << "\nmechanism " << info.name << " has no dynamics: no forces, no power\n";
+  if (!s.has_forces) return;
+  const std::string per = trajectory.periodic ? "per cycle" : "over the motion";
+  print_section(std::cout, "all joints together",
+                {{"peak power", number(s.peak_total_power, "W")},
+                 {"least power", number(s.least_total_power, "W")},
+                 {"energy " + per, number(s.energy, "J"), "braking gives back what it takes"},
+                 {"energy drawn " + per, number(s.energy_drawn, "J"), "braking gives back nothing"}});
+}
+
+int trajectory(const Catalogues& catalogues, const TrajectoryArguments& arguments) {
+  const Target target = find_target(catalogues, arguments);
+  const MechanismInfo& info = target.info();
+  const std::string mode = known_mode(info, arguments.mode);
+  const auto w = parse_assignments_or_0(arguments.wrench, "--wrench", assignable_wrench());
+  if (!arguments.wrench.empty() && !info.has_dynamics)
+    throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
+  const auto motion = find_motion(target, arguments.motion);
+  const Trajectory found = follow(*target.mechanism, target.parameters, mode, target.limits, *motion, arguments.samples,
+                                  {{w[0], w[1], w[2], w[3], w[4], w[5]}});
+  if (!arguments.csv.empty()) table_of(info, found).write(arguments.csv);
+  if (arguments.json)
+    print_json(std::cout, trajectory_json(info, mode, arguments.motion, found));
+  else
+    print_trajectory(info, mode, arguments.motion, found);
+  if (found.summary.infeasible == 0 || arguments.allow_infeasible) return kDone;
+  for (const auto& point : found.points)
+    if (!point.feasible)
+      throw std::runtime_error(std::to_string(found.summary.infeasible) + " of " + std::to_string(found.points.size()) +
+                               " samples are infeasible, the first at t = " + with_unit(point.motion.time, "s") + ": " +
+                               point.reason + " (--allow-infeasible takes them)");
+  return kDone;
+}
+
+}  // namespace
+
+void add_trajectory(CLI::App& app, Session& session) {
+  const auto arguments = std::make_shared<TrajectoryArguments>();
+  CLI::App* command =
+      app.add_subcommand("trajectory", "A motion: joints, conditioning, and with masses forces and power.");
+  add_design_arguments(*command, *arguments);
+  command->add_option("--motion", arguments->motion, "A motion in TOML, or the name of a [[motion]] of the study")
+      ->type_name("MOTION.toml")
+      ->required();
+  command->add_option("--samples", arguments->samples, "Poses at equal distances in time, both ends included")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 10'000'000));
+  add_mode_option(*command, arguments->mode);
+  add_list_option(*command, "--wrench", arguments->wrench, "Force and moment on the platform, the same all the time",
+                  false);
+  command->add_option("--csv", arguments->csv, "Write all samples to this file, numbers in SI")->type_name("FILE");
+  command->add_flag("--allow-infeasible", arguments->allow_infeasible, "Exit code 0 also with infeasible samples");
+  command->footer(
+      "The limits are those of the study; a bare mechanism has none but its slides' ranges. Samples that break a "
+      "limit\n"
+      "are marked with the reason and make the exit code 1. experiments/README.md tells how motions are written.\n"
+      "Example: pkmopt trajectory 3crr-r-cru --motion experiments/3crr-r-cru/motions/pick-and-place.toml --csv f.csv");
+  command->callback([&session, arguments] { session.exit_code = trajectory(session.catalogues, *arguments); });
+}
+
+}  // namespace pkm

@@ -1,0 +1,140 @@
+// Laws of every kind of motion: derivatives, ends, durations.
+#include "engine/motion/motions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pkm {
+namespace {
+
+using X = Vector<double, 4>;
+
+const X kStart{{0.03, 0.17, 0.2, -0.5}};
+
+PickAndPlace handling(double overlap, TimeLaw law = TimeLaw::quintic) {
+  PickAndPlace cycle;
+  cycle.start = kStart;
+  cycle.lift_time = 0.12;
+  cycle.reach_time = 0.4;
+  cycle.overlap = overlap;
+  cycle.direction = 0.6;
+  cycle.turn = 1.0;
+  cycle.law = law;
+  return cycle;
+}
+
+std::vector<NamedMotion> every_kind() {
+  const auto formula = [](const char* text) { return Formula(text, time_name()); };
+  PickAndPlace whole = handling(0.06);
+  whole.back = true;
+  whole.wait = 0.1;
+  const std::vector<Move> moves = {{0.2, {{0.1, 0.2, 0.2, 0.3}}, 0.4}, {0, {{0.1, 0.2, 0.25, 0.3}}, 0.1}};
+  return {{"quintic", point_to_point(kStart, moves, 0.05, TimeLaw::quintic)},
+          {"cycloid", point_to_point(kStart, moves, 0.05, TimeLaw::cycloid)},
+          {"oscillation", oscillation(kStart, 0.01, 1.0, 2.0)},
+          {"half", pick_and_place(handling(0))},
+          {"half, cycloid", pick_and_place(handling(0.05, TimeLaw::cycloid))},
+          {"whole", pick_and_place(whole)},
+          {"formulas",
+           formulas_of_time({formula("0.2 - 0.010*t"), formula("0.1*sin(t)"), formula("0.2"), formula("t^2")}, 2)}};
+}
+
+TEST(Motions, VelocityAndAccelerationAreTheDerivatives) {
+  for (const auto& [name, motion] : every_kind()) {
+    SCOPED_TRACE(name);
+    const double T = motion->duration(), h = 1e-5;
+    for (int k = 1; k < 40; ++k) {
+      const double t = T * k / 40 + 1e-3 * T;  // off the corners
+      const MotionSample at = motion->at(t), before = motion->at(t - h), after = motion->at(t + h);
+      EXPECT_EQ(at.time, t);
+      for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(at.velocity[i], (after.pose[i] - before.pose[i]) / (2 * h), 1e-5);
+        EXPECT_NEAR(at.acceleration[i], (after.velocity[i] - before.velocity[i]) / (2 * h), 2e-3);
+      }
+    }
+  }
+}
+
+TEST(Motions, SamplesIncludeBothEnds) {
+  for (const auto& [name, motion] : every_kind()) {
+    SCOPED_TRACE(name);
+    const auto samples = sample(*motion, 7);
+    ASSERT_EQ(samples.size(), 7u);
+    EXPECT_EQ(samples.front().time, 0);
+    EXPECT_EQ(samples.back().time, motion->duration());
+    EXPECT_NEAR(samples[3].time, motion->duration() / 2, 1e-15);
+  }
+}
+
+TEST(Motions, MovesRestAtTheirPointsAndPause) {
+  const auto motion = every_kind()[0].motion;  // waits 0.2, moves 0.4, moves 0.1, waits 0.05
+  EXPECT_DOUBLE_EQ(motion->duration(), 0.75);
+  const auto expect_rest = [&](double t, const X& pose) {
+    const MotionSample at = motion->at(t);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(at.pose[i], pose[i], 1e-15) << t;
+      EXPECT_NEAR(at.velocity[i], 0, 1e-12) << t;
+      EXPECT_NEAR(at.acceleration[i], 0, 1e-9) << t;
+    }
+  };
+  expect_rest(0, kStart);
+  expect_rest(0.1, kStart);
+  expect_rest(0.2 + 0.4, {{0.1, 0.2, 0.2, 0.3}});
+  expect_rest(0.72, {{0.1, 0.2, 0.25, 0.3}});
+  EXPECT_EQ(motion->at(motion->duration()).pose.m, (X{{0.1, 0.2, 0.25, 0.3}}).m);
+}
+
+TEST(Motions, TimesFollowFromPeakAccelerations) {
+  for (const TimeLaw law : {TimeLaw::quintic, TimeLaw::cycloid}) {
+    const X to = kStart + X{{0.03, -0.04, 0, 0.2}};
+    const double T = time_within(law, kStart, to, 3, INFINITY);
+    const auto motion = point_to_point(kStart, {{0, to, T}}, 0, law);
+    double peak = 0, speed = 0;
+    for (const MotionSample& at : sample(*motion, 100'001)) {
+      peak = std::fmax(peak, std::hypot(at.acceleration[0], at.acceleration[1]));
+      speed = std::fmax(speed, std::hypot(at.velocity[0], at.velocity[1]));
+    }
+    EXPECT_NEAR(peak, 3, 1e-8);
+    EXPECT_NEAR(speed, (law == TimeLaw::quintic ? 1.875 : 2.0) * 0.05 / T, 1e-12);
+    // The turn asks for more time than the way.
+    EXPECT_NEAR(time_within(law, kStart, to, 3, 0.1), std::sqrt(peak_acceleration(law) * 0.2 / 0.1), 1e-12);
+  }
+  // Section 11 of the model's document: T = sqrt(10 S/(sqrt(3) a)).
+  EXPECT_NEAR(time_of_move(TimeLaw::quintic, 0.0906, 3), std::sqrt(10 * 0.0906 / (std::sqrt(3.0) * 3)), 1e-15);
+}
+
+TEST(Motions, TheHandlingCycle) {
+  const auto half = pick_and_place(handling(0.06));
+  EXPECT_NEAR(half->duration(), 0.12 - 0.06 + 0.4 - 0.06 + 0.12, 1e-15);
+  const MotionSample end = half->at(half->duration());
+  const auto [s, c] = sincos(0.6);
+  EXPECT_NEAR(end.pose[0], kStart[0] + 0.305 * c, 1e-15);
+  EXPECT_NEAR(end.pose[1], kStart[1] + 0.305 * s, 1e-15);
+  EXPECT_NEAR(end.pose[2], kStart[2], 1e-15);
+  EXPECT_NEAR(end.pose[3], kStart[3] + 1, 1e-15);
+  EXPECT_NEAR(half->at(half->duration() / 2).pose[2], kStart[2] + 0.025, 1e-15);
+  // Without overlap it stops at the corners.
+  const auto stops = pick_and_place(handling(0));
+  for (const double corner : {0.12, 0.52})
+    for (const double v : stops->at(corner).velocity.m) EXPECT_NEAR(v, 0, 1e-12);
+  // The way back takes the same path the other way round.
+  PickAndPlace cycle = handling(0.06);
+  cycle.back = true;
+  const auto whole = pick_and_place(cycle);
+  EXPECT_DOUBLE_EQ(whole->duration(), 2 * half->duration());
+  for (double t = 0; t < half->duration(); t += 0.013)
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(whole->at(whole->duration() - t).pose[i], whole->at(t).pose[i], 1e-14);
+}
+
+TEST(Motions, WhichOnesEndAsTheyBegin) {
+  for (const auto& [name, motion] : every_kind())
+    EXPECT_EQ(is_periodic(*motion), name == "oscillation" || name == "whole") << name;
+  const auto formula = [](const char* text) { return Formula(text, time_name()); };
+  const auto turn = formulas_of_time({formula("0"), formula("cos(2*pi*t)"), formula("0"), formula("2*pi*t")}, 1);
+  EXPECT_TRUE(is_periodic(*turn)) << "a full turn";
+}
+
+}  // namespace
+}  // namespace pkm
