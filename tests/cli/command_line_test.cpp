@@ -92,7 +92,8 @@ TEST(CliErrors, ResultsThatCannotBeWrittenAreAFailure) {
 TEST(CliHelp, EveryCommandHasHelpWithAnExample) {
   const auto all = pkmopt({"--help"});
   EXPECT_EQ(all.exit_code, 0);
-  for (const std::string command : {"run", "resume", "check", "evaluate", "pose", "forward", "show", "list"}) {
+  for (const std::string command :
+       {"run", "resume", "check", "evaluate", "pose", "forward", "trajectory", "simulate", "show", "list"}) {
     EXPECT_THAT(all.out, HasSubstr("\n  " + command + " "));
     const auto help = pkmopt({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);

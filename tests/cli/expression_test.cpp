@@ -182,13 +182,26 @@ TEST(CliExpression, ListShowsOptionsAndNames) {
 TEST(CliExamples, EveryStudyPassesItsCheck) {
   int studies = 0;
   for (const auto& file : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
-    if (file.path().extension() != ".toml") continue;
+    if (file.path().extension() != ".toml" || file.path().parent_path().filename() == "motions") continue;
     ++studies;
     const auto check = pkmopt({"check", file.path().string()});
     EXPECT_EQ(check.exit_code, 0) << file.path() << check.err;
     EXPECT_THAT(check.out, ::testing::Not(HasSubstr("warning"))) << file.path();
   }
   EXPECT_GE(studies, 7);
+}
+
+TEST(CliExamples, EveryMotionIsFollowed) {
+  int motions = 0;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
+    const auto folder = file.path().parent_path();
+    if (file.path().extension() != ".toml" || folder.filename() != "motions") continue;
+    ++motions;
+    const auto result =
+        pkmopt({"trajectory", folder.parent_path().filename().string(), "--motion", file.path().string()});
+    EXPECT_EQ(result.exit_code, 0) << file.path() << result.err;
+  }
+  EXPECT_GE(motions, 15);
 }
 
 }  // namespace

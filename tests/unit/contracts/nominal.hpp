@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/mechanisms/all.hpp"
+#include "engine/motion/motions.hpp"
 
 namespace pkm::test {
 
@@ -38,6 +39,13 @@ inline Survey<double> survey(const Mechanism& mechanism, const std::vector<doubl
   Survey<double> result;
   mechanism.prepare(plan, demand)->survey(parameters, result);
   return result;
+}
+
+/// Motions called "swing" that the nominal design can follow, whichever mechanism it is.
+inline std::vector<NamedMotion> motions(const MechanismInfo& info) {
+  const Vector<double, 4> centre =
+      info.name == "4ppa-2par" ? Vector<double, 4>{{0.3, 0.85, -0.8, 0.1}} : Vector<double, 4>{{0.2, 0.17, 0.22, 0.1}};
+  return {{"swing", oscillation(centre, 0.01, 1, 1)}};
 }
 
 /// Every limit at the end of its range that is farther from inactive: nothing passes.

@@ -25,6 +25,7 @@ MechanismInfo stripped(const MechanismInfo& info) {
   bare.limits.clear();
   bare.design_margins.clear();
   bare.size_unit = bare.size_meaning = bare.characteristic_length = "";
+  bare.has_dynamics = bare.has_reactions = false;
   return bare;
 }
 
@@ -47,9 +48,11 @@ void for_all_served(const List& entries, const Do& action) {
 Options some_options(const std::vector<OptionSpec>& specs, const MechanismInfo& info, const std::string& expression) {
   Options options = default_options(specs);
   for (const OptionSpec& spec : specs) {
-    if (spec.kind == OptionKind::named_numbers) options.set(spec.name, NamedNumbers{{info.parameters[0].name, 1.0}});
+    if (spec.kind == OptionKind::named_numbers && spec.required)
+      options.set(spec.name, NamedNumbers{{info.parameters[0].name, 1.0}});
     if (spec.name == "bound") options.set(spec.name, info.parameters[0].nominal);
     if (spec.name == "expression") options.set(spec.name, expression);
+    if (spec.name == "motion") options.set(spec.name, std::string("swing"));
   }
   return options;
 }
@@ -63,7 +66,8 @@ Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
 
 double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const SurveyPlan& plan) {
   const Options options = some_options(entry, mechanism.info());
-  const EntryContext context{mechanism, plan, options};
+  const auto motions = test::motions(mechanism.info());
+  const EntryContext context{mechanism, plan, options, motions};
   Demand demand;
   entry.demand(context, demand);
   const auto parameters = nominal(mechanism.info());

@@ -1,0 +1,239 @@
+// `pkmopt trajectory`, `pkmopt simulate`, and studies whose objectives follow a motion.
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const std::string kOscillation =
+    "type = \"oscillation\"\nx = 0.2\ny = 0.17\nz = 0.22\nphi = 0\namplitude = 0.01\nperiod = 1\n";
+const std::string kLeaves =
+    "type = \"points\"\ntime = 1\npoints = [{ x = 0.2, y = 0.17, z = 0.22, phi = 0 }, { z = 0.6 }]\n";
+
+std::vector<std::string> lines_of(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(CliTrajectory, TheOscillationOfTheGoldenData) {
+  const StudyFolder folder;
+  folder.write("m.toml", kOscillation);
+  const json golden = json::parse(std::ifstream(PKM_TEST_DATA "/3crr-r-cru-and-quadrupteron.json"))["eq35"];
+  for (const json& entry : golden) {
+    const auto result =
+        pkmopt({"trajectory", entry["mechanism"], "--motion", "m.toml", "--samples", "201", "--json"}, folder.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json found = result.json();
+    EXPECT_EQ(found["samples"].size(), 201u);
+    EXPECT_TRUE(found["periodic"]);
+    EXPECT_EQ(found["summary"]["infeasible"], 0);
+    EXPECT_NEAR(found["summary"]["energy"].get<double>(), 0, 1e-12);
+    for (const int joint : {0, 1, 2, 3}) {
+      const double least = entry["tau_min"][joint], greatest = entry["tau_max"][joint];
+      EXPECT_NEAR(found["summary"]["peak_force"]["rho" + std::to_string(joint + 1)].get<double>(),
+                  std::max(-least, greatest), 1e-9);
+    }
+  }
+}
+
+TEST(CliTrajectory, TablesHaveAColumnForEverything) {
+  const StudyFolder folder;
+  folder.write("m.toml", kOscillation);
+  const auto result = pkmopt({"trajectory", "3crr-r-cru", "--motion", "m.toml", "--samples", "11", "--csv", "f.csv",
+                              "--wrench", "Fz=-10N", "Mz=0.1"},
+                             folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("peak force [N]"));
+  EXPECT_THAT(result.out, HasSubstr("energy per cycle"));
+  const auto lines = lines_of(folder.path() + "/f.csv");
+  ASSERT_EQ(lines.size(), 12u);
+  EXPECT_EQ(lines[0],
+            "time,x,y,z,phi,x_speed,y_speed,z_speed,phi_speed,x_acceleration,y_acceleration,z_acceleration,"
+            "phi_acceleration,rho1,rho2,rho3,rho4,rho1_speed,rho2_speed,rho3_speed,rho4_speed,rho1_acceleration,"
+            "rho2_acceleration,rho3_acceleration,rho4_acceleration,conditioning,feasible,reason,rho1_force,rho2_force,"
+            "rho3_force,rho4_force,rho1_power,rho2_power,rho3_power,rho4_power,power");
+  EXPECT_THAT(lines[1], StartsWith("0,0.2,0.18,0.22,0,"));
+  for (const auto& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 36);
+}
+
+TEST(CliTrajectory, InfeasibleSamplesAreMarkedAndMakeItFail) {
+  const StudyFolder folder;
+  folder.write("m.toml", kLeaves);
+  std::vector<std::string> command = {"trajectory", "3crr-r-cru", "--motion", "m.toml", "--samples", "11", "--json"};
+  const auto refused = pkmopt(command, folder.path());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("of 11 samples are infeasible, the first at t = 0."));
+  command.push_back("--allow-infeasible");
+  const auto taken = pkmopt(command, folder.path());
+  ASSERT_EQ(taken.exit_code, 0) << taken.err;
+  EXPECT_EQ(taken.out, refused.out);
+  const json last = taken.json()["samples"].back();
+  EXPECT_FALSE(last["feasible"]);
+  EXPECT_THAT(last["reason"].get<std::string>(), HasSubstr("out of reach"));
+  EXPECT_TRUE(last["forces"].is_null());
+  EXPECT_TRUE(taken.json()["summary"]["peak_force"].is_null());
+}
+
+TEST(CliTrajectory, TheLimitsAreTheStudys) {
+  const StudyFolder folder;
+  folder.write("s.toml",
+               "[mechanism]\ntype = \"3crr-r-cru\"\n[workspace]\nlimits = { s_min = 0.99 }\n[variables]\n"
+               "r = { min = 0.03, max = 0.05 }\n[[motion]]\nname = \"swing\"\n" +
+                   kOscillation + "[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\n");
+  const auto result = pkmopt({"trajectory", "s.toml", "--motion", "swing"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("limit s_min is broken"));
+}
+
+TEST(CliTrajectory, AMechanismWithoutDynamicsHasKinematicsOnly) {
+  const auto mechanisms = pkmopt({"list", "mechanisms", "4ppa-2par", "--json"});
+  const StudyFolder folder;
+  folder.write("m.toml",
+               "type = \"points\"\nacceleration = 2\nangular_acceleration = 5\npoints = [\n"
+               "{ x = 0.35, y = 0.8, z = -0.8, theta = 0 }, { x = 0.25, y = 0.85, theta = \"30 deg\" }]\n");
+  const auto result =
+      pkmopt({"trajectory", "4ppa-2par", "--motion", "m.toml", "--samples", "401", "--json"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json samples = result.json()["samples"];
+  for (std::size_t k = 40; k + 1 < samples.size(); k += 40)
+    for (const char* joint : {"q1", "q2", "q3", "q4"}) {
+      const double h = samples[k + 1]["time"].get<double>() - samples[k - 1]["time"].get<double>();
+      const auto slope = [&](const char* of) {
+        return (samples[k + 1][of][joint].get<double>() - samples[k - 1][of][joint].get<double>()) / h;
+      };
+      EXPECT_NEAR(samples[k]["speeds"][joint].get<double>(), slope("joints"), 1e-4);
+      EXPECT_NEAR(samples[k]["accelerations"][joint].get<double>(), slope("speeds"), 1e-3);
+    }
+}
+
+TEST(CliTrajectory, WrongInputIsRefusedInOneSentence) {
+  const StudyFolder folder;
+  folder.write("m.toml", kOscillation + "perod = 1\n");
+  folder.write("ok.toml", kOscillation);
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refusals = {
+      {{"3crr-r-cru", "--motion", "m.toml"},
+       "m.toml:8: perod: found an unknown key; expected one of type, x, y, z, phi, amplitude, period, cycles; did you "
+       "mean 'period'?"},
+      {{"4ppa-2par", "--motion", "ok.toml"},
+       "ok.toml:5: phi: found an unknown key; expected one of type, x, y, z, theta, amplitude, period, cycles"},
+      {{"3crr-r-cru", "--motion", "none.toml"},
+       "none.toml: found no readable file (No such file or directory); expected a motion in TOML"},
+      {{"3crr-r-cru", "--motion", "ok.toml", "--wrench", "Fw=1"},
+       "--wrench: found the unknown name 'Fw'; expected one of Fx, Fy, Fz, Mx, My, Mz; did you mean 'Fx'?"},
+      {{"3crr-r-cru", "--motion", "ok.toml", "--mode", "-,-,-"}, "--mode: found the unknown mode '-,-,-'"},
+  };
+  for (const auto& [arguments, sentence] : refusals) {
+    std::vector<std::string> command = {"trajectory"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const auto result = pkmopt(command, folder.path());
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, StartsWith("pkmopt: " + sentence));
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST(CliSimulate, EnergyIsBalanced) {
+  const StudyFolder folder;
+  const auto result = pkmopt(
+      {"simulate", "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3", "--velocity", "z=0.1,phi=1", "--forces",
+       "rho1=0.5,rho3=8", "--wrench", "Fx=0.1", "--duration", "0.1 s", "--step", "1 ms", "--csv", "s.csv", "--json"},
+      folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json run = result.json();
+  ASSERT_EQ(run["states"].size(), 101u);
+  const json &first = run["states"].front(), &last = run["states"].back();
+  const double work = last["work_of_drives"].get<double>() + last["work_of_weight"].get<double>() +
+                      last["work_of_wrench"].get<double>();
+  EXPECT_NEAR(last["kinetic_energy"].get<double>() - first["kinetic_energy"].get<double>(), work, 1e-10);
+  EXPECT_GT(std::fabs(work), 1e-3);
+  EXPECT_EQ(lines_of(folder.path() + "/s.csv").size(), 102u);
+}
+
+TEST(CliSimulate, EndsWithASentence) {
+  const auto falls =
+      pkmopt({"simulate", "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0", "--duration", "2", "--step", "1ms"});
+  EXPECT_EQ(falls.exit_code, 1);
+  EXPECT_THAT(falls.out, HasSubstr("greatest imbalance"));
+  EXPECT_THAT(falls.err, StartsWith("pkmopt: the simulation ends early: at t = 0."));
+  const auto without =
+      pkmopt({"simulate", "4ppa-2par", "--at", "x=0,y=0,z=0,theta=0", "--duration", "1", "--step", "1ms"});
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_EQ(without.err, "pkmopt: simulate needs dynamics, and mechanism 4ppa-2par has none\n");
+}
+
+const std::string kStudy =
+    "[mechanism]\ntype = \"3crr-r-cru\"\n[variables]\nl_11 = { min = 0.15, max = 0.2 }\nm = { min = 0.05, max = 0.1 }\n"
+    "[workspace]\nnodes = { x = 4, y = 4 }\n[[motion]]\nname = \"swing\"\n" +
+    kOscillation;
+
+TEST(CliMotionStudy, ObjectivesAndConstraintsAlongAMotion) {
+  const StudyFolder folder;
+  folder.write("s.toml", kStudy +
+                             "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\njoint = \"3\"\n"
+                             "[[constraint]]\ntype = \"peak-power\"\nmotion = \"swing\"\nmax = \"1 W\"\n"
+                             "wrench = { Fz = \"-2 N\" }\n"
+                             "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"slsqp\"\nevaluations = 30\n");
+  const auto check = pkmopt({"check", "s.toml"}, folder.path());
+  ASSERT_EQ(check.exit_code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("peak-force: minimise, in N"));
+  const auto run = pkmopt({"run", "s.toml", "--json", "--quiet"}, folder.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto shown = pkmopt({"evaluate", "s.toml", "--set", "m=0.05", "--json"}, folder.path());
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  const double lightest = shown.json()["objectives"]["peak-force"];
+  EXPECT_GT(lightest, 7);
+  EXPECT_LT(lightest, 8.23) << "as heavy as nominal";
+}
+
+TEST(CliMotionStudy, WrongOnesAreRefused) {
+  const StudyFolder folder;
+  const std::string stage = "[[stage]]\noptimiser = \"ga\"\n";
+  const auto complaint = [&](const std::string& text) {
+    folder.write("s.toml", text + stage);
+    const auto result = pkmopt({"check", "s.toml"}, folder.path());
+    EXPECT_EQ(result.exit_code, 2) << text;
+    return result.err;
+  };
+  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swim\"\n"),
+            "pkmopt: s.toml:17: objective[1]: the study has no motion called 'swim'; it has swing; did you mean "
+            "'swing'?\n");
+  EXPECT_EQ(
+      complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\njoint = \"5\"\n"),
+      "pkmopt: s.toml:20: objective[1].joint: found \"5\"; expected one of 1, 2, 3, 4, worst; did you mean '1'?\n");
+  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nwrench = { Fq = 1 }\n"),
+            "pkmopt: s.toml:20: objective[1].wrench.Fq: found an unknown name; expected one of Fx, Fy, Fz, Mx, My, Mz; "
+            "did you mean 'Fx'?\n");
+  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nmode = \"-,-,+,*\"\n"),
+            "pkmopt: s.toml:17: objective[1]: mechanism 3crr-r-cru has no working mode '-,-,+,*'; did you mean "
+            "'-,-,+,-'?\n");
+  EXPECT_EQ(complaint("[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.3 }\n[[objective]]\n"
+                      "type = \"peak-force\"\nmotion = \"m\"\n"),
+            "pkmopt: s.toml:6: objective[1].type: objective peak-force needs dynamics, and mechanism 4ppa-2par has "
+            "none\n");
+}
+
+TEST(CliMotionStudy, ADesignThatCannotFollowSaysWhy) {
+  const StudyFolder folder;
+  folder.write("s.toml", kStudy +
+                             "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\n[[stage]]\noptimiser = "
+                             "\"ga\"\n");
+  const auto result = pkmopt({"evaluate", "s.toml", "--set", "l_11=0.01"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out + result.err,
+              HasSubstr("peak-force: the motion swing leaves the reach of the mechanism at t = 0 s (limb 1"));
+}
+
+}  // namespace
+}  // namespace pkm::testing
