@@ -26,7 +26,7 @@ void CsvTable::next_cell() {
 
 void CsvTable::add(double value) {
   next_cell();
-  if (std::isfinite(value)) text_ += shortest(value);
+  if (std::isfinite(value)) text_ += shortest(value + 0.0);  // no "-0"
 }
 
 void CsvTable::add(const std::string& text) {

@@ -23,7 +23,7 @@ struct Refusal {
 };
 
 TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
-  const std::string commands = "one of run, resume, check, evaluate, pose, forward, show, list";
+  const std::string commands = "one of run, resume, check, evaluate, pose, forward, trajectory, simulate, show, list";
   const std::string mechanism = "4ppa-2par";
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry->info().name;

@@ -15,28 +15,28 @@ using testing::message_of;
 
 TEST(StudyErrors, Document) {
   expect_messages(
-      "",
-      {
-          {"", "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
-          {"# nothing\n",
-           "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
-          {"a = 1\na = 2\n",
-           "s.toml:2: found text that is not TOML (Error while parsing key-value pair: cannot redefine existing "
-           "integer 'a'); expected a study in TOML"},
-          {"[study]\nname = \"x\nseed = 1\n",
-           "s.toml:2: found text that is not TOML (Error while parsing string: unescaped control characters other "
-           "than TAB (U+0009) are explicitly prohibited); expected a study in TOML"},
-          {"[study]\nname = \"\xff\"\n",
-           "s.toml:2: found text that is not TOML (Encountered invalid utf-8 sequence); expected a study in TOML"},
-          {"[study\n",
-           "s.toml:1: found text that is not TOML (Error while parsing table header: expected ']', saw '\\n'); "
-           "expected a study in TOML"},
-          {"[mechansim]\ntype = \"slider\"\n",
-           "s.toml:1: mechansim: found an unknown section; expected one of study, mechanism, variables, baseline, "
-           "workspace, objective, constraint, report, reference, stage, checkpoint, final; did you mean 'mechanism'?"},
-          {"[study]\nname = \"x\"\n",
-           "s.toml:1: mechanism: found nothing; expected a table [mechanism] with type = one of slider"},
-      });
+      "", {
+              {"", "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
+              {"# nothing\n",
+               "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
+              {"a = 1\na = 2\n",
+               "s.toml:2: found text that is not TOML (Error while parsing key-value pair: cannot redefine existing "
+               "integer 'a'); expected a study in TOML"},
+              {"[study]\nname = \"x\nseed = 1\n",
+               "s.toml:2: found text that is not TOML (Error while parsing string: unescaped control characters other "
+               "than TAB (U+0009) are explicitly prohibited); expected a study in TOML"},
+              {"[study]\nname = \"\xff\"\n",
+               "s.toml:2: found text that is not TOML (Encountered invalid utf-8 sequence); expected a study in TOML"},
+              {"[study\n",
+               "s.toml:1: found text that is not TOML (Error while parsing table header: expected ']', saw '\\n'); "
+               "expected a study in TOML"},
+              {"[mechansim]\ntype = \"slider\"\n",
+               "s.toml:1: mechansim: found an unknown section; expected one of study, mechanism, variables, baseline, "
+               "workspace, motion, objective, constraint, report, reference, stage, checkpoint, final; did you mean "
+               "'mechanism'?"},
+              {"[study]\nname = \"x\"\n",
+               "s.toml:1: mechanism: found nothing; expected a table [mechanism] with type = one of slider"},
+          });
 }
 
 TEST(StudyErrors, StudyCheckpointFinal) {
