@@ -87,7 +87,7 @@ struct EntryContext {
   const Mechanism& mechanism;
   const SurveyPlan& plan;  ///< of the survey that the entry reads
   const Options& options;
-  std::span<const Region> regions = {};  ///< that the study names
+  std::span<const Region> regions = {};       ///< that the study names
   std::span<const NamedMotion> motions = {};  ///< the study's
 };
 

@@ -101,10 +101,10 @@ std::vector<Assignable> assignable_joints(const MechanismInfo& info) {
   return known;
 }
 
-std::vector<Assignable> assignable_velocities(const MechanismInfo& info) {
+std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::string& per) {
   std::vector<Assignable> known;
   for (std::size_t i = 0; i < info.coordinates.size(); ++i)
-    known.push_back({info.coordinates[i], i == 3 ? "rad/s" : "m/s"});
+    known.push_back({info.coordinates[i], (i == 3 ? "rad/" : "m/") + per});
   return known;
 }
 
@@ -127,13 +127,6 @@ std::vector<std::optional<double>> parse_assignments(const std::vector<std::stri
   const auto texts = assigned_texts(lists, place, "name=value", known);
   for (std::size_t i = 0; i < known.size(); ++i)
     if (texts[i]) values[i] = parse_value(*texts[i], place, known[i]);
-  return values;
-}
-
-std::vector<double> parse_assignments_or_0(const std::vector<std::string>& lists, const std::string& option,
-                                           const std::vector<Assignable>& known) {
-  std::vector<double> values;
-  for (const auto& value : parse_assignments(lists, option, known)) values.push_back(value.value_or(0));
   return values;
 }
 

@@ -23,9 +23,9 @@ struct Assignable {
 std::vector<Assignable> assignable_parameters(const MechanismInfo& info);
 std::vector<Assignable> assignable_coordinates(const MechanismInfo& info);
 std::vector<Assignable> assignable_joints(const MechanismInfo& info);
-/// Rates of the pose coordinates (--velocity), forces of the actuators by their joints' names, force and moment on the
-/// platform.
-std::vector<Assignable> assignable_velocities(const MechanismInfo& info);
+/// The pose coordinates as names of their rates, per "s" or "s^2"; the joints as names of their forces; force and
+/// moment on the platform.
+std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::string& per);
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);
 std::vector<Assignable> assignable_wrench();
 
@@ -33,10 +33,6 @@ std::vector<Assignable> assignable_wrench();
 /// `option` ("--set") is named in messages. Throws ConfigError for anything unknown, malformed, out of range or twice.
 std::vector<std::optional<double>> parse_assignments(const std::vector<std::string>& lists, const std::string& option,
                                                      const std::vector<Assignable>& known);
-
-/// The same; 0 where a name is not given.
-std::vector<double> parse_assignments_or_0(const std::vector<std::string>& lists, const std::string& option,
-                                           const std::vector<Assignable>& known);
 
 /// The same, when every name must be given.
 std::vector<double> parse_all_assignments(const std::vector<std::string>& lists, const std::string& option,

@@ -123,8 +123,8 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
   const ConfigValue root(document, file_name, "");
-  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint", "report",
-              "reference", "stage", "checkpoint", "final"},
+  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
+              "report", "reference", "stage", "checkpoint", "final"},
              "section");
 
   StudyDraft draft{catalogues, {}, {}};

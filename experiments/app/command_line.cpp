@@ -11,7 +11,8 @@ namespace pkm {
 namespace {
 
 bool takes_list(const std::string& option) {
-  static const std::vector<std::string> options = {"--set", "--at", "--joints", "--velocity", "--forces", "--wrench"};
+  static const std::vector<std::string> options = {"--set",          "--at",     "--joints", "--velocity",
+                                                   "--acceleration", "--forces", "--wrench"};
   return std::find(options.begin(), options.end(), option) != options.end();
 }
 

@@ -29,20 +29,6 @@ struct Found {
   std::optional<Reactions> reactions;
 };
 
-/// The coordinates as names of their rates.
-std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::string& per) {
-  std::vector<Assignable> known;
-  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
-    known.push_back({info.coordinates[i], (i == 3 ? "rad/" : "m/") + per});
-  return known;
-}
-
-const std::vector<Assignable>& wrench_names() {
-  static const std::vector<Assignable> names = {{"Fx", "N"},   {"Fy", "N"},   {"Fz", "N"},
-                                                {"Mx", "N m"}, {"My", "N m"}, {"Mz", "N m"}};
-  return names;
-}
-
 Vector<double, 4> four(const std::vector<double>& v) { return {{v[0], v[1], v[2], v[3]}}; }
 
 Found find(const Target& target, const DynamicsArguments& arguments) {
@@ -57,7 +43,7 @@ Found find(const Target& target, const DynamicsArguments& arguments) {
   f.at = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
   f.velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
   f.acceleration = parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(info, "s^2"));
-  f.wrench = parse_some_assignments(arguments.wrench, "--wrench", wrench_names());
+  f.wrench = parse_some_assignments(arguments.wrench, "--wrench", assignable_wrench());
   const MotionState<double> state{{f.at[0], f.at[1], f.at[2], f.at[3]}, four(f.velocity)};
   f.pose = mechanism.inspect(target.parameters, state.pose, f.mode, target.limits);
   if (!f.pose.assembles) return f;
@@ -191,8 +177,7 @@ void add_dynamics(CLI::App& app, Session& session) {
                   "Accelerations of the coordinates; 0 where not given", false);
   add_list_option(*command, "--wrench", arguments->wrench,
                   "Fx, Fy, Fz, Mx, My, Mz on the platform at its centre of mass; 0 where not given", false);
-  command->add_option("--mode", arguments->mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
-      ->type_name("MODE");
+  add_mode_option(*command, arguments->mode);
   command->add_flag("--reactions", arguments->reactions, "Also the forces and couples in every joint");
   command->footer(
       "The forces tau of the actuators give the motion asked for: tau = M_q qddot + coriolis + gravity - wrench.\n"

@@ -43,10 +43,10 @@ SimulationSetup setup_of(const Target& target, const std::string& mode, const Si
     target.mechanism->dynamics(target.parameters, mode, {&state, 1}, {&d, 1});
     return d;
   };
-  setup.forces = [tau = four(parse_assignments_or_0(arguments.forces, "--forces", assignable_forces(info)))](double) {
+  setup.forces = [tau = four(parse_some_assignments(arguments.forces, "--forces", assignable_forces(info)))](double) {
     return tau;
   };
-  const auto w = parse_assignments_or_0(arguments.wrench, "--wrench", assignable_wrench());
+  const auto w = parse_some_assignments(arguments.wrench, "--wrench", assignable_wrench());
   setup.wrench = {{w[0], w[1], w[2], w[3], w[4], w[5]}};
   setup.refuse = [&target, mode](const Pose<double>& pose) {
     const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
@@ -135,7 +135,7 @@ int simulate_target(const Catalogues& catalogues, const SimulateArguments& argum
   if (!info.has_dynamics) throw ConfigError({}, "simulate needs dynamics, and mechanism " + info.name + " has none");
   const std::string mode = known_mode(info, arguments.mode);
   const auto pose = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
-  const auto velocity = parse_assignments_or_0(arguments.velocity, "--velocity", assignable_velocities(info));
+  const auto velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
   const Simulation run = simulate(setup_of(target, mode, arguments), four(pose), four(velocity));
   if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
   if (!arguments.csv.empty()) table_of(info, run).write(arguments.csv);

@@ -161,7 +161,7 @@ int trajectory(const Catalogues& catalogues, const TrajectoryArguments& argument
   const Target target = find_target(catalogues, arguments);
   const MechanismInfo& info = target.info();
   const std::string mode = known_mode(info, arguments.mode);
-  const auto w = parse_assignments_or_0(arguments.wrench, "--wrench", assignable_wrench());
+  const auto w = parse_some_assignments(arguments.wrench, "--wrench", assignable_wrench());
   if (!arguments.wrench.empty() && !info.has_dynamics)
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
   const auto motion = find_motion(target, arguments.motion);

@@ -60,7 +60,7 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
   const std::string product = info.parameters[0].name + " * " + info.parameters[1].name;
   for (const ObjectiveEntry& entry : all_objectives()) {
     // Those that look at the design alone have nothing of the survey, and designs may fail them: their own tests.
-    if (entry.design_level || !entry.refusal(info).empty()) continue;
+    if (!entry.reads_survey || !entry.refusal(info).empty()) continue;
     for (const Options& options : every_choice(entry.options, info, "volume * " + product)) {
       const EntryContext context{*mechanism, plan, options};
       Demand demand = parts.demand;

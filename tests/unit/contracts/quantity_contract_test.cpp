@@ -67,7 +67,7 @@ Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
 double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const SurveyPlan& plan) {
   const Options options = some_options(entry, mechanism.info());
   const auto motions = test::motions(mechanism.info());
-  const EntryContext context{mechanism, plan, options, motions};
+  const EntryContext context{mechanism, plan, options, {}, motions};
   Demand demand;
   entry.demand(context, demand);
   const auto parameters = nominal(mechanism.info());

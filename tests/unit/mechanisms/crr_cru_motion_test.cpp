@@ -138,7 +138,7 @@ DesignProblem problem_of(const std::string& name, const std::string& objective, 
     parts.varies.push_back(i);
   }
   parts.space = DesignSpace(variables);
-  const EntryContext context{*parts.mechanism, parts.plan, options, {&named, 1}};
+  const EntryContext context{*parts.mechanism, parts.plan, options, {}, {&named, 1}};
   parts.objectives.push_back({.name = objective, .unit = entry.unit(context), .quantity = entry.make(context)});
   return DesignProblem(parts);
 }
