@@ -23,7 +23,9 @@ struct Refusal {
 };
 
 TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
-  const std::string commands = "one of run, resume, check, evaluate, pose, forward, trajectory, simulate, show, list";
+  const std::string commands =
+      "one of run, resume, check, evaluate, pose, forward, dynamics, coupling, trajectory, simulate, "
+      "show, list";
   const std::string mechanism = "4ppa-2par";
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry->info().name;
@@ -92,8 +94,8 @@ TEST(CliErrors, ResultsThatCannotBeWrittenAreAFailure) {
 TEST(CliHelp, EveryCommandHasHelpWithAnExample) {
   const auto all = pkmopt({"--help"});
   EXPECT_EQ(all.exit_code, 0);
-  for (const std::string command :
-       {"run", "resume", "check", "evaluate", "pose", "forward", "trajectory", "simulate", "show", "list"}) {
+  for (const std::string command : {"run", "resume", "check", "evaluate", "pose", "forward", "dynamics", "coupling",
+                                    "trajectory", "simulate", "show", "list"}) {
     EXPECT_THAT(all.out, HasSubstr("\n  " + command + " "));
     const auto help = pkmopt({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);

@@ -32,8 +32,8 @@ TEST(StudyErrors, Document) {
                "expected a study in TOML"},
               {"[mechansim]\ntype = \"slider\"\n",
                "s.toml:1: mechansim: found an unknown section; expected one of study, mechanism, variables, baseline, "
-               "workspace, motion, objective, constraint, report, reference, stage, checkpoint, final; did you mean "
-               "'mechanism'?"},
+               "workspace, region, motion, objective, constraint, report, reference, stage, checkpoint, final; did you "
+               "mean 'mechanism'?"},
               {"[study]\nname = \"x\"\n",
                "s.toml:1: mechanism: found nothing; expected a table [mechanism] with type = one of slider"},
           });
@@ -72,7 +72,7 @@ TEST(StudyErrors, MechanismAndParameters) {
               {"[[mechanism]]\ntype = \"slider\"", "s.toml:1: mechanism: found an array; expected a table [mechanism]"},
               {"[mechanism]\ntype = 4", "s.toml:2: mechanism.type: found 4; expected one of slider"},
               {"[mechanism]\ntype = \"slider\"\nparams = {}",
-               "s.toml:3: mechanism.params: found an unknown key; expected one of type, parameters"},
+               "s.toml:3: mechanism.params: found an unknown key; expected one of type, masses, parameters"},
           });
   expect_messages(
       kMachine,
