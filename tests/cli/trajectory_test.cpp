@@ -97,8 +97,7 @@ TEST(CliTrajectory, TheLimitsAreTheStudys) {
   EXPECT_THAT(result.err, HasSubstr("limit s_min is broken"));
 }
 
-TEST(CliTrajectory, AMechanismWithoutDynamicsHasKinematicsOnly) {
-  const auto mechanisms = pkmopt({"list", "mechanisms", "4ppa-2par", "--json"});
+TEST(CliTrajectory, AccelerationsOfTheJointsOfFourPpa) {
   const StudyFolder folder;
   folder.write("m.toml",
                "type = \"points\"\nacceleration = 2\nangular_acceleration = 5\npoints = [\n"
@@ -167,10 +166,6 @@ TEST(CliSimulate, EndsWithASentence) {
   EXPECT_EQ(falls.exit_code, 1);
   EXPECT_THAT(falls.out, HasSubstr("greatest imbalance"));
   EXPECT_THAT(falls.err, StartsWith("pkmopt: the simulation ends early: at t = 0."));
-  const auto without =
-      pkmopt({"simulate", "4ppa-2par", "--at", "x=0,y=0,z=0,theta=0", "--duration", "1", "--step", "1ms"});
-  EXPECT_EQ(without.exit_code, 2);
-  EXPECT_EQ(without.err, "pkmopt: simulate needs dynamics, and mechanism 4ppa-2par has none\n");
 }
 
 const std::string kStudy =
@@ -218,10 +213,6 @@ TEST(CliMotionStudy, WrongOnesAreRefused) {
   EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nmode = \"-,-,+,*\"\n"),
             "pkmopt: s.toml:17: objective[1]: mechanism 3crr-r-cru has no working mode '-,-,+,*'; did you mean "
             "'-,-,+,-'?\n");
-  EXPECT_EQ(complaint("[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.3 }\n[[objective]]\n"
-                      "type = \"peak-force\"\nmotion = \"m\"\n"),
-            "pkmopt: s.toml:6: objective[1].type: objective peak-force needs dynamics, and mechanism 4ppa-2par has "
-            "none\n");
 }
 
 TEST(CliMotionStudy, ADesignThatCannotFollowSaysWhy) {
