@@ -189,7 +189,7 @@ Reactions reactions(const Geometry<double>& g, const Masses<double>& b, const Wo
   const Limbs<double> limbs = inverse(g, state.pose, mode);
   if (limbs.assembles) return pkm::reactions(newton_euler(g, b, limbs, state, acceleration, wrench));
   Reactions none;
-  none.reason = inspect(g, {}, state.pose, mode).reason;
+  none.reason = inspect(g, {}, {}, state.pose, mode).reason;
   return none;
 }
 
