@@ -118,7 +118,7 @@ ConstraintEntry task_workspace() {
                  .meaning = "poses along each edge of the box that are tested, its corners among them"},
                 {.name = "sharpness",
                  .kind = OptionKind::number,
-                 .initial = 1e4,
+                 .initial = 1e5,
                  .lower = 1,
                  .upper = 1e9,
                  .meaning = "of the smooth lower bound that gradient solvers are given: larger is nearer"}};

@@ -176,7 +176,7 @@ class VoxelSurveyor final : public Surveyor {
         demand_(demand) {}
 
   std::string no_derivatives() const override {
-    return "the study surveys voxels, whose sums have no derivatives; take workspace.method = \"columns\"";
+    return voxels_have_no_derivatives();
   }
 
   void survey(std::span<const double> parameters, Survey<double>& survey) const override {

@@ -20,7 +20,8 @@ S margin_of(const NamedQuantity& named, const S& value) {
 std::vector<bool> used_surveys(const ProblemParts& parts) {
   std::vector<bool> used(1 + parts.regions.size());
   for (const auto* list : {&parts.objectives, &parts.survey_margins, &parts.reports})
-    for (const auto& q : *list) used[q.survey] = true;
+    for (const auto& q : *list)
+      if (q.reads_survey) used[q.survey] = true;
   return used;
 }
 
@@ -35,8 +36,10 @@ std::unique_ptr<const Surveyor> prepare(const ProblemParts& parts, std::size_t s
 std::string no_derivatives(const ProblemParts& parts) {
   const std::vector<bool> used = used_surveys(parts);
   for (std::size_t k = 0; k < used.size(); ++k) {
-    const std::string reason = used[k] ? prepare(parts, k)->no_derivatives() : "";
-    if (!reason.empty()) return reason;
+    if (!used[k]) continue;
+    const SurveyPlan& plan = k == 0 ? parts.plan : parts.regions[k - 1].plan;
+    if (plan.method == Method::voxels) return voxels_have_no_derivatives();
+    if (const std::string reason = prepare(parts, k)->no_derivatives(); !reason.empty()) return reason;
   }
   for (const auto* list : {&parts.objectives, &parts.design_margins, &parts.survey_margins})
     for (const auto& q : *list)

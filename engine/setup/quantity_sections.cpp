@@ -73,7 +73,8 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
     entry.demand(context, own);
     add_demand(table, own, region ? region->demand : draft.parts.demand);
     const std::string meaning = entry.detail ? entry.detail(context) : entry.meaning;
-    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), survey, {}, {}};
+    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), survey, entry.reads_survey, {},
+            {}};
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/problem/expression.hpp"
 
 namespace pkm {
@@ -100,7 +101,34 @@ Json serving(const List& entries, const MechanismInfo& info) {
   return names;
 }
 
-Json mechanism_json(const MechanismInfo& info, const Catalogues& catalogues) {
+Json parameters_json(const std::vector<Parameter>& parameters) {
+  Json list = Json::array();
+  for (const auto& p : parameters)
+    list.push_back({{"name", p.name},
+                    {"unit", p.unit},
+                    {"default", p.nominal},
+                    {"min", p.lower},
+                    {"max", p.upper},
+                    {"meaning", p.meaning}});
+  return list;
+}
+
+/// What the mechanism has with other mass models than the one in force, and only with them.
+Json other_parameters_json(const Mechanism& mechanism) {
+  Json models = Json::object();
+  for (const std::string& model : mechanism.info().mass_models) {
+    if (model == mechanism.info().mass_model) continue;
+    std::vector<Parameter> own;
+    const auto other = mechanism.with_masses(model);
+    for (const Parameter& p : other->info().parameters)
+      if (!find_named(mechanism.info().parameters, p.name)) own.push_back(p);
+    models["masses = " + model] = parameters_json(own);
+  }
+  return models;
+}
+
+Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
+  const MechanismInfo& info = mechanism.info();
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
   Json json = {{"name", info.name}, {"meaning", info.title}, {"source", info.source}};
   json["mass_models"] = info.mass_models;
@@ -127,14 +155,8 @@ Json mechanism_json(const MechanismInfo& info, const Catalogues& catalogues) {
   json["characteristic_length"] = info.characteristic_length.empty() ? Json() : Json(info.characteristic_length);
   json["objectives"] = serving(catalogues.objectives, info);
   json["constraints"] = serving(catalogues.constraints, info);
-  json["parameters"] = Json::array();
-  for (const auto& p : info.parameters)
-    json["parameters"].push_back({{"name", p.name},
-                                  {"unit", p.unit},
-                                  {"default", p.nominal},
-                                  {"min", p.lower},
-                                  {"max", p.upper},
-                                  {"meaning", p.meaning}});
+  json["parameters"] = parameters_json(info.parameters);
+  if (Json others = other_parameters_json(mechanism); !others.empty()) json["parameters_besides"] = std::move(others);
   json["limits"] = limits_json(info, "");
   json["design_tests"] = Json::array();
   for (const auto& test : info.design_margins)
@@ -207,7 +229,7 @@ Json catalogues_json(const Catalogues& catalogues) {
                {"objectives", Json::array()},
                {"constraints", Json::array()},
                {"optimisers", Json::array()}};
-  for (const auto& m : catalogues.mechanisms) json["mechanisms"].push_back(mechanism_json(m->info(), catalogues));
+  for (const auto& m : catalogues.mechanisms) json["mechanisms"].push_back(mechanism_json(*m, catalogues));
   for (const auto& entry : catalogues.objectives) json["objectives"].push_back(objective_json(entry, catalogues));
   for (const auto& entry : catalogues.constraints) json["constraints"].push_back(constraint_json(entry, catalogues));
   for (const auto& entry : catalogues.optimisers) json["optimisers"].push_back(optimiser_json(entry));

@@ -81,6 +81,7 @@ Json reactions_json(const Reactions& reactions) {
     joints[joint.name] = {{"on", joint.on}, {"force", joint.force}, {"couple", couple}};
   }
   Json json = {{"joints", joints}};
+  json["reason"] = reactions.reason.empty() ? Json() : Json(reactions.reason);
   json["equations"] = reactions.equations;
   json["unknowns"] = reactions.unknowns;
   json["rank"] = reactions.rank;
@@ -138,6 +139,10 @@ void print_dynamics(const MechanismInfo& info, const Found& f) {
   print_matrix(std::cout, "inertia M_q as the joints feel it (kg)", found.at_joints.M_q);
   print_matrix(std::cout, "J, where qdot = J Xdot", f.dynamics->J);
   if (!f.reactions) return;
+  if (!f.reactions->reason.empty()) {
+    std::cout << "\nno forces in the joints: " << f.reactions->reason << '\n';
+    return;
+  }
   std::vector<Row> rows = {{"", "on", "Fx", "Fy", "Fz", "Mx", "My", "Mz"}};
   for (const JointReaction& joint : f.reactions->joints) {
     Row row = {joint.name, joint.on};

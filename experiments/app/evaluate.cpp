@@ -24,8 +24,15 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
     const Options options = default_options(entry.options);
     const EntryContext context{*target.mechanism, parts.plan, options};
     entry.demand(context, parts.demand);
-    parts.objectives.push_back(
-        {entry.name, entry.unit(context), entry.meaning, entry.direction, entry.make(context), 0, {}, {}});
+    parts.objectives.push_back({entry.name,
+                                entry.unit(context),
+                                entry.meaning,
+                                entry.direction,
+                                entry.make(context),
+                                0,
+                                entry.reads_survey,
+                                {},
+                                {}});
   }
   try {
     return std::make_shared<const DesignProblem>(std::move(parts));

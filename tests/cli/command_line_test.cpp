@@ -38,7 +38,8 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
       {{"pose"}, "pose: MECHANISM|STUDY.toml is required (see 'pkmopt pose --help')"},
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
-       "evaluate: found the unknown option '--jsn'; expected one of --help, --set, --json; did you mean '--json'?"},
+       "evaluate: found the unknown option '--jsn'; expected one of --help, --set, --masses, --json; did you mean "
+       "'--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},

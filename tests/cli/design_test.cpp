@@ -68,7 +68,8 @@ TEST(CliEvaluate, NamesKeysAndUnits) {
   EXPECT_EQ(found["mechanism"], "4ppa-2par");
   EXPECT_EQ(found["facts"]["shape_type_at_theta_0"], 4);
   EXPECT_EQ(keys(found["objectives"]),
-            (std::vector<std::string>{"conditioning", "workspace-ratio", "workspace-volume"}));
+            (std::vector<std::string>{"conditioning", "dci", "dci-uniformity", "inertia-condition", "workspace-ratio",
+                                      "workspace-volume"}));
   const auto text = pkmopt({"evaluate", "4ppa-2par"});
   EXPECT_EQ(text.err, "");
   EXPECT_THAT(text.out, HasSubstr("  volume          0.550157374606 m^2 rad\n"));

@@ -23,6 +23,7 @@ inline Options some_options(const std::vector<OptionSpec>& specs, const Mechanis
     if (spec.kind == OptionKind::named_numbers)
       options.set(spec.name, NamedNumbers{{info.parameters[0].name, 0.7}, {info.parameters[1].name, -1.3}});
     if (spec.name == "expression") options.set(spec.name, expression);
+    if (spec.name == "region") options.set(spec.name, std::string("task"));
   }
   return options;
 }
@@ -43,8 +44,11 @@ inline std::vector<Options> every_choice(const std::vector<OptionSpec>& specs, c
   return all;
 }
 
+/// Which objectives: those of the volume, with conditioning, and with inertia too.
+enum class Of { volume, kinematics, inertia };
+
 inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanism, const SurveyPlan& plan,
-                                bool volume_only = false) {
+                                Of of = Of::kinematics) {
   const MechanismInfo& info = mechanism->info();
   ProblemParts parts;
   parts.mechanism = mechanism;
@@ -65,19 +69,24 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
       const EntryContext context{*mechanism, plan, options};
       Demand demand = parts.demand;
       entry.demand(context, demand);
-      if (volume_only && demand.conditioning) continue;
+      if (of == Of::volume && demand.conditioning) continue;
+      if (of != Of::inertia && (demand.dci || demand.inertia_condition)) continue;
+      auto quantity = entry.make(context);
+      if (!quantity->no_derivatives().empty()) continue;
       parts.demand = demand;
       parts.objectives.push_back(
-          {entry.name, entry.unit(context), entry.meaning, entry.direction, entry.make(context)});
+          {entry.name, entry.unit(context), entry.meaning, entry.direction, std::move(quantity)});
     }
   }
   for (const ConstraintEntry& entry : all_constraints()) {
     if (entry.pose_level || !entry.refusal(info).empty()) continue;
     const Options options = some_options(entry.options(info), info, "1 - " + product);
-    const EntryContext context{*mechanism, plan, options};
+    const std::vector<Region> regions = {task(info)};
+    const EntryContext context{*mechanism, plan, options, regions};
     NamedQuantity margin;
     margin.name = entry.name;
     margin.quantity = entry.make(context);
+    if (!margin.quantity->no_derivatives().empty()) continue;
     parts.design_margins.push_back(margin);
   }
   return DesignProblem(parts);

@@ -9,6 +9,8 @@
 
 #include "engine/mechanisms/all.hpp"
 #include "engine/motion/motions.hpp"
+#include "engine/problem/quantity.hpp"
+#include "engine/workspace/voxel_grid.hpp"
 
 namespace pkm::test {
 
@@ -46,6 +48,16 @@ inline std::vector<NamedMotion> motions(const MechanismInfo& info) {
   const Vector<double, 4> centre =
       info.name == "4ppa-2par" ? Vector<double, 4>{{0.3, 0.85, -0.8, 0.1}} : Vector<double, 4>{{0.2, 0.17, 0.22, 0.1}};
   return {{"swing", oscillation(centre, 0.01, 1, 1)}};
+}
+
+/// A small box of poses, feasible for the nominal design, whichever mechanism it is.
+inline Region task(const MechanismInfo& info) {
+  const bool rails = info.name == "4ppa-2par";
+  Region region{"task", plan(info, Method::voxels, 4), {}};
+  region.plan.held = {HeldCoordinate::Kind::value, rails ? 0.85 : 0.1, {}};
+  region.plan.box =
+      rails ? Box{{{0.28, 0.32}, {-0.82, -0.78}, {0.08, 0.12}}} : Box{{{0.19, 0.21}, {0.16, 0.18}, {0.21, 0.23}}};
+  return region;
 }
 
 /// Every limit at the end of its range that is farther from inactive: nothing passes.

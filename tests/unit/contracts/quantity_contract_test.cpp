@@ -52,6 +52,7 @@ Options some_options(const std::vector<OptionSpec>& specs, const MechanismInfo& 
       options.set(spec.name, NamedNumbers{{info.parameters[0].name, 1.0}});
     if (spec.name == "bound") options.set(spec.name, info.parameters[0].nominal);
     if (spec.name == "expression") options.set(spec.name, expression);
+    if (spec.name == "region") options.set(spec.name, std::string("task"));
     if (spec.name == "motion") options.set(spec.name, std::string("swing"));
   }
   return options;
@@ -133,7 +134,8 @@ TEST(ConstraintContract, RefusalNamesBothSides) {
 double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const std::vector<double>& parameters) {
   const SurveyPlan p = plan(mechanism.info(), Method::columns);
   const Options options = some_options(entry, mechanism.info());
-  return entry.make({mechanism, p, options})->value({mechanism, parameters, nullptr});
+  const std::vector<Region> regions = {test::task(mechanism.info())};
+  return entry.make({mechanism, p, options, regions})->value({mechanism, parameters, nullptr});
 }
 
 TEST(ConstraintContract, IsDescribed) {

@@ -7,6 +7,7 @@
 // its number of nodes there. Such cases are counted and must be few.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -47,10 +48,12 @@ std::vector<std::optional<double>> differences(const F& f, const std::vector<dou
 /// Compares designs one after the other and keeps count.
 class SlopeComparison {
  public:
+  /// @param exact  error allowed, relative to the largest term of the sum over the parameters
+  explicit SlopeComparison(double exact = 1e-7) : exact_(exact) {}
+
   /// All quantities of a problem at one design, by all parameters, along one direction of relative changes: a wrong
   /// slope by any parameter shows in the sum.
   void compare(const DesignProblem& problem, const std::vector<double>& design, const std::vector<double>& direction) {
-    constexpr double kExact = 1e-7;  // of the largest term of the sum
     const std::size_t n = design.size(), width = 1 + n;
     const std::vector<double> slopes = problem.slopes(design, problem.parts().varies);
     const std::size_t quantities = slopes.size() / width;
@@ -61,9 +64,10 @@ class SlopeComparison {
         exact[q] += term;
         scale[q] = std::fmax(scale[q], std::fabs(term));
       }
+    constexpr double kNothing = 1e-9;  // the deviation of a constant is rounding
     constexpr double kNoSlope = 1e-3;  // of the value: where a quantity does not move, its differences are rounding
     for (std::size_t q = 0; q < quantities; ++q)
-      scale[q] = std::fmax(scale[q], kNoSlope * std::fabs(slopes[q * width]));
+      scale[q] = std::max({scale[q], kNoSlope * std::fabs(slopes[q * width]), kNothing});
     const auto values = [&](double t) {
       std::vector<double> moved = design;
       for (std::size_t i = 0; i < n; ++i) moved[i] += t * design[i] * direction[i];
@@ -76,7 +80,7 @@ class SlopeComparison {
       if (!found[q])
         ++count.excluded;
       else
-        EXPECT_NEAR(exact[q], *found[q], kExact * scale[q]) << name(problem, q);
+        EXPECT_NEAR(exact[q], *found[q], exact_ * scale[q]) << name(problem, q);
     }
   }
 
@@ -98,6 +102,7 @@ class SlopeComparison {
     return q < objectives ? problem.objectives()[q].name : problem.margins()[q - objectives].name;
   }
 
+  double exact_;
   std::map<std::string, Count> counts_;
 };
 

@@ -21,7 +21,7 @@ TEST(FourPpaSlopes, GoldenGradientsThroughTheProblem) {
   const char* const keys[6] = {"a", "b", "lu", "ld", "d", "L0"};
   for (const auto& entry : golden()["workspace"]) {
     SCOPED_TRACE(entry["design"].dump());
-    const DesignProblem problem = test::everything(machine(), columns(limits_of(entry)), true);
+    const DesignProblem problem = test::everything(machine(), columns(limits_of(entry)), test::Of::volume);
     ASSERT_EQ(problem.objectives()[0].name, "workspace-volume");
     ASSERT_EQ(problem.objectives()[1].name, "workspace-ratio");
     const auto p = design_of(entry);
@@ -99,7 +99,8 @@ void compare(unsigned designs, HeldCoordinate::Kind kind, std::array<int, 2> nod
     SurveyPlan plan = columns(drawn.limits, {kind, drawn.plane * drawn.design[kL0]}, tolerance);
     plan.nodes = nodes;
     if (!(survey(drawn.design, plan).volume > 0)) continue;
-    comparison.compare(test::everything(machine(), plan, volume_only), drawn.design, drawn.direction);
+    comparison.compare(test::everything(machine(), plan, volume_only ? test::Of::volume : test::Of::kinematics),
+                       drawn.design, drawn.direction);
     ++compared;
   }
   comparison.expect(static_cast<int>(designs), excluded);

@@ -25,7 +25,8 @@ std::string message_of(const std::string& entry) {
 const std::string kKnown =
     "known are a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s, "
     "lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p, alpha_min, beta_min, beta_max, h_min, "
-    "sin_par_min, cos_theta_min, clearance_min, size, volume, conditioning_mean, conditioning_min, pi";
+    "sin_par_min, cos_theta_min, clearance_min, size, volume, conditioning_mean, conditioning_min, dci_mean, "
+    "dci_worst, pi";
 const std::string kObjective = "[[objective]]\ntype = \"expression\"\n";  // lines 7, 8
 
 TEST(ExpressionErrors, Objectives) {
@@ -33,7 +34,8 @@ TEST(ExpressionErrors, Objectives) {
       {"", "s.toml:7: objective[1].expression: found nothing; expected text"},
       {"expression = 3", "s.toml:9: objective[1].expression: found 3; expected text"},
       {"expresion = \"a\"",
-       "s.toml:9: objective[1].expresion: found an unknown key; expected one of type, name, direction, expression, "
+       "s.toml:9: objective[1].expresion: found an unknown key; expected one of type, name, direction, region, "
+       "expression, "
        "unit, characteristic_length, sharpness; did you mean 'expression'?"},
       {"expression = \"\"", "s.toml:7: objective[1]: the formula \"\" is empty"},
       {"expression = \"volum / b\"",
@@ -65,7 +67,7 @@ TEST(ExpressionErrors, Objectives) {
        "s.toml:11: report[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
       {"expression = \"a\"\nmin = 1",
        "s.toml:10: objective[1].min: found an unknown key; expected one of type, name, "
-       "direction, expression, unit, characteristic_length, sharpness"},
+       "direction, region, expression, unit, characteristic_length, sharpness"},
       {"expression = \"conditioning_min\"\nsharpness = 100", "accepted"},
       {"expression = \"a\"\nunit = \"N m/rad\"", "accepted"},
   };

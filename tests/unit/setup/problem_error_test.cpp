@@ -110,7 +110,8 @@ TEST(ProblemErrors, Objectives) {
           {"[[objective]]\ntype = \"volume\"\nname = \"a/b\"",
            "s.toml:7: objective[1].name: found \"a/b\"; expected a name of letters, digits, '-', '_' and '.'"},
           {"[[objective]]\ntype = \"shape\"\ncont = 3",
-           "s.toml:7: objective[1].cont: found an unknown key; expected one of type, name, direction, length, count, "
+           "s.toml:7: objective[1].cont: found an unknown key; expected one of type, name, direction, region, length, "
+           "count, "
            "exact, statistic, weights, note; did you mean 'count'?"},
           {"[[objective]]\ntype = \"shape\"\ncount = 3.0",
            "s.toml:7: objective[1].count: found 3.0; expected an integer in [1, 100]"},
@@ -130,7 +131,8 @@ TEST(ProblemErrors, Objectives) {
           {"[[objective]]\ntype = \"shape\"\nlength = 1\n[[report]]\ntype = \"shape\"\nlength = 2",
            "s.toml:8: report[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
           {"[[report]]\ntype = \"volume\"\ndirection = \"minimise\"",
-           "s.toml:7: report[1].direction: found an unknown key; expected one of type, name"},
+           "s.toml:7: report[1].direction: found an unknown key; expected one of type, name, region; did you mean "
+           "'region'?"},
       });
 }
 
