@@ -26,8 +26,7 @@ SurveyPlan plan_of(Method method) {
   plan.method = method;
   plan.cells = {40, 40, 40};
   plan.held = {HeldCoordinate::Kind::value, 0.3, 3};
-  plan.limits = {std::vector<std::optional<double>>(mechanism("quadrupteron").info().limits.size()),
-                 std::vector<bool>(mechanism("quadrupteron").info().limits.size())};
+  plan.limits = no_limits(mechanism("quadrupteron").info());
   plan.limits.given[0] = 0.2;
   plan.limits.given[1] = 0.1;
   return plan;

@@ -9,12 +9,14 @@ namespace pkm::benchmarks {
 namespace {
 
 /// @param held  0 to 3; off the middle, where slides' ranges would coincide
-SurveyPlan plan_of(Method method, int held) {
+SurveyPlan plan_of(const MechanismInfo& info, Method method, int held) {
   SurveyPlan plan;
   plan.method = method;
   plan.cells = {32, 34, 60};
   plan.held = {HeldCoordinate::Kind::value, held == 3 ? 0.3 : 0.21, held};
-  plan.limits = {{0.2, 0.1}, {false, false}};
+  plan.limits = no_limits(info);
+  plan.limits.given[0] = 0.2;  // s_min
+  plan.limits.given[1] = 0.1;  // c_min
   return plan;
 }
 
@@ -24,7 +26,7 @@ void survey(benchmark::State& state, const char* name, Method method) {
       **std::ranges::find_if(all_mechanisms(), [&](const auto& m) { return m->info().name == name; });
   std::vector<S> parameters;
   for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
-  const auto surveyor = mechanism.prepare(plan_of(method, static_cast<int>(state.range(0))), {});
+  const auto surveyor = mechanism.prepare(plan_of(mechanism.info(), method, static_cast<int>(state.range(0))), {});
   Survey<S> result;
   for (auto _ : state) {
     surveyor->survey(std::span<const S>(parameters), result);

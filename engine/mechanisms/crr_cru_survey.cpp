@@ -175,9 +175,7 @@ class VoxelSurveyor final : public Surveyor {
         limits_(limits(plan.limits)),
         demand_(demand) {}
 
-  std::string no_derivatives() const override {
-    return voxels_have_no_derivatives();
-  }
+  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
 
   void survey(std::span<const double> parameters, Survey<double>& survey) const override {
     survey.clear();
