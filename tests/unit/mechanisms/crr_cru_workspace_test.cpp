@@ -192,6 +192,38 @@ TEST(CrrCruColumns, VolumeEqualsAFineMidpointSum) {
   }
 }
 
+// Three ways to one volume: columns; voxels, whose error falls with their number; and a quasi-random count (Kronecker's
+// sequence with powers of the plastic number's relative in three dimensions), which shares nothing with either.
+TEST(CrrCruColumns, VolumesEqualVoxelsAtFourResolutionsAndAQuasiRandomCount) {
+  for (const std::string& name : both())
+    for (const double phi : {0.0, 0.4}) {
+      const Case c{name, nominal(), limit_spec(0.2, 0.1), 3, phi};
+      SCOPED_TRACE(text(c));
+      const double exact = survey(name, c.p, columns(c)).volume;
+      for (const std::int64_t cells : {20, 40, 80, 160}) {
+        SurveyPlan grid = voxels(c, {cells, cells, cells});
+        grid.box = {{{-0.05, 0.45}, {-0.05, 0.45}, {-0.05, 0.45}}};
+        const double error = survey(name, c.p, grid).volume / exact - 1;
+        EXPECT_LT(std::fabs(error), 1.0 / static_cast<double>(cells)) << cells;
+      }
+      const Design<double> d = design_of_case(c);
+      const Frame<double> f = frame(d, phi);
+      constexpr double kPlastic = 1.2207440846057596;  // x^4 = x + 1
+      constexpr int kPoints = 6000000;
+      Vector3<double> step{}, at{};
+      for (std::size_t k = 0; k < 3; ++k) step[k] = std::pow(kPlastic, -1.0 - static_cast<double>(k));
+      int inside = 0;
+      for (int i = 1; i <= kPoints; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double share = 0.5 + i * step[k];
+          at[k] = -0.05 + 0.5 * (share - std::floor(share));
+        }
+        inside += feasible(d, f, at);
+      }
+      EXPECT_NEAR(inside * 0.125 / kPoints / exact, 1, 1e-4);
+    }
+}
+
 // The measure of all (x, y, z, phi) does not depend on which coordinate is held: four ways to one number.
 TEST(CrrCruColumns, AllSweepsAddUpToTheSameMeasure) {
   constexpr int kSteps = 1200;
