@@ -156,6 +156,10 @@ std::string describe(const Study& study) {
     out << "\nregion " << region.name << '\n';
     out << aligned(survey_rows(info, region.plan));
   }
+  std::vector<Row> motions;
+  for (const NamedMotion& named : study.motions)
+    motions.push_back({named.name, "takes " + with_unit(named.motion->duration(), "s")});
+  if (!motions.empty()) out << "\nmotions\n" << aligned(motions);
   out << "\nlimits of a pose" << (info.limits.empty() ? ": none" : "") << '\n';
   out << aligned(limit_rows(study));
   write_entries(out, "objectives", study.objectives);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/cli/crr_cru_golden.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/study_folder.hpp"
 
@@ -14,36 +15,24 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-const json& golden() {
-  static const json data = json::parse(std::ifstream(PKM_TEST_DATA "/3crr-r-cru-and-quadrupteron.json"));
-  return data;
-}
-
-std::string list(const std::vector<std::string>& names, const json& values) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ",") + names[i] + "=" + values[i].dump();
-  return text;
-}
-
 /// "l_11=...,..." of a golden case.
 std::string design_list(const json& entry) {
-  const json& p = entry.contains("params") ? entry["params"] : golden()["nominal"];
-  std::string text =
-      list({"r", "h", "l", "L", "rho_min", "rho_max"}, {p["r"], p["h"], p["l"], p["L"], p["rho_min"], p["rho_max"]}) +
-      "," + list({"beta_1", "beta_2", "beta_3"}, p["beta"]);
-  return text + "," + list({"l_11", "l_21", "l_31", "l_41"}, p["l1"]) + "," +
-         list({"l_12", "l_22", "l_32", "l_42"}, p["l2"]);
+  const json& p = entry.contains("params") ? entry["params"] : crr_cru_golden()["nominal"];
+  std::string text = assignments({"r", "h", "l", "L", "rho_min", "rho_max"},
+                                 {p["r"], p["h"], p["l"], p["L"], p["rho_min"], p["rho_max"]}) +
+                     "," + assignments({"beta_1", "beta_2", "beta_3"}, p["beta"]);
+  return text + "," + assignments({"l_11", "l_21", "l_31", "l_41"}, p["l1"]) + "," +
+         assignments({"l_12", "l_22", "l_32", "l_42"}, p["l2"]);
 }
 
 TEST(CliCrrCru, PoseAndForwardOfGoldenCases) {
-  for (std::size_t i = 0; i < golden()["cases"].size(); i += 3) {
-    const json& entry = golden()["cases"][i];
+  for (std::size_t i = 0; i < crr_cru_golden()["cases"].size(); i += 3) {
+    const json& entry = crr_cru_golden()["cases"][i];
     SCOPED_TRACE(entry["id"].dump());
     const std::string set = design_list(entry);
-    std::string mode;
-    for (const int sign : entry["sigma"]) mode += std::string(mode.empty() ? "" : ",") + (sign > 0 ? "+" : "-");
-    const auto result = pkmopt({"pose", entry["mechanism"], "--at", list({"x", "y", "z", "phi"}, entry["X"]), "--mode",
-                                mode, "--set", set, "--json"});
+    const std::string mode = mode_text(entry["sigma"]);
+    const auto result = pkmopt({"pose", entry["mechanism"], "--at", assignments({"x", "y", "z", "phi"}, entry["X"]),
+                                "--mode", mode, "--set", set, "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json pose = result.json();
     EXPECT_EQ(pose["mode"], mode);
@@ -59,7 +48,7 @@ TEST(CliCrrCru, PoseAndForwardOfGoldenCases) {
     EXPECT_TRUE(pose["Jq"].is_null());
 
     const json found = pkmopt({"forward", entry["mechanism"], "--joints",
-                               list({"rho1", "rho2", "rho3", "rho4"}, entry["q"]), "--set", set, "--json"})
+                               assignments({"rho1", "rho2", "rho3", "rho4"}, entry["q"]), "--set", set, "--json"})
                            .json();
     ASSERT_EQ(found["poses"].size(), 2u);
     const json& own = found["poses"][entry["parallel_index"] > 0 ? 0 : 1];

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/cli/crr_cru_golden.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/study_folder.hpp"
 
@@ -14,31 +15,20 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-const json& golden() {
-  static const json data = json::parse(std::ifstream(PKM_TEST_DATA "/3crr-r-cru-and-quadrupteron.json"));
-  return data;
-}
-
-std::string list(const std::vector<std::string>& names, const json& values) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ",") + names[i] + "=" + values[i].dump();
-  return text;
-}
-
 const std::vector<std::string> kPose = {"x", "y", "z", "phi"};
 
 TEST(CliDynamics, GoldenCasesWithReactions) {
   int cases = 0;
-  for (const json& entry : golden()["cases"]) {
+  for (const json& entry : crr_cru_golden()["cases"]) {
     if (entry.contains("params")) continue;
     if (++cases > 6) break;
     SCOPED_TRACE(entry["id"].dump());
-    std::string mode;
-    for (const int sign : entry["sigma"]) mode += std::string(mode.empty() ? "" : ",") + (sign > 0 ? "+" : "-");
+    const std::string mode = mode_text(entry["sigma"]);
     const auto result =
-        pkmopt({"dynamics", entry["mechanism"], "--at", list(kPose, entry["X"]), "--velocity", list(kPose, entry["Xd"]),
-                "--acceleration", list(kPose, entry["Xdd"]), "--wrench", list({"Fx", "Fy", "Fz"}, entry["F"]),
-                "--wrench", list({"Mx", "My", "Mz"}, entry["M"]), "--mode=" + mode, "--reactions", "--json"});
+        pkmopt({"dynamics", entry["mechanism"], "--at", assignments(kPose, entry["X"]), "--velocity",
+                assignments(kPose, entry["Xd"]), "--acceleration", assignments(kPose, entry["Xdd"]), "--wrench",
+                assignments({"Fx", "Fy", "Fz"}, entry["F"]), "--wrench", assignments({"Mx", "My", "Mz"}, entry["M"]),
+                "--mode=" + mode, "--reactions", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json found = result.json();
     double largest = 1;
@@ -106,7 +96,7 @@ TEST(CliDynamics, MistakesAreNamed) {
 
 TEST(CliCoupling, GoldenStatisticsAndTheMapBehindThem) {
   const StudyFolder folder;
-  for (const json& entry : golden()["dci_stats"]) {
+  for (const json& entry : crr_cru_golden()["dci_stats"]) {
     if (entry["n"][0] != 7) continue;  // the others ask for limits, which are a study's
     const auto range = [&](const char* name, std::size_t k) {
       return std::string(name) + "=" + entry["lo"][k].dump() + ":" + entry["hi"][k].dump();
