@@ -1,6 +1,7 @@
 // Greatest magnitude of an actuator's force along a motion, over its samples. Gradient solvers see the power mean of
 // the magnitudes (power_mean).
 #include "engine/dynamics/coupling.hpp"
+#include "engine/problem/inertia_options.hpp"
 #include "engine/problem/motion_quantity.hpp"
 #include "objectives/list.hpp"
 
@@ -23,7 +24,7 @@ ObjectiveEntry peak_force() {
       .direction = Direction::minimise,
       .options = motion_options({"worst"}),
       .unit = [](const EntryContext&) { return std::string("N"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refusal_without_dynamics("peak-force", mechanism); },
+      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("peak-force", mechanism); },
       .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext& context) {

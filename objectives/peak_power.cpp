@@ -1,6 +1,7 @@
-// Greatest power that an actuator gives along a motion, over its samples: force times speed where it drives, 0 if it
-// only brakes. Gradient solvers see the power mean (power_mean).
+// Greatest magnitude of an actuator's power along a motion, over its samples: force times speed, driving or braking.
+// Gradient solvers see the power mean of the magnitudes (power_mean).
 #include "engine/dynamics/coupling.hpp"
+#include "engine/problem/inertia_options.hpp"
 #include "engine/problem/motion_quantity.hpp"
 #include "objectives/list.hpp"
 
@@ -28,7 +29,7 @@ ObjectiveEntry peak_power() {
       .direction = Direction::minimise,
       .options = motion_options({"worst", "total"}),
       .unit = [](const EntryContext&) { return std::string("W"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refusal_without_dynamics("peak-power", mechanism); },
+      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("peak-power", mechanism); },
       .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext& context) {

@@ -40,7 +40,7 @@ class InertiaTables {
           C[plane[0]] = at(0, m) + frame_.arm[i][plane[0]];
           C[plane[1]] = at(1, n) + frame_.arm[i][plane[1]];
           const Limb<double> limb = limb_at(g, i, C, mode[i]);
-          *place++ = limb.reach >= 0 ? limb_share(g, b, i, C, mode) : PlaneInertia<double>{};
+          *place++ = limb.reach >= 0 ? limb_share(g, b, i, limb) : PlaneInertia<double>{};
         }
     }
   }

@@ -12,14 +12,20 @@ Held held_of(int coordinate, const SurveyPlan& plan) {
   return {static_cast<std::size_t>(coordinate), plan.held.kind == HeldCoordinate::Kind::middle, plan.held.value};
 }
 
-/// Conditioning depends on phi alone: one sample stands for all positions at one phi.
+/// Conditioning depends on phi alone.
+template <class S>
+S conditioning_at(const Geometry<S>& g, const Demand& demand, const S& phi) {
+  const auto [s, c] = sincos(phi);
+  const S length = demand.characteristic_length ? S(*demand.characteristic_length) : characteristic_length(g);
+  return conditioning(arms(g, s, c), length);
+}
+
+/// One sample stands for all positions at one phi.
 template <class S>
 void add_conditioning(const Geometry<S>& g, const Demand& demand, const S& phi, const S& weight, Survey<S>& survey) {
   if (!(value_of(weight) > 0)) return;
-  const auto [s, c] = sincos(phi);
-  const S length = demand.characteristic_length ? S(*demand.characteristic_length) : characteristic_length(g);
   survey.weight.push_back(weight);
-  survey.conditioning.push_back(conditioning(arms(g, s, c), length));
+  survey.conditioning.push_back(conditioning_at(g, demand, phi));
 }
 
 /// The plan's box as ranges of x, y, z, phi.
@@ -116,15 +122,11 @@ class ColumnSurveyor final : public Surveyor {
     const Geometry<S>& g = s.design.g;
     const Masses<S> b = masses(mass_model_, parameters);
     InertiaFrame<S> frame;
-    S length(0.0), index(0.0);
-    S angle(0.0);
+    S angle(0.0), index(0.0);
     const auto set_phi = [&](const S& phi) {
       angle = phi;
       frame = inertia_frame(g, b, phi);
-      if (!demand_.conditioning) return;
-      const auto [sine, cosine] = sincos(phi);
-      length = demand_.characteristic_length ? S(*demand_.characteristic_length) : characteristic_length(g);
-      index = conditioning(arms(g, sine, cosine), length);
+      if (demand_.conditioning) index = conditioning_at(g, demand_, phi);
     };
     if (!s.cuts.outer_is_phi) set_phi(s.held);
     for (const Piece<S>& piece : scratch.pieces)
@@ -201,9 +203,7 @@ class VoxelSurveyor final : public Surveyor {
     const double held_at = held_value(d.g, held_);
     const auto set_phi = [&](double phi) {
       tables.fill(d.g, b, mode_, phi, grid, coordinates, held_at);
-      const auto [s, c] = sincos(phi);
-      index = conditioning(arms(d.g, s, c),
-                           demand_.characteristic_length ? *demand_.characteristic_length : characteristic_length(d.g));
+      if (demand_.conditioning) index = conditioning_at(d.g, demand_, phi);
     };
     if (inertia) {
       b = masses(mass_model_, parameters);

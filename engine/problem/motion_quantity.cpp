@@ -7,6 +7,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/math/statistics.hpp"
+#include "engine/problem/inertia_options.hpp"
 #include "engine/workspace/drive_along.hpp"
 
 namespace pkm {
@@ -21,16 +22,6 @@ const NamedMotion& motion_of(const EntryContext& context) {
                                 "'; describe it in a table [[motion]] with name = \"" + name + "\"");
   const std::string nearest = nearest_name(name, known);
   throw std::invalid_argument("the study has no motion called '" + name + "'; it has " + join(known) +
-                              (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-}
-
-std::string mode_of(const EntryContext& context) {
-  const auto& modes = context.mechanism.info().modes;
-  if (!context.options.has("mode")) return modes.front();
-  const std::string& mode = context.options.word("mode");
-  if (std::find(modes.begin(), modes.end(), mode) != modes.end()) return mode;
-  const std::string nearest = nearest_name(mode, modes);
-  throw std::invalid_argument("mechanism " + context.mechanism.info().name + " has no working mode '" + mode + "'" +
                               (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
 
@@ -134,7 +125,7 @@ std::vector<OptionSpec> motion_options(const std::vector<std::string>& joints) {
        .lower = 2,
        .upper = 100'000,
        .meaning = "poses along the motion, at equal distances in time, both ends included"},
-      {.name = "mode", .kind = OptionKind::word, .meaning = "working mode; default: the mechanism's first"},
+      mode_option(),
       {.name = "wrench",
        .kind = OptionKind::named_numbers,
        .meaning = "force and moment on the platform, the same all the time; default: none",
@@ -147,12 +138,6 @@ std::vector<OptionSpec> motion_options(const std::vector<std::string>& joints) {
        .meaning = "of the smooth stand-in for the peak that gradient solvers are given, the mean of powers of this "
                   "exponent: larger is nearer"},
   };
-}
-
-std::string refusal_without_dynamics(const std::string& objective, const MechanismInfo& mechanism) {
-  return mechanism.has_dynamics
-             ? std::string()
-             : "objective " + objective + " needs dynamics, and mechanism " + mechanism.name + " has none";
 }
 
 std::string motion_detail(const std::string& what, const EntryContext& context) {

@@ -17,9 +17,6 @@ namespace pkm {
 /// @param joints  the words that `joint` knows besides "1" to "4"; the first is the default
 std::vector<OptionSpec> motion_options(const std::vector<std::string>& joints);
 
-/// "" or a sentence saying that the mechanism has no dynamics; `objective` is the entry's name.
-std::string refusal_without_dynamics(const std::string& objective, const MechanismInfo& mechanism);
-
 /// "peak force of joint 2 along the motion pick": what such an entry computes; `what` is "peak force".
 std::string motion_detail(const std::string& what, const EntryContext& context);
 

@@ -148,6 +148,13 @@ std::vector<double> parse_some_assignments(const std::vector<std::string>& lists
   return values;
 }
 
+Wrench<double> parse_wrench(const std::vector<std::string>& lists) {
+  const std::vector<double> values = parse_some_assignments(lists, "--wrench", assignable_wrench());
+  Wrench<double> wrench;
+  std::copy(values.begin(), values.end(), wrench.m.begin());
+  return wrench;
+}
+
 std::vector<double> parse_values(const std::string& text, const std::string& option, const Assignable& what) {
   constexpr int kMostValues = 10000;
   const SourcePlace place{"", 0, option};

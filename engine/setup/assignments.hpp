@@ -42,6 +42,9 @@ std::vector<double> parse_all_assignments(const std::vector<std::string>& lists,
 std::vector<double> parse_some_assignments(const std::vector<std::string>& lists, const std::string& option,
                                            const std::vector<Assignable>& known);
 
+/// Force and moment on the platform of `--wrench`; 0 where not given.
+Wrench<double> parse_wrench(const std::vector<std::string>& lists);
+
 /// Values [SI] of `0,30deg`, or `-60deg:60deg:5` (from : to : how many).
 std::vector<double> parse_values(const std::string& text, const std::string& option, const Assignable& what);
 

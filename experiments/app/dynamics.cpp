@@ -23,7 +23,8 @@ struct DynamicsArguments : DesignArguments {
 /// What the command line asks for, and what was found.
 struct Found {
   std::string mode;
-  std::vector<double> at, velocity, acceleration, wrench;
+  std::vector<double> at, velocity, acceleration;
+  Wrench<double> wrench;
   PoseReport pose;
   std::optional<PoseDynamics<double>> dynamics;  ///< absent where the pose does not assemble
   std::optional<Reactions> reactions;
@@ -43,7 +44,7 @@ Found find(const Target& target, const DynamicsArguments& arguments) {
   f.at = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
   f.velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
   f.acceleration = parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(info, "s^2"));
-  f.wrench = parse_some_assignments(arguments.wrench, "--wrench", assignable_wrench());
+  f.wrench = parse_wrench(arguments.wrench);
   const MotionState<double> state{{f.at[0], f.at[1], f.at[2], f.at[3]}, four(f.velocity)};
   f.pose = mechanism.inspect(target.parameters, state.pose, f.mode, target.limits);
   if (!f.pose.assembles) return f;
@@ -51,9 +52,7 @@ Found find(const Target& target, const DynamicsArguments& arguments) {
   mechanism.dynamics(std::span<const double>(target.parameters), f.mode, {&state, 1}, {&d, 1});
   f.dynamics = d;
   if (!arguments.reactions) return f;
-  Wrench<double> wrench;
-  for (std::size_t i = 0; i < 6; ++i) wrench[i] = f.wrench[i];
-  f.reactions = mechanism.reactions(target.parameters, f.mode, state, four(f.acceleration), wrench);
+  f.reactions = mechanism.reactions(target.parameters, f.mode, state, four(f.acceleration), f.wrench);
   return f;
 }
 
@@ -65,9 +64,7 @@ struct Forces {
 
 Forces forces(const Found& f) {
   const PoseDynamics<double>& d = *f.dynamics;
-  Wrench<double> wrench;
-  for (std::size_t i = 0; i < 6; ++i) wrench[i] = f.wrench[i];
-  Forces found{joint_space(d), {}, drive_forces(d, four(f.acceleration), wrench), d.J * four(f.velocity), {}};
+  Forces found{joint_space(d), {}, drive_forces(d, four(f.acceleration), f.wrench), d.J * four(f.velocity), {}};
   found.dci = coupling_indices(found.at_joints.M_q);
   for (std::size_t i = 0; i < 4; ++i) found.power[i] = found.tau[i] * found.q_rate[i];
   return found;

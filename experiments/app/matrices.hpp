@@ -1,4 +1,4 @@
-// Vectors and matrices of dynamics as JSON and as text.
+// Vectors and matrices of the joints as JSON and as text.
 #pragma once
 
 #include <cstdio>
@@ -15,20 +15,22 @@ inline Json vector_json(const Vector<double, 4>& v) {
   return list;
 }
 
-/// A matrix as a list of its rows.
-inline Json matrix_json(const Matrix<double, 4, 4>& matrix) {
+/// A 4 x 4 matrix, ours or Eigen's, as a list of its rows.
+template <class Matrix4>
+Json matrix_json(const Matrix4& matrix) {
   Json rows = Json::array();
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4; ++i) {
     rows.push_back(Json::array());
-    for (std::size_t j = 0; j < 4; ++j) rows.back().push_back(matrix(i, j));
+    for (int j = 0; j < 4; ++j) rows.back().push_back(matrix(i, j));
   }
   return rows;
 }
 
-inline void print_matrix(std::ostream& out, const std::string& title, const Matrix<double, 4, 4>& matrix) {
+template <class Matrix4>
+void print_matrix(std::ostream& out, const std::string& title, const Matrix4& matrix) {
   out << '\n' << title << '\n';
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) {
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
       std::array<char, 32> cell{};
       std::snprintf(cell.data(), cell.size(), "%18.11g", matrix(i, j));
       out << cell.data();

@@ -1,6 +1,5 @@
 // `pkmopt pose`: inverse kinematics, Jacobians and limits at one pose.
 
-#include <cstdio>
 #include <iostream>
 #include <stdexcept>
 
@@ -8,7 +7,7 @@
 
 #include "engine/setup/assignments.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/print.hpp"
+#include "experiments/app/matrices.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -24,15 +23,7 @@ Json json_or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json();
 }
 
-Json matrix_json(const std::optional<Eigen::Matrix4d>& matrix) {
-  if (!matrix) return {};
-  Json rows = Json::array();
-  for (int i = 0; i < 4; ++i) {
-    rows.push_back(Json::array());
-    for (int j = 0; j < 4; ++j) rows.back().push_back((*matrix)(i, j));
-  }
-  return rows;
-}
+Json matrix_or_null(const std::optional<Eigen::Matrix4d>& matrix) { return matrix ? matrix_json(*matrix) : Json(); }
 
 Json named_json(const NamedValues& values) {
   Json object = Json::object();
@@ -53,9 +44,9 @@ Json pose_json(const MechanismInfo& info, const std::string& mode, const std::ve
           {"assembles", report.assembles},
           {"reason", report.reason.empty() ? Json() : Json(report.reason)},
           {"joints", joints},
-          {"J", matrix_json(report.J)},
-          {"Jq", matrix_json(report.Jq)},
-          {"G", matrix_json(report.G)},
+          {"J", matrix_or_null(report.J)},
+          {"Jq", matrix_or_null(report.Jq)},
+          {"G", matrix_or_null(report.G)},
           {"det_Jq", json_or_null(report.det_Jq)},
           {"det_G", json_or_null(report.det_G)},
           {"conditioning", json_or_null(report.conditioning)},
@@ -64,16 +55,11 @@ Json pose_json(const MechanismInfo& info, const std::string& mode, const std::ve
           {"margins", named_json(report.margins)}};
 }
 
-void print_matrix(const std::string& title, const std::optional<Eigen::Matrix4d>& matrix) {
-  std::cout << '\n' << title << (matrix ? "" : ": does not exist") << '\n';
-  for (int i = 0; matrix && i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      std::array<char, 32> cell{};
-      std::snprintf(cell.data(), cell.size(), "%18.11g", (*matrix)(i, j));
-      std::cout << cell.data();
-    }
-    std::cout << '\n';
-  }
+void print_if_any(const std::string& title, const std::optional<Eigen::Matrix4d>& matrix) {
+  if (matrix)
+    print_matrix(std::cout, title, *matrix);
+  else
+    std::cout << '\n' << title << ": does not exist\n";
 }
 
 void print_pose(const MechanismInfo& info, const std::string& mode, const std::vector<double>& at,
@@ -100,11 +86,11 @@ void print_pose(const MechanismInfo& info, const std::string& mode, const std::v
   if (report.conditioning) indices.push_back({"conditioning", number(*report.conditioning)});
   print_section(std::cout, "joints", joints);
   if (report.assembles && report.G) {
-    print_matrix("Jq, where Jq qdot = G V", report.Jq);
-    print_matrix("G", report.G);
-    print_matrix("J = Jq^-1 G, where qdot = J V", report.J);
+    print_if_any("Jq, where Jq qdot = G V", report.Jq);
+    print_if_any("G", report.G);
+    print_if_any("J = Jq^-1 G, where qdot = J V", report.J);
   } else if (report.assembles) {
-    print_matrix("J, where qdot = J V", report.J);
+    print_if_any("J, where qdot = J V", report.J);
   }
   print_section(std::cout, "indices", indices);
   print_section(std::cout, "angles and lengths (rad, m)", angles);

@@ -46,8 +46,7 @@ SimulationSetup setup_of(const Target& target, const std::string& mode, const Si
   setup.forces = [tau = four(parse_some_assignments(arguments.forces, "--forces", assignable_forces(info)))](double) {
     return tau;
   };
-  const auto w = parse_some_assignments(arguments.wrench, "--wrench", assignable_wrench());
-  setup.wrench = {{w[0], w[1], w[2], w[3], w[4], w[5]}};
+  setup.wrench = parse_wrench(arguments.wrench);
   setup.refuse = [&target, mode](const Pose<double>& pose) {
     const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
     return report.feasible ? std::string() : "the pose is no longer feasible: " + report.reason;

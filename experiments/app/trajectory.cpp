@@ -161,12 +161,12 @@ int trajectory(const Catalogues& catalogues, const TrajectoryArguments& argument
   const Target target = find_target(catalogues, arguments);
   const MechanismInfo& info = target.info();
   const std::string mode = known_mode(info, arguments.mode);
-  const auto w = parse_some_assignments(arguments.wrench, "--wrench", assignable_wrench());
+  const Wrench<double> wrench = parse_wrench(arguments.wrench);
   if (!arguments.wrench.empty() && !info.has_dynamics)
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
   const auto motion = find_motion(target, arguments.motion);
-  const Trajectory found = follow(*target.mechanism, target.parameters, mode, target.limits, *motion, arguments.samples,
-                                  {{w[0], w[1], w[2], w[3], w[4], w[5]}});
+  const Trajectory found =
+      follow(*target.mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench);
   if (!arguments.csv.empty()) table_of(info, found).write(arguments.csv);
   if (arguments.json)
     print_json(std::cout, trajectory_json(info, mode, arguments.motion, found));
