@@ -25,6 +25,9 @@ enum class OptionKind { number, integer, flag, word, named_numbers, list_of_numb
 /// optimiser's objective). It is known only once the study is, so the study's reader puts it in.
 inline constexpr const char* kUnitOfEntry = "";
 
+/// Which names a list of numbers knows: the variables and objectives are known only once the study is.
+enum class FieldNames { listed, variables, objectives };
+
 /// One option. A `number` carries a unit ("m", "rad", "s", ... or "1"), in which the value is held (always SI).
 struct OptionSpec {
   std::string name;
@@ -38,6 +41,7 @@ struct OptionSpec {
   std::string meaning;                                      ///< one line for `pkmopt list`
   std::vector<std::pair<std::string, std::string>> fields =
       {};  ///< names known, and their units, of lists of numbers; of named numbers where they are given
+  FieldNames field_names = FieldNames::listed;  ///< in `fields`, or to be put there; objectives must all be given
 };
 
 /// Validated values of one entry's options, defaults included.

@@ -1,13 +1,15 @@
 #include "engine/optimisers/genetic_algorithm.hpp"
 #include "engine/optimisers/ipopt.hpp"
 #include "engine/optimisers/nlopt.hpp"
+#include "engine/optimisers/nsga2.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/optimisers/sweep.hpp"
 
 namespace pkm {
 
 const std::vector<OptimiserEntry>& all_optimisers() {
-  static const std::vector<OptimiserEntry> entries = {genetic_algorithm(), sweep(), nlopt_stage(), ipopt_stage()};
+  static const std::vector<OptimiserEntry> entries = {genetic_algorithm(), nsga2(), sweep(), nlopt_stage(),
+                                                      ipopt_stage()};
   return entries;
 }
 

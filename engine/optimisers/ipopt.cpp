@@ -205,11 +205,12 @@ class IpoptSolver final : public Solver {
   double tighten_;
 };
 
-Capabilities capabilities(const Options&) {
+Capabilities capabilities(const Options& options) {
   Capabilities can;
   can.discrete = false;
   can.needs_gradient = true;
   can.starts = true;
+  allow_fronts(options, can);
   return can;
 }
 

@@ -150,6 +150,7 @@ Capabilities capabilities(const Options& options) {
   can.discrete = false;
   can.needs_gradient = uses_gradient(options);
   can.starts = true;
+  allow_fronts(options, can);
   return can;
 }
 
@@ -165,6 +166,9 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
                                 join(with));
   }
   SolverPlan plan = solver_plan(options);
+  if (plan.scalarisation.kind != Scalarisation::Kind::none && !outer.constraints)
+    throw std::invalid_argument("start = \"pareto\" for the algorithm " + std::string(outer.name) +
+                                ", which handles no constraints, as it would have to");
   plan.solver = std::make_shared<NloptSolver>(Settings{outer, inner, options.number("ftol"), options.number("xtol"),
                                                        options.number("tighten"), options.number("initial_step"),
                                                        options.integer("population")});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <Eigen/QR>
@@ -74,45 +75,64 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
   throw std::runtime_error("the multipliers do not settle");
 }
 
+FirstOrder first_order(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
+                       std::span<const double> margin_gradient) {
+  const std::size_t n = u.size();
+  constexpr double kNotActive = std::numeric_limits<double>::quiet_NaN();
+  FirstOrder result{0, std::vector<double>(margins.size(), kNotActive), std::vector<double>(n, kNotActive),
+                    std::vector<double>(n, kNotActive)};
+  std::vector<std::vector<double>> columns;
+  std::vector<double*> multipliers;
+  for (std::size_t m = 0; m < margins.size(); ++m) {
+    const auto slope = margin_gradient.subspan(m * n, n);
+    double steepest = 0;
+    for (const double component : slope) steepest = std::max(steepest, std::fabs(component));
+    if (!(margins[m] <= kNearBound * steepest)) continue;
+    columns.emplace_back(slope.begin(), slope.end());
+    multipliers.push_back(&result.margins[m]);
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (const bool upper : {false, true}) {
+      if (!((upper ? 1 - u[i] : u[i]) <= kNearBound)) continue;
+      columns.emplace_back(n, 0.0);
+      columns.back()[i] = upper ? -1 : 1;
+      multipliers.push_back(upper ? &result.upper[i] : &result.lower[i]);
+    }
+  std::vector<double> left(gradient.begin(), gradient.end());
+  const std::vector<double> found = non_negative_least_squares(columns, left);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    *multipliers[k] = found[k];
+    for (std::size_t i = 0; i < n; ++i) left[i] -= found[k] * columns[k][i];
+  }
+  for (const double component : left) result.left = std::max(result.left, std::fabs(component));
+  return result;
+}
+
 Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> slopes,
                       double size) {
   const DesignSpace& space = problem.space();
   const std::size_t n = space.dimension(), width = 1 + n, objectives = problem.objectives().size();
   const double sign = problem.objectives()[0].direction == Direction::maximise ? -1 : 1;
   const auto range = [&](std::size_t i) { return space[i].upper - space[i].lower; };
-  std::vector<double> gradient(n);
-  for (std::size_t i = 0; i < n; ++i) gradient[i] = sign * slopes[1 + i] * range(i);
-
-  Optimality result;
-  std::vector<std::vector<double>> columns;
+  std::vector<double> u, gradient, margins, margin_gradient;
+  for (std::size_t i = 0; i < n; ++i) {
+    u.push_back(space.to_unit(i, design[i]));
+    gradient.push_back(sign * slopes[1 + i] * range(i));
+  }
   for (std::size_t m = 0; m < problem.margins().size(); ++m) {
     const double* slope = &slopes[(objectives + m) * width];
-    std::vector<double> column(n);
-    double steepest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      column[i] = slope[1 + i] * range(i);
-      steepest = std::max(steepest, std::fabs(column[i]));
-    }
-    if (!(slope[0] <= kNearBound * steepest)) continue;
-    result.margins.push_back({m, 0});
-    columns.push_back(std::move(column));
+    margins.push_back(slope[0]);
+    for (std::size_t i = 0; i < n; ++i) margin_gradient.push_back(slope[1 + i] * range(i));
   }
-  for (std::size_t i = 0; i < n; ++i)
-    for (const bool upper : {false, true}) {
-      const double distance = upper ? space[i].upper - design[i] : design[i] - space[i].lower;
-      if (!(distance <= kNearBound * range(i))) continue;
-      result.bounds.push_back({i, upper, 0});
-      columns.emplace_back(n, 0.0);
-      columns.back()[i] = upper ? -1 : 1;
-    }
-  const std::vector<double> multiplier = non_negative_least_squares(columns, gradient);
-  std::vector<double> left = gradient;
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    for (std::size_t i = 0; i < n; ++i) left[i] -= multiplier[k] * columns[k][i];
-  for (std::size_t m = 0; m < result.margins.size(); ++m) result.margins[m].multiplier = multiplier[m];
-  for (std::size_t k = 0; k < result.bounds.size(); ++k)
-    result.bounds[k].multiplier = multiplier[result.margins.size() + k] / range(result.bounds[k].variable);
-  for (const double component : left) result.optimality = std::max(result.optimality, std::fabs(component));
+  const FirstOrder found = first_order(u, gradient, margins, margin_gradient);
+
+  Optimality result{found.left, {}, {}};
+  for (std::size_t m = 0; m < margins.size(); ++m)
+    if (!std::isnan(found.margins[m])) result.margins.push_back({m, found.margins[m]});
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!std::isnan(found.lower[i])) result.bounds.push_back({i, false, found.lower[i] / range(i)});
+    if (!std::isnan(found.upper[i])) result.bounds.push_back({i, true, found.upper[i] / range(i)});
+  }
   size = std::max(size, std::fabs(slopes[0]));
   if (size > 0) result.optimality /= size;
   return result;

@@ -16,6 +16,20 @@
 
 namespace pkm {
 
+/// Stationarity of a point of the unit cube: multipliers and what they leave of the gradient.
+struct FirstOrder {
+  double left = 0;                   ///< largest component of what is left
+  std::vector<double> margins;       ///< multiplier of each margin; NaN: not active
+  std::vector<double> lower, upper;  ///< of each variable's bounds
+};
+
+/// @param u                in the unit cube
+/// @param gradient         of the objective, to be minimised
+/// @param margins          >= 0 holds; active within what a step of 1e-7 changes it by
+/// @param margin_gradient  margins x variables
+FirstOrder first_order(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
+                       std::span<const double> margin_gradient);
+
 struct ActiveBound {
   std::size_t variable = 0;
   bool upper = false;

@@ -6,7 +6,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,14 +18,17 @@
 
 namespace pkm {
 
+inline constexpr std::size_t kManyObjectives = std::numeric_limits<std::size_t>::max();  ///< any number
+
 /// What an optimiser can handle, as data: a study that asks for more is refused before it starts.
 struct Capabilities {
+  std::size_t min_objectives = 1;  ///< 0: a plain sweep
   std::size_t max_objectives = 1;
   bool constraints = true;
   bool discrete = true;         ///< variables with a step
   bool needs_gradient = false;  ///< refuses surveys without derivative (voxels)
-  bool needs_objective = true;  ///< false: a plain sweep
   bool starts = false;          ///< works on from given designs, several if asked
+  bool needs_front = false;     ///< works on from a front that a stage before it has found
 };
 
 /// How one start of a solver ended.
@@ -38,6 +43,17 @@ struct StartOutcome {
   double optimality = 0;
 };
 
+/// A trade-off: the designs of a stage that no other one dominates.
+struct Front {
+  std::vector<std::int64_t> rows;  ///< of the stage's table; the best by the first objective first
+  /// Corner of the hypervolume, in the objectives' units, and what it encloses with the front: only what is better than
+  /// the corner in every objective counts. Empty and NaN while there is none.
+  std::vector<double> reference = {};
+  double hypervolume = std::numeric_limits<double>::quiet_NaN();
+  double spread = std::numeric_limits<double>::quiet_NaN();    ///< of the population's part of it (see diversity.hpp)
+  double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< to the reference front; NaN where none is given
+};
+
 /// What an optimiser tells after each batch of evaluations ("generation").
 struct Generation {
   std::int64_t number = 0;                            ///< 0 is the start population
@@ -46,6 +62,7 @@ struct Generation {
   const std::vector<std::int64_t>* population;        ///< rows that form the population now
   std::int64_t best_row = -1;                         ///< best by `better`; -1 while nothing is evaluated
   const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: the starts that have ended
+  const Front* front = nullptr;                       ///< several objectives
 };
 
 /// Time limits, signals, checkpoints and the screen live behind this.
@@ -78,6 +95,7 @@ struct StageResult {
   StopReason reason = StopReason::generations;
   std::int64_t best_row = -1;             ///< row of the stage's table
   std::vector<StartOutcome> starts = {};  ///< solvers only
+  std::optional<Front> front = {};        ///< several objectives
 };
 
 /// A design to begin from, and where it comes from.
@@ -86,12 +104,19 @@ struct StartDesign {
   std::string origin;
 };
 
+/// Of the front that the stages before have found: what solvers scale by, and compare with.
+struct KnownFront {
+  std::vector<double> extents = {};    ///< range of each objective, > 0; 1 where there is none yet
+  std::vector<double> reference = {};  ///< corner of its hypervolume; empty: none
+};
+
 struct StageInput {
   const Problem& problem;
   Evaluator& evaluator;
   Monitor& monitor;
   std::uint64_t seed = 1;
-  std::vector<StartDesign> starts;  ///< designs to begin from; may be empty
+  std::vector<StartDesign> starts;   ///< designs to begin from; may be empty
+  KnownFront known_front = {};       ///< several objectives
   /// A resumed stage: the evaluations on record, which the evaluator serves, and the starts that had ended.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};

@@ -1,6 +1,7 @@
 #include "engine/optimisers/solver_stage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -9,7 +10,7 @@
 
 #include <Eigen/QR>
 
-#include "engine/optimisers/optimality.hpp"
+#include "engine/optimisers/front.hpp"
 #include "engine/optimisers/option_specs.hpp"
 #include "engine/optimisers/start.hpp"
 #include "engine/problem/replay.hpp"
@@ -26,18 +27,38 @@ constexpr double kHair = 1e-14;  // what a margin keeps for the rounding of its 
 class Run {
  public:
   Run(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
-      : plan_(plan), input_(input), table_(table) {}
+      : plan_(plan), input_(input), table_(table), how_(plan.scalarisation) {
+    const auto& objectives = input.problem.objectives();
+    if (objectives.size() == 1) return;
+    how_.extents = input.known_front.extents;
+    FrontPlan front;
+    for (std::size_t k = 0; k < objectives.size(); ++k) {
+      if (objectives[k].name == plan.objective) how_.objective = k;
+      if (!input.known_front.reference.empty()) front.reference[objectives[k].name] = input.known_front.reference[k];
+    }
+    front_.emplace(front, input.problem, table);
+  }
 
   StageResult operator()() {
     const std::vector<StartDesign> starts = all_starts();
     for (std::size_t k = 0; k < starts.size(); ++k) {
       const bool goes_on = on_record(k) ? repeat(input_.recorded_starts[k]) : begin(k, starts[k]);
       if (!goes_on) return {StopReason::interrupted, best_.row, finished_};
+      if (front_) keep_end();
     }
-    return {reason(), best_.row, finished_};
+    StageResult result{reason(), best_.row, finished_};
+    if (front_) result.front = front_->front();
+    return result;
   }
 
  private:
+  /// The end of the start that has just ended becomes a point of the stage's front.
+  void keep_end() {
+    front_->add(std::array{finished_.back().end_row});
+    if (front_->compromise_row() >= 0)
+      best_ = ranked(input_.problem, table_, static_cast<std::size_t>(front_->compromise_row()));
+  }
+
   std::vector<StartDesign> all_starts() const {
     std::vector<StartDesign> starts = input_.starts;
     const DesignSpace& space = input_.problem.space();
@@ -68,14 +89,16 @@ class Run {
     again.first_row = static_cast<std::int64_t>(first);
     again.end_row = outcome.end_row - outcome.first_row + again.first_row;
     Ranked best;
+    std::optional<Goal> goal;
     for (std::int64_t i = 0; i < outcome.rows; ++i) {
       const std::size_t row = table_.extend(1);
       std::ranges::copy(input_.recorded->design(static_cast<std::size_t>(outcome.first_row + i)),
                         table_.design(row).begin());
       input_.evaluator.evaluate(input_.problem, table_, row);
-      const Ranked candidate = ranked(input_.problem, table_, row);
+      if (!goal) goal.emplace(how_, input_.problem, table_, row);
+      const Ranked candidate = goal->rank(row);
       if (best.row < 0 || candidate < best) best = candidate;
-      if (best_.row < 0 || candidate < best_) best_ = candidate;
+      if (best_.row < 0 || (!front_ && candidate < best_)) best_ = candidate;
       const std::vector<std::int64_t> population{best.row};
       if (!input_.monitor.generation({generation_++, row, &table_, &population, best_.row, &finished_})) return false;
     }
@@ -116,7 +139,7 @@ class Run {
   }
 
   bool solve(std::size_t k, const StartDesign& start) {
-    Trials trials(input_, table_, plan_.limits, start.design, generation_, best_, finished_);
+    Trials trials(input_, table_, plan_.limits, how_, start.design, generation_, best_, finished_);
     SolverEnd end;
     std::vector<double> from = trials.start();
     for (int round = 0; round < kRounds && trials.stop() == Trials::Stop::none; ++round) {
@@ -129,7 +152,7 @@ class Run {
       // A solver that gave up short of the optimum (a line search that failed by rounding) begins anew where it stood.
       const auto best = static_cast<std::size_t>(trials.best().row);
       const bool gained = trials.best().row != before;
-      if (!gained || !(optimality_at(best, trials.first_row()) > kOptimal)) break;
+      if (!gained || !(trials.optimality(best) > kOptimal)) break;
       from = trials.recall(best);
     }
     if (trials.stop() == Trials::Stop::interrupted) return false;
@@ -140,7 +163,7 @@ class Run {
     outcome.end_row = trials.best().row;
     outcome.message =
         trials.stop() == Trials::Stop::not_a_point ? "asked for a design that is not a number" : end.message;
-    outcome.optimality = optimality_at(static_cast<std::size_t>(outcome.end_row), trials.first_row());
+    outcome.optimality = trials.optimality(static_cast<std::size_t>(outcome.end_row));
     outcome.stop = words(stop_reason(trials.stop(), end, outcome.optimality));
     finished_.push_back(std::move(outcome));
     return true;
@@ -181,12 +204,13 @@ class Run {
     constexpr double kRounding = 1e-9;
     auto chosen = static_cast<std::size_t>(trials.best().row);
     if (table_.shape().detail != Detail::derivatives || table_.status[chosen] == Status::failed) return chosen;
-    const double best = table_.objective_row(chosen)[0];
-    double least = optimality_at(chosen, trials.first_row());
+    const Goal& goal = trials.goal();
+    const double best = goal.value(chosen);
+    double least = trials.optimality(chosen);
     for (std::size_t row = trials.first_row(); row < table_.size(); ++row) {
-      if (table_.status[row] == Status::failed || violation(table_.margin_row(row)) > kRounding) continue;
-      if (!(std::fabs(table_.objective_row(row)[0] - best) <= kRounding * std::fabs(best))) continue;
-      if (const double here = optimality_at(row, trials.first_row()); here < least) {
+      if (table_.status[row] == Status::failed || goal.violation(row) > kRounding) continue;
+      if (!(std::fabs(goal.value(row) - best) <= kRounding * goal.size(best))) continue;
+      if (const double here = trials.optimality(row); here < least) {
         least = here;
         chosen = row;
       }
@@ -221,14 +245,6 @@ class Run {
     return moved;
   }
 
-  // Relative to the objective at the row or at its start, whichever is larger.
-  double optimality_at(std::size_t row, std::size_t start) const {
-    if (table_.shape().detail != Detail::derivatives || table_.status[row] == Status::failed)
-      return std::numeric_limits<double>::quiet_NaN();
-    const double at_start = table_.status[start] == Status::failed ? 0 : std::fabs(table_.objective_row(start)[0]);
-    return optimality(input_.problem, std::as_const(table_).design(row), table_.slope_row(row), at_start).optimality;
-  }
-
   StopReason reason() const {
     for (const StopReason each : {StopReason::tolerance, StopReason::evaluations, StopReason::time, StopReason::failed})
       if (std::ranges::all_of(finished_, [&](const StartOutcome& o) { return o.stop == words(each); })) return each;
@@ -241,6 +257,8 @@ class Run {
   std::int64_t generation_ = 0;
   Ranked best_;
   std::vector<StartOutcome> finished_;
+  Scalarisation how_;
+  std::optional<FrontKeeper> front_;  ///< several objectives: of the ends
 };
 
 class SolverStage final : public Optimiser {
@@ -263,18 +281,35 @@ class SolverStage final : public Optimiser {
 
 std::unique_ptr<Optimiser> make_solver_stage(SolverPlan plan) { return std::make_unique<SolverStage>(std::move(plan)); }
 
+void allow_fronts(const Options& options, Capabilities& can) {
+  if (options.word("start") != "pareto") return;
+  can.min_objectives = 2;
+  can.max_objectives = kManyObjectives;
+  can.needs_front = true;
+}
+
 std::vector<OptionSpec> solver_options() {
   OptionSpec time = number_option("time", {}, 0, 1e9, "most wall time of one start (default: no limit)");
   time.unit = "s";
+  OptionSpec objective;
+  objective.name = "objective";
+  objective.kind = OptionKind::word;
+  objective.field_names = FieldNames::objectives;
+  objective.meaning = "epsilon-constraint: the one that is to gain (default: the first)";
   OptionSpec designs;
   designs.name = "designs";
   designs.kind = OptionKind::list_of_numbers;
+  designs.field_names = FieldNames::variables;
   designs.meaning =
       "designs to start from besides, such as [{ a = 0.3, b = 1.0 }]; variables left out are the baseline's";
   return {
-      word_option("start", {"best", "best-of-basins", "none"},
-                  "best design so far (else the baseline), best designs of distinct basins, or only those below"),
-      integer_option("starts", std::int64_t{5}, 1, 1e4, "best-of-basins: most starts"),
+      word_option("start", {"best", "best-of-basins", "pareto", "none"},
+                  "best design so far (else the baseline), best designs of distinct basins, points of the front found "
+                  "so far (several objectives), or only those below"),
+      integer_option("starts", std::int64_t{5}, 1, 1e4, "best-of-basins and pareto: most starts"),
+      word_option("scalarisation", {"achievement", "epsilon-constraint"},
+                  "pareto: gain in all objectives alike, or in one while the others keep what they have"),
+      objective,
       number_option("basin_radius", 0.1, 1e-6, 1,
                     "best-of-basins: a start is a design with no better one nearer than this, in units of the ranges"),
       designs,
@@ -290,7 +325,11 @@ SolverPlan solver_plan(const Options& options) {
   if (options.has("time")) plan.limits.seconds = options.number("time");
   plan.multistart = options.integer("multistart");
   const std::string& start = options.word("start");
-  plan.starts = start == "best" ? 1 : start == "best-of-basins" ? options.integer("starts") : 0;
+  plan.starts = start == "best" ? 1 : start == "none" ? 0 : options.integer("starts");
+  if (start == "pareto")
+    plan.scalarisation.kind = options.word("scalarisation") == "achievement" ? Scalarisation::Kind::achievement
+                                                                             : Scalarisation::Kind::epsilon;
+  if (options.has("objective")) plan.objective = options.word("objective");
   if (options.has("designs")) plan.starts += static_cast<std::int64_t>(options.list("designs").size());
   if (plan.starts + plan.multistart == 0)
     throw std::invalid_argument("no start: start = \"none\" needs designs or multistart");

@@ -34,9 +34,14 @@ struct SolverPlan {
   std::int64_t starts = 1;
   std::int64_t multistart = 0;  ///< Sobol points besides the designs given
   Detail detail = Detail::complete;
+  Scalarisation scalarisation = {};  ///< of several objectives; its extents come with the stage's input
+  std::string objective = {};        ///< epsilon-constraint: the one that is to gain; "": the first
 };
 
 std::unique_ptr<Optimiser> make_solver_stage(SolverPlan plan);
+
+/// Stages that start from points of a front handle several objectives, and need a front.
+void allow_fronts(const Options& options, Capabilities& can);
 
 /// The options that every solver stage has, and the plan that they describe (its solver is left to the caller). Throws
 /// std::invalid_argument with a sentence when they leave no start.

@@ -1,11 +1,12 @@
 #include "engine/optimisers/sweep.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "engine/optimisers/front.hpp"
 #include "engine/optimisers/option_specs.hpp"
 #include "engine/optimisers/order.hpp"
 
@@ -37,7 +38,9 @@ double combinations(const Levels& levels) {
 // Evaluates what was appended to the table, batch by batch, and remembers the best.
 class Batches {
  public:
-  Batches(const StageInput& input, EvaluationTable& table) : input_(input), table_(table) {}
+  Batches(const StageInput& input, EvaluationTable& table) : input_(input), table_(table) {
+    if (input.problem.objectives().size() > 1) front_.emplace(FrontPlan{}, input.problem, table);
+  }
 
   /// Evaluates and reports the rows added since the last call. False: the monitor wants to stop.
   bool finish_generation() {
@@ -49,19 +52,30 @@ class Batches {
     rows_.resize(table_.size() - first_);
     std::iota(rows_.begin(), rows_.end(), static_cast<std::int64_t>(first_));
     const std::size_t first = std::exchange(first_, table_.size());
-    return input_.monitor.generation({generation_++, first, &table_, &rows_, best_.row});
+    if (front_) front_->add(rows_);
+    return input_.monitor.generation(
+        {generation_++, first, &table_, &rows_, best_row(), nullptr, front_ ? &front_->front() : nullptr});
   }
 
   std::size_t pending() const { return table_.size() - first_; }
-  StageResult result(StopReason reason) const { return {reason, best_.row}; }
+  StageResult result(StopReason reason) const {
+    StageResult result{reason, best_row()};
+    if (front_) result.front = front_->front();
+    return result;
+  }
 
  private:
+  std::int64_t best_row() const {
+    return front_ && front_->compromise_row() >= 0 ? front_->compromise_row() : best_.row;
+  }
+
   const StageInput& input_;
   EvaluationTable& table_;
   std::size_t first_ = 0;
   std::int64_t generation_ = 0;
   std::vector<std::int64_t> rows_;
   Ranked best_;
+  std::optional<FrontKeeper> front_;
 };
 
 class Sweep final : public Optimiser {
@@ -145,8 +159,8 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
 
 Capabilities capabilities(const Options&) {
   Capabilities can;
-  can.max_objectives = std::numeric_limits<std::size_t>::max();
-  can.needs_objective = false;
+  can.min_objectives = 0;
+  can.max_objectives = kManyObjectives;
   return can;
 }
 

@@ -4,14 +4,17 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/optimisers/optimality.hpp"
+
 namespace pkm {
 
-Trials::Trials(const StageInput& input, EvaluationTable& table, const TrialLimits& limits,
+Trials::Trials(const StageInput& input, EvaluationTable& table, const TrialLimits& limits, const Scalarisation& how,
                std::span<const double> start, std::int64_t& generation, Ranked& best,
                const std::vector<StartOutcome>& finished)
     : input_(input),
       table_(table),
       limits_(limits),
+      how_(how),
       first_row_(table.size()),
       generation_(generation),
       stage_best_(best),
@@ -19,12 +22,8 @@ Trials::Trials(const StageInput& input, EvaluationTable& table, const TrialLimit
       start_design_(start.begin(), start.end()) {
   const DesignSpace& space = input.problem.space();
   for (std::size_t i = 0; i < space.dimension(); ++i) start_unit_.push_back(space.to_unit(i, start[i]));
-  point_.margins.resize(margins());
-  if (table.shape().detail == Detail::derivatives) {
-    point_.gradient.resize(dimension());
-    point_.margin_gradient.resize(margins() * dimension());
-  }
   evaluate(start_unit_);
+  if (goal_->has_slack()) start_unit_.push_back(unit_.back());
 }
 
 const Trials::Point* Trials::at(const double* u) noexcept {
@@ -34,9 +33,14 @@ const Trials::Point* Trials::at(const double* u) noexcept {
       if (!std::isfinite(x) && stop_ == Stop::none) stop_ = Stop::not_a_point;
       x = std::clamp(x, 0.0, 1.0);
     }
-    if (inside != unit_) {
+    const std::size_t variables = input_.problem.space().dimension();
+    if (!std::equal(unit_.begin(), unit_.begin() + static_cast<std::ptrdiff_t>(variables), inside.begin())) {
       if (stop_ != Stop::none) return nullptr;
-      evaluate(inside);
+      evaluate({inside.data(), variables});
+    }
+    if (inside != unit_) {  // only the slack differs
+      unit_ = inside;
+      read(row_, unit_.back());
     }
     return stop_ == Stop::exception ? nullptr : &point_;
   } catch (...) {
@@ -51,7 +55,7 @@ std::vector<double> Trials::recall(std::size_t row) {
   const auto design = std::as_const(table_).design(row);
   for (std::size_t i = 0; i < design.size(); ++i)
     unit_[i] = row == first_row_ ? start_unit_[i] : space.to_unit(i, design[i]);
-  read(row);
+  set(row);
   return unit_;
 }
 
@@ -62,12 +66,15 @@ void Trials::evaluate(std::span<const double> u) {
   for (std::size_t i = 0; i < design.size(); ++i)  // the start keeps its own bits
     design[i] = u[i] == start_unit_[i] ? start_design_[i] : space.from_unit(i, u[i]);
   input_.evaluator.evaluate(input_.problem, table_, row);
+  if (!goal_) goal_.emplace(how_, input_.problem, table_, row);
   unit_.assign(u.begin(), u.end());
-  read(row);
+  if (goal_->has_slack()) unit_.push_back(0);
+  set(row);
 
-  const Ranked candidate = ranked(input_.problem, table_, row);
+  const Ranked candidate = goal_->rank(row);
   if (best_.row < 0 || candidate < best_) best_ = candidate;
-  if (stage_best_.row < 0 || candidate < stage_best_) stage_best_ = candidate;
+  if (stage_best_.row < 0 || (how_.kind == Scalarisation::Kind::none && candidate < stage_best_))
+    stage_best_ = candidate;
   population_ = {best_.row};
   const bool goes_on =
       input_.monitor.generation({generation_++, row, &table_, &population_, stage_best_.row, &finished_});
@@ -80,34 +87,36 @@ void Trials::evaluate(std::span<const double> u) {
   if (!goes_on) stop_ = Stop::interrupted;
 }
 
-void Trials::read(std::size_t row) {
-  const bool slopes = table_.shape().detail == Detail::derivatives;
-  const Problem& problem = input_.problem;
-  const std::size_t n = dimension(), width = 1 + n;
-  const auto slope = table_.slope_row(row);
-  const double sign = problem.objectives()[0].direction == Direction::maximise ? -1 : 1;
-  const double value = slopes ? slope[0] : table_.objective_row(row)[0];
-  point_.usable = table_.status[row] != Status::failed && std::isfinite(value);
-  if (row == first_row_) {
-    scale_ = sign / (point_.usable && value != 0 ? std::fabs(value) : 1.0);
-    worst_ = point_.usable ? value * scale_ : 0;
-  }
-  if (!point_.usable) {  // far worse than anything seen, and flat
-    point_.objective = worst_ + 10 * (1 + std::fabs(worst_));
-    std::fill(point_.gradient.begin(), point_.gradient.end(), 0.0);
-    std::fill(point_.margin_gradient.begin(), point_.margin_gradient.end(), 0.0);
-    for (double& margin : point_.margins) margin = -1;
-    return;
-  }
-  point_.objective = value * scale_;
-  worst_ = std::max(worst_, point_.objective);
-  const auto range = [&](std::size_t i) { return problem.space()[i].upper - problem.space()[i].lower; };
-  for (std::size_t i = 0; slopes && i < n; ++i) point_.gradient[i] = slope[1 + i] * range(i) * scale_;
-  for (std::size_t m = 0; m < margins(); ++m) {
-    point_.margins[m] = slopes ? slope[(1 + m) * width] : table_.margin_row(row)[m];
-    for (std::size_t i = 0; slopes && i < n; ++i)
-      point_.margin_gradient[m * n + i] = slope[(1 + m) * width + 1 + i] * range(i);
-  }
+void Trials::set(std::size_t row) {
+  row_ = row;
+  const double slack = goal_->slack(row);
+  if (goal_->has_slack()) unit_.back() = slack;
+  read(row, slack);
+}
+
+void Trials::read(std::size_t row, double slack) {
+  goal_->read(row, slack, point_);
+  const double worst = worst_.value_or(0);
+  if (point_.usable)
+    worst_ = worst_ ? std::max(worst, point_.objective) : point_.objective;
+  else  // far worse than anything seen, and flat
+    point_.objective = worst + 10 * (1 + std::fabs(worst));
+}
+
+double Trials::optimality(std::size_t row) const {
+  Point at_start, here;
+  goal_->read(row, goal_->slack(row), here);
+  if (here.gradient.empty() || !here.usable) return std::numeric_limits<double>::quiet_NaN();
+  goal_->read(first_row_, goal_->slack(first_row_), at_start);
+  std::vector<double> u;
+  const DesignSpace& space = input_.problem.space();
+  const auto design = std::as_const(table_).design(row);
+  for (std::size_t i = 0; i < design.size(); ++i) u.push_back(space.to_unit(i, design[i]));
+  if (goal_->has_slack()) u.push_back(goal_->slack(row));
+  const double left = first_order(u, here.gradient, here.margins, here.margin_gradient).left;
+  const double size =
+      goal_->has_slack() ? 1 : std::max(std::fabs(here.objective), at_start.usable ? std::fabs(at_start.objective) : 0);
+  return size > 0 ? left / size : left;
 }
 
 }  // namespace pkm

@@ -3,6 +3,7 @@
 // Solvers ask for objective, constraints and gradients one by one and often several times; one point is one evaluation,
 // with the slopes if the solver wants any. Every evaluation goes through the stage's evaluator into its table, so a
 // resumed run repeats it from the record. The objective is divided by its size at the start: tolerances are relative.
+// Of several objectives a goal makes one (see goal.hpp).
 #pragma once
 
 #include <chrono>
@@ -13,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/optimisers/goal.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/optimisers/order.hpp"
 
@@ -29,20 +31,15 @@ class Trials {
   /// Why no further point is evaluated.
   enum class Stop { none, evaluations, time, interrupted, not_a_point, exception };
 
-  struct Point {
-    double objective = 0;                 ///< to be minimised, scaled
-    std::vector<double> gradient;         ///< of the objective, per unit of the unit cube; empty without derivatives
-    std::vector<double> margins;          ///< >= 0 holds
-    std::vector<double> margin_gradient;  ///< margins x variables
-    bool usable = false;                  ///< false: the evaluation failed, and the numbers stand for a bad design
-  };
+  using Point = GoalPoint;  ///< where the evaluation failed, its numbers stand for a bad design
 
   /// Evaluates the start and scales by it. `generation` counts the stage's evaluations; `best` is the stage's best.
-  Trials(const StageInput& input, EvaluationTable& table, const TrialLimits& limits, std::span<const double> start,
-         std::int64_t& generation, Ranked& best, const std::vector<StartOutcome>& finished);
+  Trials(const StageInput& input, EvaluationTable& table, const TrialLimits& limits, const Scalarisation& how,
+         std::span<const double> start, std::int64_t& generation, Ranked& best,
+         const std::vector<StartOutcome>& finished);
 
-  std::size_t dimension() const { return input_.problem.space().dimension(); }
-  std::size_t margins() const { return input_.problem.margins().size(); }
+  std::size_t dimension() const { return goal_->dimension(); }
+  std::size_t margins() const { return goal_->margins(); }
   const std::vector<double>& start() const { return start_unit_; }
 
   /// The point u of the unit cube, or null when the solver must stop. Coordinates outside, where solvers may stray by
@@ -58,25 +55,33 @@ class Trials {
     if (exception_) std::rethrow_exception(exception_);
   }
 
+  const Goal& goal() const { return *goal_; }
+  /// First-order optimality of a row of this start, relative to the objective there or at the start, whichever is
+  /// larger; NaN without derivatives.
+  double optimality(std::size_t row) const;
+
   /// Best evaluation of this start.
   const Ranked& best() const { return best_; }
   std::size_t first_row() const { return first_row_; }
 
  private:
   void evaluate(std::span<const double> u);
-  void read(std::size_t row);
+  void set(std::size_t row);
+  void read(std::size_t row, double slack);
 
   const StageInput& input_;
   EvaluationTable& table_;
   TrialLimits limits_;
+  const Scalarisation& how_;
   std::size_t first_row_;
   std::int64_t& generation_;
   Ranked& stage_best_;
   const std::vector<StartOutcome>& finished_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<double> start_design_, start_unit_, unit_;
-  double scale_ = 1;  ///< of the objective, sign included
-  double worst_ = 0;  ///< greatest objective seen
+  std::optional<Goal> goal_;     ///< once the start is evaluated
+  std::size_t row_ = 0;          ///< of the point evaluated or recalled last
+  std::optional<double> worst_;  ///< greatest objective seen
   Point point_;
   Ranked best_;
   std::vector<std::int64_t> population_;

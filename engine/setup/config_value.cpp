@@ -30,8 +30,10 @@ NamedNumbers read_fields(const ConfigValue& table, const OptionSpec& spec) {
   for (const auto& field : spec.fields) names.push_back(field.first);
   table.expect_table("a table of numbers, { name = number, ... }").allow(names, "name");
   NamedNumbers numbers;
-  for (const auto& [name, unit] : spec.fields)
+  for (const auto& [name, unit] : spec.fields) {
+    if (spec.field_names == FieldNames::objectives) table.at(name, "a value for every objective: " + join(names));
     if (const auto value = table.find(name)) numbers[name] = value->number(unit);
+  }
   return numbers;
 }
 

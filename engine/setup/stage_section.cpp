@@ -23,8 +23,11 @@ std::string refusal_of(const OptimiserEntry& entry, const Options& options, cons
   const std::string who = "the optimiser " + entry.name + " " +
                           (options.has("algorithm") ? "with the algorithm " + options.word("algorithm") + " " : "");
   if (parts.space.dimension() == 0) return who + "needs variables, but the study's [variables] is empty";
-  if (can.needs_objective && parts.objectives.empty())
+  if (can.min_objectives > 0 && parts.objectives.empty())
     return who + "needs an objective, but the study has no [[objective]]";
+  if (parts.objectives.size() < can.min_objectives)
+    return who + "needs " + std::to_string(can.min_objectives) + " objectives, but the study has one (" +
+           parts.objectives.front().name + ")";
   if (parts.objectives.size() > can.max_objectives)
     return who + "handles " + std::to_string(can.max_objectives) + " objective" + (can.max_objectives == 1 ? "" : "s") +
            ", but the study has " + std::to_string(parts.objectives.size()) + " (" + join(names_of(parts.objectives)) +
@@ -44,7 +47,7 @@ std::string refusal_of(const OptimiserEntry& entry, const Options& options, cons
 /// The designs that a stage is to start from lie in the space that it searches.
 void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpace& space) {
   for (const OptionSpec& spec : stage.specs) {
-    if (spec.kind != OptionKind::list_of_numbers || !table.has(spec.name)) continue;
+    if (spec.field_names != FieldNames::variables || !table.has(spec.name)) continue;
     for (const NamedNumbers& design : stage.options.list(spec.name))
       for (const Variable& v : space.variables())
         if (const auto given = design.find(v.name);
@@ -67,12 +70,19 @@ void read_stages(const ConfigValue& root, StudyDraft& draft) {
     // The unit of the objective that an optimiser works on; of several there is no one unit.
     const auto& objectives = draft.parts.objectives;
     auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");
-    for (auto& spec : specs)
-      if (spec.kind == OptionKind::list_of_numbers)
+    for (auto& spec : specs) {
+      if (spec.field_names == FieldNames::variables)
         for (const Variable& v : draft.parts.space.variables()) spec.fields.emplace_back(v.name, v.unit);
+      if (spec.field_names != FieldNames::objectives) continue;
+      for (const NamedQuantity& o : objectives) spec.fields.emplace_back(o.name, o.unit);
+      if (spec.kind == OptionKind::word) spec.choices = names_of(objectives);
+    }
     Stage stage{&entry, read_options(table, specs), nullptr, table.place().line, {}};
     if (const std::string reason = refusal_of(entry, stage.options, draft.parts); !reason.empty())
       throw table.find("optimiser")->refusal(reason);
+    if (entry.capabilities(stage.options).needs_front && draft.study.stages.empty())
+      throw table.find("start")->refusal(
+          "start = \"pareto\" needs a [[stage]] before it that finds a front, such as nsga2");
     if (entry.resolve) entry.resolve(stage.options, draft.parts.space);
     for (auto& spec : specs)
       if (!table.has(spec.name) && stage.options.has(spec.name)) spec.initial = stage.options.values().at(spec.name);

@@ -168,6 +168,38 @@ void describe_generations(Archive& archive, const std::string& stage, Generation
   }
 }
 
+template <class Archive, class Problem, class Stage, class Record>
+void describe_front(Archive& archive, const std::string& group, const Problem& problem, const Stage& stage,
+                    Record& front) {
+  archive.group(group, "The trade-off: feasible designs that no other evaluation of the stage dominates");
+  archive.array(Leaf{group + "/row", "Rows (0-based) in evaluations, the best by the first objective first", {"1"}, {}},
+                front.rows, {kAnyRows});
+  archive.array(Leaf{group + "/reference", "Corner of the hypervolume, per objective; empty: none", {"1"}, {}},
+                front.reference, {kAnyRows});
+  const auto series = [&](const char* name, const char* description, auto& values) {
+    archive.array(Leaf{group + "/" + name, description, {"1"}, {}}, values, {kAnyRows});
+  };
+  series("hypervolume", "After each generation: what reference and front enclose, product of the objectives' units",
+         front.hypervolume);
+  series("spread", "After each generation: unevenness of the population's part of the front, 0 is even", front.spread);
+  series("igd_plus", "After each generation: distance (IGD+) to the reference front; NaN: none given", front.igd_plus);
+  if constexpr (Archive::kDerives) {
+    std::vector<double> designs, objectives;
+    for (const std::int64_t row : front.rows) {
+      const auto design = stage.table.design(static_cast<std::size_t>(row));
+      const auto objective = stage.table.objective_row(static_cast<std::size_t>(row));
+      designs.insert(designs.end(), design.begin(), design.end());
+      objectives.insert(objectives.end(), objective.begin(), objective.end());
+    }
+    const auto matrix = [&](const char* name, const char* description, const auto& items, const auto& values) {
+      archive.array(Leaf{group + "/" + name, description, units(items), names(items)}, values,
+                    {front.rows.size(), items.size()});
+    };
+    matrix("design", "Values of the variables", problem.variables, designs);
+    matrix("objective", "Objectives, in their own direction", problem.objectives, objectives);
+  }
+}
+
 template <class Archive, class Study>
 void describe_stages(Archive& archive, Study& study) {
   archive.group("/stages", "The optimisers, run one after the other");
@@ -193,6 +225,8 @@ void describe_stages(Archive& archive, Study& study) {
     }
     if (present(archive, group + "/optimality", stage.optimality))
       describe_optimality(archive, group + "/optimality", *stage.optimality);
+    if (present(archive, group + "/front", stage.front))
+      describe_front(archive, group + "/front", study.problem, stage, *stage.front);
   }
 }
 

@@ -16,7 +16,7 @@
 namespace pkm {
 
 /// Version of the file's layout. A file of a newer one is refused by name.
-inline constexpr int kStudySchema = 2;
+inline constexpr int kStudySchema = 3;
 
 /// One parameter of the study's mechanism, in the mechanism's order.
 struct ParameterRecord {
@@ -85,6 +85,13 @@ struct OptimalityRecord {
   std::vector<SensitivityRecord> sensitivities;  ///< all parameters, in the mechanism's order
 };
 
+/// A stage's trade-off, see Front; and what its indicators were after each generation (solvers: none).
+struct FrontRecord {
+  std::vector<std::int64_t> rows;                     ///< of the stage's table, the best by the first objective first
+  std::vector<double> reference;                      ///< corner of the hypervolume; empty: none
+  std::vector<double> hypervolume, spread, igd_plus;  ///< an entry per generation
+};
+
 /// One optimiser's part of the study.
 struct StageRecord {
   std::string optimiser;             ///< "ga"
@@ -95,7 +102,8 @@ struct StageRecord {
   std::string stop;  ///< why it ended, in words; "" while it runs
   std::int64_t best_row = -1;
   std::vector<StartOutcome> starts;            ///< solvers: the starts that have ended
-  std::optional<OptimalityRecord> optimality;  ///< stages with derivatives, once finished
+  std::optional<OptimalityRecord> optimality;  ///< one objective, stages with derivatives, once finished
+  std::optional<FrontRecord> front;            ///< several objectives
 };
 
 /// One design, evaluated with everything that the problem asks for.

@@ -44,6 +44,15 @@ void check_indices(const StudyContents& study) {
       next += start.rows;
       require(start.end_row >= start.first_row && start.end_row < next, group, "a start's end is not among its rows");
     }
+    if (stage.front) {
+      for (const std::int64_t row : stage.front->rows)
+        require(is_row(row, rows), group, "the front holds what is no row of evaluations");
+      for (const auto* series : {&stage.front->hypervolume, &stage.front->spread, &stage.front->igd_plus})
+        require(series->empty() || series->size() == generations.size(), group,
+                "the front's indicators have another length than generations");
+      require(stage.front->reference.empty() || stage.front->reference.size() == study.problem.objectives.size(), group,
+              "the front's reference has not one value per objective");
+    }
     require(ascends(generations.first_row, rows), group, "first_row does not ascend within evaluations");
     require(ascends(generations.population_first, generations.population.size()), group,
             "population_first does not ascend within population");

@@ -41,7 +41,11 @@ std::string line(const ProgressReport& r, const Layout& layout) {
   text += (layout.full_words ? r.optimiser + " " : "") + "generation " + std::to_string(r.generation);
   if (layout.evaluations) text += ", " + std::to_string(r.evaluations) + " evaluations";
   if (layout.rate && r.evaluations_per_second > 0) text += format(", %.3g/s", r.evaluations_per_second);
-  if (r.has_best)
+  if (r.front > 0)
+    text += format(", front %zu", r.front) +
+            (std::isnan(r.hypervolume) ? ""
+                                       : format(layout.full_words ? ", hypervolume %.6g" : ", hv %.4g", r.hypervolume));
+  else if (r.has_best)
     text += layout.full_words ? ", " + r.objective + format(" %.8g", r.best) : format(", best %.6g", r.best);
   else if (!r.objective.empty())
     text += format(", nothing feasible yet (violation %.3g)", r.violation);

@@ -19,7 +19,9 @@ struct ProgressReport {
   bool has_best = false;              ///< the best design so far is feasible
   double best = 0;                    ///< its (first) objective
   std::string objective;
-  double violation = 0;  ///< of the least infeasible design, while none is feasible
+  std::size_t front = 0;   ///< several objectives: designs on the front, shown instead of the best
+  double hypervolume = 0;  ///< NaN: not worked out
+  double violation = 0;    ///< of the least infeasible design, while none is feasible
   double feasible_share = 0;
 };
 

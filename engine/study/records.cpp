@@ -169,7 +169,8 @@ double rounded_to(double value, double step) {
 std::optional<OptimalityRecord> optimality_record(const Study& study, const StageRecord& stage) {
   const DesignProblem& problem = *study.problem;
   const auto row = static_cast<std::size_t>(stage.best_row);
-  if (stage.best_row < 0 || stage.table.status[row] == Status::failed) return std::nullopt;
+  if (problem.objectives().size() != 1 || stage.best_row < 0 || stage.table.status[row] == Status::failed)
+    return std::nullopt;
   const ProblemParts& parts = problem.parts();
   const auto design = stage.table.design(row);
   double at_start = 0;

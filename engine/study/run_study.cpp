@@ -96,10 +96,11 @@ class Run final : public Monitor {
     const StageRecord* record = stage_ < recorded_.size() ? &recorded_[stage_] : nullptr;
     // A generation that an evaluation limit had cut short is reported again, complete.
     GenerationRecords& list = stage.generations;
-    if (index < list.size()) truncate(list, index);
+    if (index < list.size()) truncate(stage, index);
     list.first_row.push_back(static_cast<std::int64_t>(g.first_row));
     if (g.starts && g.starts->size() != stage.starts.size()) stage.starts = *g.starts;
     list.best_row.push_back(g.best_row);
+    if (g.front) record_front(stage, *g.front);
     list.feasible_share.push_back(feasible_share(table, *g.population));
     list.diversity.push_back(diversity(study_.problem->space(), table, *g.population));
     list.population_first.push_back(static_cast<std::int64_t>(list.population.size()));
@@ -146,7 +147,21 @@ class Run final : public Monitor {
     ParallelEvaluator inner_;
   };
 
-  static void truncate(GenerationRecords& list, std::size_t size) {
+  /// The front as it is now, and its indicators at the end of their series.
+  static void record_front(StageRecord& stage, const Front& front) {
+    if (!stage.front) stage.front.emplace();
+    stage.front->rows = front.rows;
+    stage.front->reference = front.reference;
+    stage.front->hypervolume.push_back(front.hypervolume);
+    stage.front->spread.push_back(front.spread);
+    stage.front->igd_plus.push_back(front.igd_plus);
+  }
+
+  static void truncate(StageRecord& stage, std::size_t size) {
+    GenerationRecords& list = stage.generations;
+    if (stage.front)
+      for (auto* series : {&stage.front->hypervolume, &stage.front->spread, &stage.front->igd_plus})
+        series->resize(size);
     list.population.resize(static_cast<std::size_t>(list.population_first[size]));
     for (auto* column : {&list.first_row, &list.best_row, &list.population_first}) column->resize(size);
     for (auto* column : {&list.feasible_share, &list.diversity, &list.seconds}) column->resize(size);
@@ -162,7 +177,12 @@ class Run final : public Monitor {
     std::optional<ReplayEvaluator> replay;
     if (again) replay.emplace(evaluator_, recorded_[index].table);
     Evaluator& evaluator = again ? static_cast<Evaluator&>(*replay) : evaluator_;
-    StageInput input{*study_.problem, evaluator, *this, stage_seed(index), start_designs(study_, stage, contents_)};
+    StageInput input{*study_.problem,
+                     evaluator,
+                     *this,
+                     stage_seed(index),
+                     start_designs(study_, stage, contents_),
+                     known_front(study_, contents_)};
     if (again) {
       input.recorded = &recorded_[index].table;
       input.recorded_starts = recorded_[index].starts;
@@ -183,6 +203,7 @@ class Run final : public Monitor {
     record.finished = true;
     record.stop = words(result.reason);
     record.best_row = result.best_row;
+    if (result.front && !record.front) record.front = {result.front->rows, result.front->reference, {}, {}, {}};
     if (record.table.shape().detail == Detail::derivatives) record.optimality = optimality_record(study_, record);
     return true;
   }
@@ -196,7 +217,8 @@ class Run final : public Monitor {
     if (row < 0 || study_.problem->objectives().empty()) return;
     const auto stage = static_cast<std::int64_t>(stage_);
     const bool first = contents_.best.row < 0 || contents_.best.stage == stage;
-    if (!first) {
+    // Of several objectives the best is each stage's compromise, and the last stage's stands.
+    if (!first && study_.problem->objectives().size() == 1) {
       // Earlier stages win ties, so that a stage that finds nothing better changes nothing.
       const EvaluationTable& before = contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table;
       EvaluationTable pair(table.shape());
@@ -234,6 +256,10 @@ class Run final : public Monitor {
         r.best = g.table->objective_row(row)[0];
       else
         r.violation = violation(g.table->margin_row(row));
+    }
+    if (g.front && r.has_best) {
+      r.front = g.front->rows.size();
+      r.hypervolume = g.front->hypervolume;
     }
     progress_.generation(r);
   }

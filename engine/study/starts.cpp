@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/optimisers/front.hpp"
 #include "engine/optimisers/order.hpp"
 
 namespace pkm {
@@ -68,12 +69,46 @@ std::vector<StartDesign> basins(const Study& study, const StudyContents& content
   return found;
 }
 
+/// The last stage that has found a front; none: -1.
+std::int64_t stage_with_front(const StudyContents& contents) {
+  for (std::size_t s = contents.stages.size(); s-- > 0;)
+    if (contents.stages[s].front && !contents.stages[s].front->rows.empty()) return static_cast<std::int64_t>(s);
+  return -1;
+}
+
+std::vector<StartDesign> on_front(const Study& study, const StudyContents& contents, std::size_t most) {
+  const std::int64_t s = stage_with_front(contents);
+  if (s < 0) return {best_so_far(study, contents)};
+  const StageRecord& stage = contents.stages[static_cast<std::size_t>(s)];
+  std::vector<StartDesign> starts;
+  for (const std::size_t point : spread_choice(scores_of(study.problem->objectives(), stage.table, stage.front->rows), most)) {
+    const auto design = stage.table.design(static_cast<std::size_t>(stage.front->rows[point]));
+    starts.push_back({{design.begin(), design.end()},
+                      "point " + std::to_string(point + 1) + " of the front of stage " + std::to_string(s + 1)});
+  }
+  return starts;
+}
+
 }  // namespace
+
+KnownFront known_front(const Study& study, const StudyContents& contents) {
+  const auto& objectives = study.problem->objectives();
+  if (objectives.size() < 2) return {};
+  KnownFront known{std::vector<double>(objectives.size(), 1.0), {}};
+  const std::int64_t s = stage_with_front(contents);
+  if (s < 0) return known;
+  const StageRecord& stage = contents.stages[static_cast<std::size_t>(s)];
+  const Extent extent = extent_of(scores_of(objectives, stage.table, stage.front->rows));
+  for (std::size_t k = 0; k < objectives.size(); ++k)
+    if (extent.range(k) > 0) known.extents[k] = extent.range(k);
+  known.reference = stage.front->reference;
+  return known;
+}
 
 std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents) {
   const Capabilities can = stage.entry->capabilities(stage.options);
   if (!can.starts) {
-    if (contents.best.row < 0 && can.needs_objective) return {};
+    if (contents.best.row < 0 && can.min_objectives > 0) return {};
     return {best_so_far(study, contents)};
   }
   const Options& options = stage.options;
@@ -82,6 +117,8 @@ std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, c
   if (start == "best-of-basins" && contents.best.row >= 0)
     starts =
         basins(study, contents, static_cast<std::size_t>(options.integer("starts")), options.number("basin_radius"));
+  else if (start == "pareto")
+    starts = on_front(study, contents, static_cast<std::size_t>(options.integer("starts")));
   else if (start != "none")
     starts = {best_so_far(study, contents)};
   if (options.has("designs")) {

@@ -192,13 +192,10 @@ Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues)
 }
 
 Json capabilities_json(const Capabilities& can) {
-  const bool many = can.max_objectives == std::numeric_limits<std::size_t>::max();
-  return {{"max_objectives", many ? Json() : Json(can.max_objectives)},
-          {"constraints", can.constraints},
-          {"discrete", can.discrete},
-          {"needs_gradient", can.needs_gradient},
-          {"needs_objective", can.needs_objective},
-          {"starts", can.starts}};
+  const bool many = can.max_objectives == kManyObjectives;
+  return {{"min_objectives", can.min_objectives}, {"max_objectives", many ? Json() : Json(can.max_objectives)},
+          {"constraints", can.constraints},       {"discrete", can.discrete},
+          {"needs_gradient", can.needs_gradient}, {"starts", can.starts}};
 }
 
 /// What an optimiser can do by default, and with each of its algorithms where it has several.

@@ -20,21 +20,30 @@ std::string history(const StudyContents& contents) {
   for (const StageRecord& stage : contents.stages) {
     const auto& list = stage.generations;
     if (list.size() == 0 || contents.problem.objectives.empty()) continue;
-    std::vector<std::vector<std::string>> rows = {
-        {"generation", "evaluations", contents.problem.objectives[0].name, "feasible", "diversity", "time"}};
+    const bool front = stage.front && stage.front->hypervolume.size() == list.size();
+    if (contents.problem.objectives.size() > 1 && !front) continue;  // starts on a front have a table of their own
+    std::vector<std::vector<std::string>> rows = {{"generation", "evaluations",
+                                                   front ? "hypervolume" : contents.problem.objectives[0].name,
+                                                   "feasible", "diversity", "time"}};
+    if (front) rows[0].insert(rows[0].begin() + 3, "spread");
     const std::size_t step = std::max<std::size_t>(1, (list.size() - 1 + 9) / 10);
     for (std::size_t g = 0; g < list.size();
          g = g + step < list.size() || g == list.size() - 1 ? g + step : list.size() - 1) {
       const std::size_t rows_so_far =
           g + 1 < list.size() ? static_cast<std::size_t>(list.first_row[g + 1]) : stage.table.size();
       char best[40] = "-", share[16], spread[16];
-      if (list.best_row[g] >= 0)
+      if (front)
+        std::snprintf(best, sizeof best, "%.10g", stage.front->hypervolume[g]);
+      else if (list.best_row[g] >= 0)
         std::snprintf(best, sizeof best, "%.10g",
                       stage.table.objective_row(static_cast<std::size_t>(list.best_row[g]))[0]);
       std::snprintf(share, sizeof share, "%.0f %%", 100 * list.feasible_share[g]);
       std::snprintf(spread, sizeof spread, "%.2g", list.diversity[g]);
       rows.push_back(
           {std::to_string(g), std::to_string(rows_so_far), best, share, spread, duration_text(list.seconds[g])});
+      if (!front) continue;
+      std::snprintf(spread, sizeof spread, "%.2g", stage.front->spread[g]);
+      rows.back().insert(rows.back().begin() + 3, spread);
     }
     text += '\n' + stage.optimiser + '\n' + aligned(rows);
   }

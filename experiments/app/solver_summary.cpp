@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/core/text_table.hpp"
+#include "experiments/app/front_summary.hpp"
 
 namespace pkm {
 namespace {
@@ -83,6 +84,7 @@ std::vector<double> values(std::span<const double> row) { return {row.begin(), r
 
 std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) {
   if (stage.starts.empty()) return "";
+  if (problem.objectives.size() > 1) return front_starts_text(problem, stage);
   const auto order = by_end(problem, stage);
   const auto optimum = optima(problem, stage, order);
   std::vector<std::vector<std::string>> rows = {
@@ -126,8 +128,9 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
 
 Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
   Json list = Json::array();
-  const auto order = by_end(problem, stage);
-  const auto optimum = optima(problem, stage, order);
+  const bool one = problem.objectives.size() == 1;  // of several there is no one optimum
+  const auto optimum =
+      one ? optima(problem, stage, by_end(problem, stage)) : std::vector<std::size_t>(stage.starts.size(), 0);
   const auto point = [&](std::int64_t row) {
     const auto r = static_cast<std::size_t>(row);
     Json json = {{"design", Json::object()}, {"objectives", Json::object()}, {"constraints", Json::object()}};

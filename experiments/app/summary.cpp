@@ -5,6 +5,7 @@
 
 #include "engine/core/text_table.hpp"
 #include "engine/study/progress.hpp"
+#include "experiments/app/front_summary.hpp"
 #include "experiments/app/solver_summary.hpp"
 
 namespace pkm {
@@ -36,7 +37,7 @@ struct Columns {
   const FinalRecord& final;
 
   std::vector<std::string> header() const {
-    std::vector<std::string> row = {"", "", "best"};
+    std::vector<std::string> row = {"", "", contents.problem.objectives.size() > 1 ? "compromise" : "best"};
     if (final.rounded) row.push_back("rounded");
     if (final.baseline) row.insert(row.end(), {"baseline", "gain"});
     for (const auto& r : study.references) row.push_back(r.name);
@@ -175,7 +176,7 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
     else
       out << stage.starts.size() << (stage.starts.size() == 1 ? " start, " : " starts, ");
     out << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", ended: " + stage.stop) << '\n'
-        << starts_text(contents.problem, stage);
+        << starts_text(contents.problem, stage) << front_text(contents.problem, stage);
   }
   for (const std::string& note : contents.notes) out << "note: " << note << '\n';
   if (!contents.reproducible())
@@ -236,6 +237,7 @@ Json summary_json(const StudyContents& contents) {
                       {"stop", stage.stop}});
     if (!stage.starts.empty()) stages.back()["starts"] = starts_json(contents.problem, stage);
     if (stage.optimality) stages.back()["optimality"] = optimality_json(*stage.optimality);
+    if (stage.front) stages.back()["front"] = front_json(contents.problem, stage);
   }
   object["stages"] = stages;
   object["reproducible"] = contents.reproducible();

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/setup/assignments.hpp"
+#include "engine/storage/study_file.hpp"
+#include "engine/study/run_study.hpp"
 
 namespace pkm {
 namespace {
@@ -39,6 +41,49 @@ Target named_target(const Catalogues& catalogues, const std::string& name) {
     return of_study(load_study_toml(name, catalogues));
   throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",
                     "a study in TOML, or one of the mechanisms " + join(known), nearest_name(name, known));
+}
+
+/// The design that --from, --front and --stage name.
+std::span<const double> found_design(const StudyContents& contents, const DesignArguments& arguments) {
+  if (!arguments.front) {
+    if (arguments.stage)
+      throw ConfigError({"", 0, "--stage"}, "no --front", "--front N, the point of that stage's front");
+    if (contents.best.row < 0)
+      throw ConfigError({"", 0, "--from"}, arguments.from, "a study file with a best design: this one has none yet");
+    return contents.stages[static_cast<std::size_t>(contents.best.stage)].table.design(
+        static_cast<std::size_t>(contents.best.row));
+  }
+  std::vector<std::string> with;  // stages that have a front
+  for (std::size_t s = 0; s < contents.stages.size(); ++s)
+    if (contents.stages[s].front && !contents.stages[s].front->rows.empty()) with.push_back(std::to_string(s + 1));
+  if (with.empty())
+    throw ConfigError({"", 0, "--front"}, arguments.from, "a study file that holds a front: this one has none");
+  const std::string stage = arguments.stage ? std::to_string(*arguments.stage) : with.back();
+  if (std::find(with.begin(), with.end(), stage) == with.end())
+    throw ConfigError({"", 0, "--stage"}, stage, "a stage with a front: " + join(with));
+  const StageRecord& record = contents.stages[std::stoul(stage) - 1];
+  const std::vector<std::int64_t>& rows = record.front->rows;
+  if (*arguments.front < 1 || *arguments.front > static_cast<std::int64_t>(rows.size()))
+    throw ConfigError({"", 0, "--front"}, std::to_string(*arguments.front),
+                      "a point of the front of stage " + stage + ", 1 to " + std::to_string(rows.size()));
+  return record.table.design(static_cast<std::size_t>(rows[static_cast<std::size_t>(*arguments.front) - 1]));
+}
+
+Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
+  const StudyContents contents = read_study(arguments.from);
+  Target target = of_study(study_of(contents, catalogues));
+  target.parameters = target.study->problem->parameters(found_design(contents, arguments));
+  return target;
+}
+
+Target chosen_target(const Catalogues& catalogues, const DesignArguments& arguments) {
+  if (arguments.from.empty() == arguments.target.empty())
+    throw ConfigError({}, arguments.from.empty() ? "no design" : "'" + arguments.target + "' together with --from",
+                      "a mechanism, a study in TOML or --from F.h5");
+  if (!arguments.from.empty()) return of_file(catalogues, arguments);
+  if (arguments.front || arguments.stage)
+    throw ConfigError({"", 0, arguments.front ? "--front" : "--stage"}, "no --from", "--from F.h5 beside it");
+  return named_target(catalogues, arguments.target);
 }
 
 void set_masses(Target& target, const std::string& model) {
@@ -78,9 +123,13 @@ std::string known_mode(const MechanismInfo& info, const std::string& mode) {
 }
 
 void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
-  command.add_option("MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path")
-      ->type_name("")
-      ->required();
+  command.add_option("MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path; else --from")
+      ->type_name("");
+  command.add_option("--from", arguments.from, "The best design of a study file, and its problem")->type_name("F.h5");
+  command.add_option("--front", arguments.front, "Instead: point N of its trade-off (see 'pkmopt show F.h5')")
+      ->type_name("N");
+  command.add_option("--stage", arguments.stage, "The stage of that front (default: the last that has one)")
+      ->type_name("N");
   add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults",
                   false);
   command
@@ -91,7 +140,7 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
 }
 
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {
-  Target target = named_target(catalogues, arguments.target);
+  Target target = chosen_target(catalogues, arguments);
   if (!arguments.masses.empty()) set_masses(target, arguments.masses);
   const auto given = parse_assignments(arguments.set, "--set", assignable_parameters(target.info()));
   for (std::size_t i = 0; i < given.size(); ++i)

@@ -1,4 +1,4 @@
-// What the commands that look at one design have in common: MECHANISM|STUDY.toml, --set and --json.
+// What the commands that look at one design have in common: MECHANISM|STUDY.toml or --from F.h5, --set and --json.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,11 @@ class App;
 namespace pkm {
 
 struct DesignArguments {
-  std::string target;            ///< a mechanism's name or the path of a study
-  std::vector<std::string> set;  ///< lists of name=value
-  std::string masses;            ///< a mass model; "": the study's, else the mechanism's default
+  std::string target;                        ///< a mechanism's name or the path of a study
+  std::vector<std::string> set;              ///< lists of name=value
+  std::string masses;                        ///< a mass model; "": the study's, else the mechanism's default
+  std::string from;                          ///< instead of `target`: a study file, of which the best design is taken
+  std::optional<std::int64_t> front, stage;  ///< a point of a front of `from`, and of which stage
   bool json = false;
 };
 

@@ -1,0 +1,167 @@
+#include "engine/optimisers/front.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/math/hypervolume.hpp"
+#include "engine/math/igd_plus.hpp"
+
+namespace pkm {
+namespace {
+
+/// Scores from 0 to 1 over the front; 0 where all are alike.
+Scores normalised(const Scores& front) {
+  const Extent extent = extent_of(front);
+  Scores result = front;
+  for (std::size_t i = 0; i < front.size(); ++i)
+    for (std::size_t k = 0; k < front.objectives; ++k) {
+      const double range = extent.range(k);
+      result.values[i * front.objectives + k] = range > 0 ? (front[i][k] - extent.least[k]) / range : 0;
+    }
+  return result;
+}
+
+double distance(const Scores& scores, std::size_t a, std::size_t b) {
+  double greatest = 0;
+  for (std::size_t k = 0; k < scores.objectives; ++k)
+    greatest = std::max(greatest, std::fabs(scores[a][k] - scores[b][k]));
+  return greatest;
+}
+
+}  // namespace
+
+void add_scores(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table, std::size_t row,
+                Scores& scores) {
+  const auto values = table.objective_row(row);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    scores.values.push_back(objectives[k].direction == Direction::maximise ? -values[k] : values[k]);
+}
+
+Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table,
+                 std::span<const std::int64_t> rows) {
+  Scores scores{objectives.size()};
+  for (const std::int64_t row : rows) add_scores(objectives, table, static_cast<std::size_t>(row), scores);
+  return scores;
+}
+
+Extent extent_of(const Scores& front) {
+  Extent e;
+  for (std::size_t k = 0; front.size() > 0 && k < front.objectives; ++k) {
+    e.least.push_back(front[0][k]);
+    e.greatest.push_back(front[0][k]);
+    for (std::size_t i = 1; i < front.size(); ++i) {
+      e.least[k] = std::min(e.least[k], front[i][k]);
+      e.greatest[k] = std::max(e.greatest[k], front[i][k]);
+    }
+  }
+  return e;
+}
+
+std::vector<double> prices(const Scores& front) {
+  const Scores scaled = normalised(front);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < scaled.size(); ++i)
+    result.push_back(std::accumulate(scaled[i], scaled[i] + scaled.objectives, 0.0));
+  return result;
+}
+
+std::size_t compromise(const Scores& front) {
+  const std::vector<double> price = prices(front);
+  return static_cast<std::size_t>(std::min_element(price.begin(), price.end()) - price.begin());
+}
+
+std::vector<std::size_t> knees(const Scores& front) {
+  constexpr double kRadius = 0.2;
+  const Scores scaled = normalised(front);
+  const std::vector<double> price = prices(front);
+  std::vector<std::size_t> order(front.size()), found;
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return price[a] < price[b]; });
+  double end = std::numeric_limits<double>::infinity();  // price of the cheapest end
+  for (std::size_t k = 0; k < front.objectives; ++k)
+    for (std::size_t i = 0; i < front.size(); ++i)
+      if (scaled[i][k] == 0) end = std::min(end, price[i]);
+  for (std::size_t i = 0; i < order.size() && price[order[i]] < end; ++i) {
+    const auto near = [&](std::size_t cheaper) { return distance(scaled, cheaper, order[i]) <= kRadius; };
+    if (std::none_of(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(i), near)) found.push_back(order[i]);
+  }
+  return found;
+}
+
+std::vector<std::size_t> spread_choice(const Scores& front, std::size_t count) {
+  const std::size_t n = front.size();
+  count = std::min(count, n);
+  std::vector<std::size_t> chosen;
+  if (count == 0) return chosen;
+  const Scores scaled = normalised(front);
+  std::vector<double> away(n, std::numeric_limits<double>::infinity());  // from the nearest one chosen
+  const auto choose = [&](std::size_t i) {
+    if (chosen.size() == count || away[i] == 0) return;
+    chosen.push_back(i);
+    for (std::size_t j = 0; j < n; ++j) away[j] = std::min(away[j], distance(scaled, i, j));
+  };
+  for (std::size_t k = 0; k < front.objectives; ++k) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < n; ++i)
+      if (front[i][k] < front[best][k]) best = i;
+    choose(best);
+  }
+  choose(compromise(front));
+  while (chosen.size() < count) {
+    const auto farthest = static_cast<std::size_t>(std::max_element(away.begin(), away.end()) - away.begin());
+    if (away[farthest] == 0) break;
+    choose(farthest);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+FrontKeeper::FrontKeeper(const FrontPlan& plan, const Problem& problem, const EvaluationTable& table)
+    : problem_(problem),
+      table_(table),
+      archive_(problem.objectives().size(), plan.limit),
+      seen_{problem.objectives().size()} {
+  const auto& objectives = problem.objectives();
+  for (std::size_t k = 0; k < objectives.size() && !plan.reference.empty(); ++k) {
+    front_.reference.push_back(plan.reference.at(objectives[k].name));
+    corner_.push_back(sign(k) * front_.reference[k]);
+  }
+  Scores target{objectives.size()};
+  for (const NamedNumbers& point : plan.front)
+    for (std::size_t k = 0; k < objectives.size(); ++k) target.values.push_back(sign(k) * point.at(objectives[k].name));
+  const Extent extent = extent_of(target);
+  for (std::size_t k = 0; k < extent.least.size(); ++k) per_range_.push_back(extent.range(k) > 0 ? extent.range(k) : 1);
+  target_ = std::move(target.values);
+}
+
+bool FrontKeeper::add(std::span<const std::int64_t> rows) {
+  Scores feasible{seen_.objectives};
+  std::vector<std::int64_t> ids;
+  for (const std::int64_t row : rows) {
+    if (table_.status[static_cast<std::size_t>(row)] != Status::feasible) continue;
+    ids.push_back(row);
+    add_scores(problem_.objectives(), table_, static_cast<std::size_t>(row), feasible);
+  }
+  if (corner_.empty()) fix_reference(feasible);
+  if (!archive_.add(feasible, ids)) return false;
+  const Scores& scores = archive_.scores();
+  front_.rows = archive_.ids();
+  compromise_ = front_.rows[compromise(scores)];
+  if (!corner_.empty()) front_.hypervolume = hypervolume(scores.values, scores.objectives, corner_);
+  if (!target_.empty()) front_.igd_plus = igd_plus(scores.values, scores.objectives, target_, per_range_);
+  return true;
+}
+
+void FrontKeeper::fix_reference(const Scores& feasible) {
+  constexpr double kBeyond = 0.1;
+  seen_.values.insert(seen_.values.end(), feasible.values.begin(), feasible.values.end());
+  if (seen_.size() < 2 || seen_.objectives > 3) return;  // the hypervolume is for two and three objectives
+  const Extent extent = extent_of(seen_);
+  for (std::size_t k = 0; k < seen_.objectives; ++k) {
+    corner_.push_back(extent.greatest[k] + kBeyond * extent.range(k));
+    front_.reference.push_back(sign(k) * corner_[k]);
+  }
+}
+
+}  // namespace pkm

@@ -1,0 +1,145 @@
+#include "experiments/app/front_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/core/error.hpp"
+#include "engine/core/text_table.hpp"
+#include "engine/math/hypervolume.hpp"
+#include "engine/optimisers/front.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kAll = 20, kShown = 10;  // shorter fronts are shown whole, others by a choice and their knees
+
+std::string digits(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+Scores scores(const ProblemRecord& problem, const StageRecord& stage) {
+  return scores_of(problem.objectives, stage.table, stage.front->rows);
+}
+
+/// What is special about each point: "best conditioning", "knee", "compromise".
+std::vector<std::vector<std::string>> marks(const ProblemRecord& problem, const Scores& front) {
+  std::vector<std::vector<std::string>> list(front.size());
+  for (std::size_t k = 0; k < front.objectives; ++k) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < front.size(); ++i)
+      if (front[i][k] < front[best][k]) best = i;
+    list[best].push_back("best " + problem.objectives[k].name);
+  }
+  for (const std::size_t i : knees(front)) list[i].push_back("knee");
+  list[compromise(front)].push_back("compromise");
+  return list;
+}
+
+double hypervolume_of(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
+  const std::vector<double>& reference = stage.front->reference;
+  if (reference.empty()) return std::nan("");
+  std::vector<double> corner;
+  for (std::size_t k = 0; k < reference.size(); ++k)
+    corner.push_back(problem.objectives[k].direction == Direction::maximise ? -reference[k] : reference[k]);
+  return hypervolume(front.values, front.objectives, corner);
+}
+
+std::string headline(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
+  const FrontRecord& record = *stage.front;
+  std::string text = "  front: " + std::to_string(front.size()) + (front.size() == 1 ? " design" : " designs");
+  if (!record.reference.empty()) {
+    text += ", hypervolume " + digits(hypervolume_of(problem, stage, front)) + " from";
+    for (std::size_t k = 0; k < record.reference.size(); ++k)
+      text += (k ? ", " : " ") + problem.objectives[k].name + " " + digits(record.reference[k]);
+  }
+  if (!record.spread.empty() && !std::isnan(record.spread.back())) text += "; spread " + digits(record.spread.back());
+  if (!record.igd_plus.empty() && !std::isnan(record.igd_plus.back()))
+    text += "; IGD+ " + digits(record.igd_plus.back());
+  return text + '\n';
+}
+
+Json named(const auto& infos, std::span<const double> values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < infos.size(); ++i)
+    object[infos[i].name] = std::isfinite(values[i]) ? Json(values[i]) : Json();
+  return object;
+}
+
+Json list(const std::vector<double>& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(std::isfinite(value) ? Json(value) : Json());
+  return array;
+}
+
+}  // namespace
+
+std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
+  if (!stage.front || stage.front->rows.empty()) return "";
+  const Scores front = scores(problem, stage);
+  const auto mark = marks(problem, front);
+  std::vector<std::size_t> shown = spread_choice(front, front.size() <= kAll ? kAll : kShown);
+  for (std::size_t i = 0; i < mark.size(); ++i)
+    if (!mark[i].empty()) shown.push_back(i);
+  std::sort(shown.begin(), shown.end());
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+
+  std::vector<std::vector<std::string>> rows = {{"  point"}};
+  for (const auto& v : problem.variables) rows[0].push_back(v.name);
+  for (const auto& o : problem.objectives) rows[0].push_back(o.name);
+  for (const std::size_t i : shown) {
+    const auto row = static_cast<std::size_t>(stage.front->rows[i]);
+    auto& cells = rows.emplace_back(std::vector<std::string>{"  " + std::to_string(i + 1)});
+    for (const double x : stage.table.design(row)) cells.push_back(digits(x));
+    for (const double f : stage.table.objective_row(row)) cells.push_back(digits(f));
+    cells.push_back(join(mark[i]));
+  }
+  return headline(problem, stage, front) + aligned(rows);
+}
+
+Json front_json(const ProblemRecord& problem, const StageRecord& stage) {
+  const FrontRecord& record = *stage.front;
+  const Scores front = scores(problem, stage);
+  Json json = {{"reference", record.reference.empty() ? Json() : named(problem.objectives, record.reference)},
+               {"hypervolume", Json()},
+               {"points", Json::array()},
+               {"generations",
+                {{"hypervolume", list(record.hypervolume)},
+                 {"spread", list(record.spread)},
+                 {"igd_plus", list(record.igd_plus)}}}};
+  if (front.size() == 0) return json;
+  const double volume = hypervolume_of(problem, stage, front);
+  if (std::isfinite(volume)) json["hypervolume"] = volume;
+  const auto mark = marks(problem, front);
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const auto row = static_cast<std::size_t>(record.rows[i]);
+    json["points"].push_back({{"point", i + 1},
+                              {"evaluation", row},
+                              {"design", named(problem.variables, stage.table.design(row))},
+                              {"objectives", named(problem.objectives, stage.table.objective_row(row))},
+                              {"constraints", named(problem.margins, stage.table.margin_row(row))},
+                              {"reports", named(problem.reports, stage.table.report_row(row))},
+                              {"marks", mark[i]}});
+  }
+  return json;
+}
+
+std::string front_starts_text(const ProblemRecord& problem, const StageRecord& stage) {
+  std::vector<std::vector<std::string>> rows = {{"  start", "evaluations"}};
+  for (const auto& o : problem.objectives) rows[0].push_back(o.name);
+  rows[0].insert(rows[0].end(), {"optimality", "ended"});
+  for (const StartOutcome& start : stage.starts) {
+    auto& cells = rows.emplace_back(std::vector<std::string>{"  " + start.origin, std::to_string(start.rows)});
+    const auto from = stage.table.objective_row(static_cast<std::size_t>(start.first_row));
+    const auto to = stage.table.objective_row(static_cast<std::size_t>(start.end_row));
+    for (std::size_t k = 0; k < from.size(); ++k) cells.push_back(digits(from[k]) + " -> " + digits(to[k]));
+    char optimality[16] = "-";
+    if (!std::isnan(start.optimality)) std::snprintf(optimality, sizeof optimality, "%.1e", start.optimality);
+    cells.insert(cells.end(), {optimality, start.stop + (start.message.empty() ? "" : " (" + start.message + ")")});
+  }
+  return aligned(rows);
+}
+
+}  // namespace pkm
