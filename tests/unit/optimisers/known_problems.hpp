@@ -14,21 +14,29 @@
 
 namespace pkm::test {
 
-/// A problem made of one generic function: it fills the margins and returns the objective. Functions of doubles only
-/// make problems without derivatives.
+/// A problem made of one generic function: it fills the objectives and the margins, or it fills the margins and returns
+/// the only objective. Functions of doubles only, or of more than four variables, make problems without derivatives.
 class FunctionProblem final : public Problem {
  public:
   template <class S>
-  using Function = std::function<S(std::span<const S> design, std::span<S> margins)>;
+  using Function = std::function<void(std::span<const S> design, std::span<S> objectives, std::span<S> margins)>;
 
+  template <class F>
+  FunctionProblem(std::vector<Variable> variables, const std::vector<Direction>& directions, std::size_t margins,
+                  F function)
+      : space_(std::move(variables)), function_(function) {
+    if constexpr (std::is_invocable_v<F, std::span<const Dual4>, std::span<Dual4>, std::span<Dual4>>)
+      if (space_.dimension() <= 4) slopes_ = function;
+    for (std::size_t i = 0; i < directions.size(); ++i)
+      objectives_.push_back({"f" + std::to_string(i), "1", "", directions[i]});
+    for (std::size_t i = 0; i < margins; ++i) margins_.push_back({"g" + std::to_string(i), "1", ""});
+  }
   template <class F>
   FunctionProblem(std::vector<Variable> variables, std::size_t margins, F function,
                   Direction direction = Direction::minimise)
-      : space_(std::move(variables)), function_(function) {
-    if constexpr (std::is_invocable_r_v<Dual4, F, std::span<const Dual4>, std::span<Dual4>>) slopes_ = function;
-    objectives_.push_back({"f", "1", "", direction});
-    for (std::size_t i = 0; i < margins; ++i) margins_.push_back({"g" + std::to_string(i), "1", ""});
-  }
+      : FunctionProblem(
+            std::move(variables), {direction}, margins,
+            [function](auto x, auto f, auto g) -> std::void_t<decltype(function(x, g))> { f[0] = function(x, g); }) {}
 
   const DesignSpace& space() const override { return space_; }
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
@@ -36,15 +44,15 @@ class FunctionProblem final : public Problem {
   const std::vector<ReportInfo>& reports() const override { return reports_; }
 
   void evaluate(std::span<const double> design, EvaluationSlot result) const override {
-    result.objectives[0] = function_(design, result.margins);
+    function_(design, result.objectives, result.margins);
     result.status = Status::feasible;
     for (const double margin : result.margins)
       if (margin < 0) result.status = Status::infeasible;
     if (result.detail != Detail::derivatives) return;
-    std::vector<Dual4> x, margins(margins_.size());  // at most four variables
+    std::vector<Dual4> x, values(objectives_.size() + margins_.size());
     for (std::size_t i = 0; i < design.size(); ++i) x.push_back(Dual4::variable(design[i], static_cast<int>(i)));
-    std::vector<Dual4> values = {slopes_(x, margins)};
-    values.insert(values.end(), margins.begin(), margins.end());
+    const std::span<Dual4> all(values);
+    slopes_(x, all.first(objectives_.size()), all.subspan(objectives_.size()));
     std::size_t at = 0;
     for (const Dual4& value : values) {
       result.slopes[at++] = value.a;

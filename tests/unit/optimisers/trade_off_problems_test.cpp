@@ -1,0 +1,78 @@
+// The fronts that optimisers are measured by: their formulas, their published ends, and that nothing dominates them.
+#include "tests/unit/optimisers/trade_off_problems.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/math/hypervolume.hpp"
+#include "engine/math/random.hpp"
+
+namespace pkm::test {
+namespace {
+
+std::vector<TradeOff> every_trade_off() {
+  std::vector<TradeOff> all = unconstrained_trade_offs();
+  for (TradeOff& known : constrained_trade_offs()) all.push_back(std::move(known));
+  return all;
+}
+
+TEST(TradeOffProblems, FrontsObeyTheirFormulas) {
+  const auto convex = [](double f) { return 1 - std::sqrt(f); };
+  const auto concave = [](double f) { return 1 - f * f; };
+  const auto in_pieces = [](double f) { return 1 - std::sqrt(f) - f * std::sin(10 * kPi * f); };
+  const std::vector<std::function<double(double)>> formulas = {convex, concave, in_pieces, convex, concave};
+  const std::vector<TradeOff> problems = zdt_problems();
+  ASSERT_EQ(problems.size(), formulas.size());
+  for (std::size_t i = 0; i < problems.size(); ++i)
+    for (std::size_t at = 0; at < problems[i].front.size(); at += 2)
+      EXPECT_NEAR(problems[i].front[at + 1], formulas[i](problems[i].front[at]), 1e-14) << problems[i].name;
+  const TradeOff sphere = dtlz2();
+  for (std::size_t at = 0; at < sphere.front.size(); at += 3)
+    EXPECT_NEAR(std::hypot(sphere.front[at], sphere.front[at + 1], sphere.front[at + 2]), 1, 1e-14);
+}
+
+TEST(TradeOffProblems, FrontsEndWhereTheyArePublished) {
+  const auto expect_extents = [](const TradeOff& known, std::array<double, 2> first, std::array<double, 2> second,
+                                 double accuracy) {
+    for (const std::size_t end : {0, 1}) {
+      EXPECT_NEAR(extent(known, 0)[end], first[end], accuracy) << known.name;
+      EXPECT_NEAR(extent(known, 1)[end], second[end], accuracy) << known.name;
+    }
+  };
+  const std::vector<TradeOff> problems = zdt_problems();
+  expect_extents(problems[0], {0, 1}, {0, 1}, 0);
+  expect_extents(problems[2], {0, 0.8518328654}, {-0.7733690, 1}, 1e-3);  // to the step of its sample
+  expect_extents(problems[4], {0.2807753191, 1}, {0, 0.9211652}, 1e-5);
+  expect_extents(bnh(), {0, 136}, {4, 50}, 0);
+  expect_extents(srn(), {10.1, 223}, {-217.74, 2.61}, 0.1);
+  expect_extents(tnk(), {0.0416, 1.0384}, {0.0416, 1.0384}, 1e-3);
+  expect_extents(osy(), {-274, -42}, {4, 76}, 1e-12);
+}
+
+TEST(TradeOffProblems, NoDesignDominatesAFront) {
+  for (const TradeOff& known : every_trade_off()) {
+    const std::size_t objectives = known.objectives();
+    const std::vector<double> reference = reference_point(known);
+    const double front = hypervolume(known.front, objectives, reference);
+    std::vector<double> with_designs = known.front;
+    EvaluationTable table(known.problem.shape());
+    table.extend(1);
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+      Stream stream(1, 0, i, Stream::Use::start);
+      std::vector<double> design(known.problem.space().dimension());
+      for (std::size_t k = 0; k < design.size(); ++k) design[k] = known.problem.space().from_unit(k, stream.u01());
+      known.problem.evaluate(design, table.slot(0));
+      if (table.status[0] != Status::feasible) continue;
+      for (std::size_t at = 0; at < known.front.size(); at += objectives) {
+        bool dominated = true;
+        for (std::size_t k = 0; k < objectives; ++k) dominated = dominated && table.objectives[k] < known.front[at + k];
+        ASSERT_FALSE(dominated) << known.name << ", design " << i;
+      }
+      with_designs.insert(with_designs.end(), table.objectives.begin(), table.objectives.end());
+    }
+    // Between the samples of the front there is room for a little more.
+    EXPECT_NEAR(hypervolume(with_designs, objectives, reference), front, 0.01 * front) << known.name;
+  }
+}
+
+}  // namespace
+}  // namespace pkm::test
