@@ -32,7 +32,7 @@ std::vector<Point<N>> in_order(std::span<const double> points, const Point<N>& r
     }
     if (counts) inside.push_back(point);
   }
-  std::sort(inside.begin(), inside.end());
+  if (!std::is_sorted(inside.begin(), inside.end())) std::sort(inside.begin(), inside.end());  // archives often are
   return inside;
 }
 
