@@ -43,7 +43,8 @@ class OptimiserContract : public ::testing::TestWithParam<Case> {
     return make(entry(), problem, changes);
   }
   // One that the optimiser can handle, with constraints if it can.
-  FunctionProblem problem() const { return can().constraints ? welded_beam() : corner(); }
+  FunctionProblem problem() const { return suited(can().constraints ? welded_beam() : corner()); }
+  FunctionProblem suited(const FunctionProblem& one) const { return can().min_objectives > 1 ? one.twice() : one; }
   bool searches() const { return can().min_objectives > 0; }
 };
 
@@ -59,7 +60,7 @@ TEST_P(OptimiserContract, KeepsBounds) {
 class SearchContract : public OptimiserContract {};
 
 TEST_P(SearchContract, DiscreteVariablesStayOnTheLattice) {
-  const auto problem = sphere(3, 0.25);
+  const auto problem = suited(sphere(3, 0.25));
   const Outcome outcome = run(*make_short(problem), problem);
   for (const double x : outcome.table.designs) EXPECT_EQ(x, -5 + 0.25 * std::nearbyint((x + 5) / 0.25));
 }
@@ -114,7 +115,7 @@ TEST_P(OptimiserContract, ChainsOfResumesEqualStraightThrough) {
 }
 
 TEST_P(OptimiserContract, ReportsEveryRowOnceInGenerationsFromZero) {
-  const auto problem = sphere(3);
+  const auto problem = suited(sphere(3));
   const Outcome outcome = run(*make_short(problem), problem);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < outcome.recorder.numbers.size(); ++i) {
@@ -135,7 +136,7 @@ TEST_P(OptimiserContract, ReturnsTheBestOfAllItSaw) {
 }
 
 TEST_P(SearchContract, FindsTheLeastInfeasibleWhereNothingIsFeasible) {
-  const auto problem = infeasible_everywhere();
+  const auto problem = suited(infeasible_everywhere());
   const Outcome outcome = run(*make(entry(), problem), problem, 1, 1 << 30, nullptr, {{1.2, 1.0}});
   const auto best = static_cast<std::size_t>(outcome.result.best_row);
   EXPECT_EQ(outcome.table.status[best], Status::infeasible);
@@ -143,7 +144,7 @@ TEST_P(SearchContract, FindsTheLeastInfeasibleWhereNothingIsFeasible) {
 }
 
 TEST_P(OptimiserContract, NanIsFailedAndNeverBest) {
-  const auto problem = partly_undefined();
+  const auto problem = suited(partly_undefined());
   auto changes = algorithm();
   if (can().starts) changes.emplace_back("multistart", std::int64_t{8});
   const Outcome outcome = run(*make(entry(), problem, changes), problem);
@@ -154,14 +155,14 @@ TEST_P(OptimiserContract, NanIsFailedAndNeverBest) {
     failed += undefined;
   }
   EXPECT_GT(failed, 0u);
-  const double best = outcome.table.objectives[static_cast<std::size_t>(outcome.result.best_row)];
-  EXPECT_NEAR(best, 1.0, !searches() ? 0.3 : can().starts ? 0.05 : 1e-6);
+  const double best = outcome.table.objective_row(static_cast<std::size_t>(outcome.result.best_row))[0];
+  EXPECT_NEAR(best, 1.0, !searches() ? 0.3 : can().starts ? 0.05 : can().min_objectives > 1 ? 1e-4 : 1e-6);
 }
 
 TEST_P(OptimiserContract, NeverExceedsItsEvaluationLimit) {
   for (const double step : {0.0, 3.0}) {
     if (step > 0 && !can().discrete) continue;
-    const auto problem = sphere(2, step);
+    const auto problem = suited(sphere(2, step));
     auto changes = algorithm();
     if (can().starts) {
       changes.emplace_back("multistart", std::int64_t{3});

@@ -61,6 +61,19 @@ class FunctionProblem final : public Problem {
   }
   std::string no_derivatives() const override { return slopes_ ? "" : "the function has none"; }
 
+  /// The same with the only objective twice, without derivatives: a trade-off that shrinks to the optimum.
+  FunctionProblem twice() const {
+    FunctionProblem problem = *this;
+    problem.objectives_.push_back(objectives_[0]);
+    problem.objectives_.back().name = "again";
+    problem.slopes_ = nullptr;
+    problem.function_ = [once = function_](std::span<const double> x, std::span<double> f, std::span<double> g) {
+      once(x, f.first(1), g);
+      f[1] = f[0];
+    };
+    return problem;
+  }
+
  private:
   DesignSpace space_;
   Function<double> function_;

@@ -25,6 +25,7 @@ class Recorder final : public Monitor {
     populations.push_back(*generation.population);
     best_rows.push_back(generation.best_row);
     starts = generation.starts ? *generation.starts : std::vector<StartOutcome>();
+    if (generation.front) fronts.push_back(*generation.front);
     return generation.number < last_;
   }
   void warn(const std::string& sentence) override { warnings.push_back(sentence); }
@@ -34,6 +35,7 @@ class Recorder final : public Monitor {
   std::vector<std::vector<std::int64_t>> populations;
   std::vector<StartOutcome> starts;  ///< that had ended at the last report
   std::vector<std::string> warnings;
+  std::vector<Front> fronts;  ///< several objectives
 
  private:
   std::int64_t last_;
@@ -93,6 +95,12 @@ inline bool same_starts(const std::vector<StartOutcome>& a, const std::vector<St
   });
 }
 
+inline bool same_bits(const Front& a, const Front& b) {
+  const auto same = [](double x, double y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+  return a.rows == b.rows && a.reference == b.reference && same(a.hypervolume, b.hypervolume) &&
+         same(a.spread, b.spread) && same(a.igd_plus, b.igd_plus);
+}
+
 /// Equal designs, results and order, bit for bit (not the times).
 inline bool same_bits(const EvaluationTable& a, const EvaluationTable& b) {
   const auto same = [](const auto& x, const auto& y) {
@@ -107,6 +115,8 @@ inline bool same_bits(const Outcome& a, const Outcome& b) {
   return same_bits(a.table, b.table) && a.recorder.populations == b.recorder.populations &&
          a.recorder.best_rows == b.recorder.best_rows && a.recorder.numbers == b.recorder.numbers &&
          a.recorder.first_rows == b.recorder.first_rows && a.result.reason == b.result.reason &&
+         std::equal(a.recorder.fronts.begin(), a.recorder.fronts.end(), b.recorder.fronts.begin(),
+                    b.recorder.fronts.end(), [](const Front& x, const Front& y) { return same_bits(x, y); }) &&
          a.result.best_row == b.result.best_row && same_starts(a.result.starts, b.result.starts);
 }
 

@@ -1,0 +1,168 @@
+// What a front tells: its most diverse designs, its evenness, compromise, knees, and the indicators of a keeper.
+#include "engine/optimisers/front.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "engine/optimisers/diversity.hpp"
+#include "tests/unit/optimisers/trade_off_problems.hpp"
+
+namespace pkm::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
+
+Scores line(std::initializer_list<double> at) {
+  Scores scores{2};
+  for (const double t : at) scores.add(std::array{t, 1 - t});
+  return scores;
+}
+
+TEST(Diversity, TheMostCrowdedGoesFirst) {
+  // 0.62 has a room of 0.13 x 0.12. Without it 0.5 has most, 0.25 x 0.3, then 0.75 and 0.2.
+  const Scores scores = line({0, 0.5, 0.62, 0.2, 0.75, 1});
+  EXPECT_THAT(most_diverse(scores, 5), ElementsAre(0, 5, 1, 4, 3, 2));
+  EXPECT_THAT(most_diverse(scores, 3), ElementsAre(0, 5, 1, 4, 3, 2));  // 0.75 has 0.5 x 0.25 once 0.2 is gone
+}
+
+TEST(Diversity, EndsStayInEveryNumberOfScores) {
+  std::mt19937 engine(5);
+  for (const std::size_t objectives : {2u, 3u, 4u}) {
+    Scores scores{objectives};
+    for (int i = 0; i < 60; ++i) {
+      std::vector<double> point;
+      double square = 0;
+      for (std::size_t k = 0; k < objectives; ++k) {
+        point.push_back(1 + static_cast<double>(engine() % 1000));
+        square += point.back() * point.back();
+      }
+      for (double& x : point) x /= std::sqrt(square);
+      scores.add(point);
+    }
+    const auto order = most_diverse(scores, 20);
+    for (std::size_t k = 0; k < objectives; ++k) {
+      std::uint32_t best = 0;
+      for (std::uint32_t i = 1; i < scores.size(); ++i)
+        if (scores[i][k] < scores[best][k]) best = i;
+      EXPECT_THAT(std::vector(order.begin(), order.begin() + 20), ::testing::Contains(best)) << objectives;
+    }
+    auto sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t i = 0; i < sorted.size(); ++i) EXPECT_EQ(sorted[i], i);
+  }
+}
+
+TEST(Diversity, ThinnedFrontsAreMoreEven) {
+  std::mt19937 engine(3);
+  Scores scores{3};
+  for (int i = 0; i < 600; ++i) {
+    const double a = static_cast<double>(engine()) / 4294967296.0 * 1.5,
+                 b = static_cast<double>(engine()) / 4294967296.0 * 1.5;
+    scores.add(std::array{std::cos(a) * std::cos(b), std::cos(a) * std::sin(b), std::sin(a)});
+  }
+  const auto order = most_diverse(scores, 60);
+  Scores first{3}, thinned{3};
+  for (std::size_t i = 0; i < 60; ++i) {
+    first.add({scores[i], 3});
+    thinned.add({scores[order[i]], 3});
+  }
+  EXPECT_LT(spread(thinned), 0.5 * spread(first));
+}
+
+TEST(Diversity, EvenFrontsHaveNoSpread) {
+  EXPECT_NEAR(spread(line({0, 0.25, 0.5, 0.75, 1})), 0, 1e-15);
+  EXPECT_GT(spread(line({0, 0.1, 0.5, 0.6, 1})), 0.1);
+  EXPECT_EQ(spread(line({0, 1})), 0);
+}
+
+TEST(Front, TheCompromiseWeighsRanges) {
+  // Second score in thousands: without ranges the last one would be cheapest.
+  const Scores scores{2, {0, 4000, 1, 1000, 4, 0}};
+  EXPECT_EQ(compromise(scores), 1u);
+  EXPECT_THAT(prices(scores), ElementsAre(1, 0.5, 1));
+}
+
+TEST(Front, KneesAreBendsAndNotEnds) {
+  // Two bends towards the origin, joined by straight pieces; the one in the middle bulges outwards.
+  const std::array<double, 2> corners[] = {{0.0, 1.0}, {0.05, 0.7}, {0.45, 0.6}, {0.7, 0.05}, {1.0, 0.0}};
+  Scores scores{2};
+  for (std::size_t i = 0; i + 1 < std::size(corners); ++i)
+    for (int k = 0; k < 10; ++k)
+      scores.add(std::array{corners[i][0] + (corners[i + 1][0] - corners[i][0]) * k / 10,
+                            corners[i][1] + (corners[i + 1][1] - corners[i][1]) * k / 10});
+  scores.add(corners[4]);
+  EXPECT_THAT(knees(scores), UnorderedElementsAre(10, 30));
+  EXPECT_TRUE(knees(line({0, 0.5, 1})).empty());  // a straight front has none
+}
+
+TEST(Front, AChoiceHasTheEndsAndTheCompromise) {
+  Scores scores{2};
+  for (int i = 0; i <= 100; ++i) scores.add(std::array{i / 100.0, std::pow(1 - i / 100.0, 3)});
+  const auto chosen = spread_choice(scores, 5);
+  ASSERT_EQ(chosen.size(), 5u);
+  EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+  EXPECT_THAT(chosen, ::testing::IsSupersetOf({std::size_t{0}, std::size_t{100}, compromise(scores)}));
+  EXPECT_EQ(spread_choice(line({0, 0, 1}), 3).size(), 2u);  // equal points count once
+  EXPECT_TRUE(spread_choice(Scores{2}, 3).empty());
+}
+
+/// Objectives as given, in directions of their own; infeasible where asked for.
+class Given : public ::testing::Test {
+ protected:
+  std::vector<std::int64_t> add(std::initializer_list<std::array<double, 2>> rows, Status status = Status::feasible) {
+    std::vector<std::int64_t> added;
+    for (const auto& values : rows) {
+      const std::size_t row = table_.extend(1);
+      std::ranges::copy(values, table_.slot(row).objectives.begin());
+      table_.status[row] = status;
+      added.push_back(static_cast<std::int64_t>(row));
+    }
+    return added;
+  }
+  FunctionProblem problem_{box(1, 0, 1),
+                           {Direction::maximise, Direction::minimise},
+                           0,
+                           [](std::span<const double>, std::span<double>, std::span<double>) {}};
+  EvaluationTable table_{problem_.shape()};
+};
+
+TEST_F(Given, OnlyFeasibleDesignsCount) {
+  FrontKeeper keeper({}, problem_, table_);
+  EXPECT_FALSE(keeper.add(add({{9, 0}}, Status::infeasible)));
+  EXPECT_EQ(keeper.compromise_row(), -1);
+  EXPECT_TRUE(std::isnan(keeper.front().hypervolume));
+  EXPECT_TRUE(keeper.add(add({{2, 5}})));
+  EXPECT_TRUE(keeper.front().reference.empty());  // one design has no range
+  EXPECT_TRUE(keeper.add(add({{4, 7}})));
+  EXPECT_THAT(keeper.front().rows, ElementsAre(2, 1));  // the best by the first objective first
+}
+
+TEST_F(Given, TheReferenceIsATenthBeyondTheFirstFeasibleDesigns) {
+  FrontKeeper keeper({}, problem_, table_);
+  keeper.add(add({{2, 5}, {4, 7}, {3, 15}}));
+  EXPECT_THAT(keeper.front().reference, ElementsAre(2 - 0.1 * 2, 15 + 0.1 * 10));
+  const auto fixed = keeper.front().reference;
+  const double before = keeper.front().hypervolume;
+  EXPECT_NEAR(before, (4 - 1.8) * (16 - 7) + (2 - 1.8) * (7 - 5), 1e-12);
+  keeper.add(add({{5, 1}, {0, 0}}));
+  EXPECT_EQ(keeper.front().reference, fixed);
+  EXPECT_NEAR(keeper.front().hypervolume, (5 - 1.8) * (16 - 1), 1e-12);  // (0, 0) is worse than the corner
+}
+
+TEST_F(Given, ReferencesCanBeGiven) {
+  FrontKeeper keeper(
+      {.limit = 0, .reference = {{"f0", 1}, {"f1", 10}}, .front = {{{"f0", 4}, {"f1", 2}}, {{"f0", 3}, {"f1", 1}}}},
+      problem_, table_);
+  keeper.add(add({{3, 4}}));
+  EXPECT_DOUBLE_EQ(keeper.front().hypervolume, 2 * 6);
+  // Ranges of the reference front are 1 and 1: (1, 2) short of its first point, (0, 3) of its second.
+  EXPECT_DOUBLE_EQ(keeper.front().igd_plus, (std::sqrt(5.0) + 3) / 2);
+}
+
+}  // namespace
+}  // namespace pkm::test
