@@ -162,7 +162,7 @@ TEST(CliList, TellsEverythingOfAnEntry) {
   const auto ga = pkmopt({"list", "optimisers", "ga", "--json"}).json();
   EXPECT_EQ(ga["capabilities"]["max_objectives"], 1);
   const auto sweep = pkmopt({"list", "optimisers", "sweep"}).out;
-  EXPECT_THAT(sweep, HasSubstr("  max_objectives   no limit\n"));
+  EXPECT_THAT(sweep, HasSubstr("  max_objectives  no limit\n"));
   EXPECT_THAT(sweep, HasSubstr("one-at-a-time; full-factorial"));
 }
 

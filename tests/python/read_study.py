@@ -63,7 +63,8 @@ def snippets(path, readme):
     with open(readme, encoding="utf-8") as f:
         blocks = re.findall(r"```python\n(.*?)```", f.read(), re.DOTALL)
     with tempfile.TemporaryDirectory() as folder:
-        shutil.copy(path, os.path.join(folder, "wide.h5"))
+        for name in ("wide.h5", "front.h5"):
+            shutil.copy(path, os.path.join(folder, name))
         os.chdir(folder)
         for block in blocks:
             exec(compile(block, readme, "exec"), {})

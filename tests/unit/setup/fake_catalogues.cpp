@@ -158,9 +158,9 @@ std::vector<OptimiserEntry> make_optimisers() {
       target,
       {"width", OptionKind::integer, "1", {}, false, 1, 100, {}, "starts per variable (default: 3 per variable)"}};
   return {{"ga", "evolves", can<Capabilities{}>, options, make_idle, resolve_width},
-          {"simple", "unconstrained, continuous", can<Capabilities{1, false, false, false, true}>, {}, make_idle},
-          {"newton", "by derivatives", can<Capabilities{1, true, true, true, true}>, {}, make_idle},
-          {"sweep", "tries all", can<Capabilities{9, true, true, false, false}>, {}, make_idle},
+          {"simple", "unconstrained, continuous", can<Capabilities{.constraints = false, .discrete = false}>, {}, make_idle},
+          {"newton", "by derivatives", can<Capabilities{.needs_gradient = true}>, {}, make_idle},
+          {"sweep", "tries all", can<Capabilities{.min_objectives = 0, .max_objectives = 9}>, {}, make_idle},
           {"broken", "refuses its options", can<Capabilities{}>, {}, make_broken}};
 }
 

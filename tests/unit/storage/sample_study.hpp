@@ -91,6 +91,7 @@ inline StudyContents sample_study() {
   study.stages[0].finished = true;
   study.stages[0].stop = "generation limit";
   study.stages[0].best_row = 8;
+  study.stages[0].front = FrontRecord{{4, 0, 8}, {0.25}, {odd_nan(), 0.5, 0.75}, {0.1, 0.2, 0.3}, {3, 2, 1}};
   study.stages.push_back(sample_stage(study.problem.shape(), 0, 0));  // begun, nothing evaluated
   study.stages[1].optimiser = "nlopt";
   study.stages[1].options.clear();

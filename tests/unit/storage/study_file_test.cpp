@@ -69,6 +69,13 @@ TEST(StudyFile, KeepsEverything) {
   EXPECT_EQ(read.stages[2].optimality->active[0].multiplier, 0.2);
   EXPECT_TRUE(std::isnan(read.stages[2].optimality->sensitivities[0].reoptimised));
   EXPECT_FALSE(read.stages[0].optimality);
+  ASSERT_TRUE(read.stages[0].front);
+  EXPECT_THAT(read.stages[0].front->rows, testing::ElementsAre(4, 0, 8));
+  EXPECT_THAT(read.stages[0].front->reference, testing::ElementsAre(0.25));
+  EXPECT_TRUE(same_bits(written.stages[0].front->hypervolume, read.stages[0].front->hypervolume));
+  EXPECT_EQ(read.stages[0].front->spread, written.stages[0].front->spread);
+  EXPECT_EQ(read.stages[0].front->igd_plus, written.stages[0].front->igd_plus);
+  EXPECT_FALSE(read.stages[1].front);
   EXPECT_FALSE(read.reproducible());
   EXPECT_EQ(read.notes, written.notes);
   ASSERT_TRUE(read.final && read.final->best && read.final->baseline && read.final->map);
@@ -197,6 +204,18 @@ TEST(StudyFile, FilesOfSchemaTwoStillOpen) {
   EXPECT_THAT(study.notes, testing::ElementsAre("stage 3: start 1 began anew."));
 }
 
+TEST(StudyFile, FilesOfSchemaThreeStillOpen) {
+  // Written once by write_study when schema 3 was fixed, as schema-1.h5 was. Never to be replaced.
+  const StudyContents study = read_study(PKM_TEST_DATA "/schema-3.h5");
+  ASSERT_EQ(study.stages.size(), 3u);
+  ASSERT_TRUE(study.stages[0].front);
+  EXPECT_THAT(study.stages[0].front->rows, testing::ElementsAre(4, 0, 8));
+  EXPECT_THAT(study.stages[0].front->reference, testing::ElementsAre(0.25));
+  EXPECT_TRUE(std::isnan(study.stages[0].front->hypervolume[0]));
+  EXPECT_THAT(study.stages[0].front->spread, testing::ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_THAT(study.stages[0].front->igd_plus, testing::ElementsAre(3, 2, 1));
+}
+
 TEST(StudyFileRefuses, MissingFile) {
   const Folder folder;
   const std::string path = folder / "none.h5";
@@ -240,10 +259,10 @@ TEST(StudyFileRefuses, NewerSchema) {
   const std::string path = folder / "s.h5";
   write_study(path, StudyContents{});
   std::string bytes = slurp(path);
-  bytes.replace(bytes.find("schema=2"), 8, "schema=3");
+  bytes.replace(bytes.find("schema=3"), 8, "schema=4");
   spill(path, bytes);
   EXPECT_EQ(storage_error([&] { read_study(path); }),
-            path + ": written with study schema 3, but this program reads schemas up to 2; use a newer pkmopt");
+            path + ": written with study schema 4, but this program reads schemas up to 3; use a newer pkmopt");
   EXPECT_EQ(slurp(path), bytes);
 }
 

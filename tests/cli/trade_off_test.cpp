@@ -1,0 +1,202 @@
+// Studies with several objectives through the built program: the two of experiments/ killed and resumed, what show and
+// evaluate say of a front, and what is refused.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/optimisers/dominance.hpp"
+#include "engine/optimisers/front.hpp"
+#include "tests/cli/study_program.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+class TradeOffProgram : public StudyProgram {
+ protected:
+  static std::string experiment(const std::string& name) {
+    std::ifstream in(std::string(PKM_EXPERIMENTS) + "/" + name);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  static void replace(std::string& text, const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  }
+  void write(const std::string& text) const { std::ofstream(folder_ + "/study.toml") << text; }
+
+  /// The study of experiments/, shorter, with a checkpoint after every generation.
+  static std::string volume_conditioning() {
+    std::string text = experiment("4ppa-2par/volume-conditioning.toml");
+    replace(text, "population = 100", "population = 40");
+    replace(text, "generations = 100", "generations = 20");
+    replace(text, "starts = 12", "starts = 4");
+    return text + "[checkpoint]\nevery = 0\n";
+  }
+  static std::string volume_coupling_force() {
+    std::string text = experiment("3crr-r-cru/volume-coupling-force.toml");
+    replace(text, "population = 120", "population = 40");
+    replace(text, "generations = 60", "generations = 15");
+    replace(text, "starts = 9", "starts = 3\nevaluations = 60");
+    return text + "[checkpoint]\nevery = 0\n";
+  }
+  Json show(const std::string& file) {
+    EXPECT_EQ(run({"show", file, "--json"}), 0) << output_;
+    return Json::parse(output_);
+  }
+  /// The sentence with which `check` refuses the text.
+  std::string refusal(const std::string& text) {
+    write(text);
+    EXPECT_EQ(run({"check", "study.toml"}), 2);
+    return output_;
+  }
+};
+
+TEST_F(TradeOffProgram, VolumeAgainstConditioningKilledAnywhereEndsTheSame) {
+  write(volume_conditioning());
+  kill_at_random(4, 1);
+}
+
+TEST_F(TradeOffProgram, ThreeObjectivesKilledAnywhereEndTheSame) {
+  write(volume_coupling_force());
+  kill_at_random(4, 2);
+}
+
+TEST_F(TradeOffProgram, ThreadsAndExtensionsDoNotMatter) {
+  std::string text = volume_conditioning();
+  text.erase(text.find("[[stage]]                                     # points"));
+  write(text);
+  ASSERT_EQ(run({"run", "study.toml", "--output", "one.h5", "--threads", "1", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--output", "two.h5", "--threads", "2", "--quiet"}), 0) << output_;
+  EXPECT_EQ(first_difference(read("one.h5"), read("two.h5")), "");
+  ASSERT_EQ(run({"resume", "two.h5", "--generations", "30", "--quiet"}), 0) << output_;
+  replace(text, "generations = 20", "generations = 30");
+  write(text);
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  const StudyContents extended = read("two.h5"), straight = read("straight.h5");
+  EXPECT_EQ(extended.stages[0].front->rows, straight.stages[0].front->rows);
+  EXPECT_EQ(extended.stages[0].front->hypervolume, straight.stages[0].front->hypervolume);
+}
+
+TEST_F(TradeOffProgram, ShowsFrontsAndEvaluatesTheirPointsAnew) {
+  write(volume_conditioning());
+  ASSERT_EQ(run({"run", "study.toml", "--output", "f.h5"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("best workspace-ratio"));
+  EXPECT_THAT(output_, HasSubstr("compromise"));
+  EXPECT_THAT(output_, HasSubstr("of the front of stage 1"));
+  EXPECT_THAT(output_, HasSubstr("from workspace-ratio 0, conditioning 0"));
+
+  const Json json = show("f.h5");
+  const StudyContents contents = read("f.h5");
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Json& front = json["stages"][s]["front"];
+    const StageRecord& stage = contents.stages[s];
+    ASSERT_EQ(front["points"].size(), stage.front->rows.size());
+    double before = 1e300;
+    for (std::size_t i = 0; i < front["points"].size(); ++i) {
+      const auto row = static_cast<std::size_t>(stage.front->rows[i]);
+      EXPECT_EQ(front["points"][i]["objectives"]["conditioning"], stage.table.objective_row(row)[1]);
+      EXPECT_EQ(front["points"][i]["design"]["l_d"], stage.table.design(row)[3]);
+      EXPECT_EQ(stage.table.status[row], Status::feasible);
+      EXPECT_LT(stage.table.objective_row(row)[0], before);  // the best by the first objective first
+      before = stage.table.objective_row(row)[0];
+    }
+  }
+  EXPECT_EQ(json["stages"][0]["front"]["generations"]["hypervolume"].back(), json["stages"][0]["front"]["hypervolume"]);
+  EXPECT_EQ(json["stages"][0]["front"]["reference"], (Json{{"workspace-ratio", 0.0}, {"conditioning", 0.0}}));
+
+  for (const auto& [stage, point] : {std::pair{1, 7}, {2, 2}}) {
+    ASSERT_EQ(run({"evaluate", "--from", "f.h5", "--stage", std::to_string(stage), "--front", std::to_string(point),
+                   "--json"}),
+              0)
+        << output_;
+    const Json anew = Json::parse(output_);
+    const Json& stored =
+        json["stages"][static_cast<std::size_t>(stage - 1)]["front"]["points"][static_cast<std::size_t>(point - 1)];
+    EXPECT_EQ(anew["objectives"], stored["objectives"]);
+    EXPECT_EQ(anew["constraints"], stored["constraints"]);
+  }
+  ASSERT_EQ(run({"evaluate", "--from", "f.h5", "--front", "2", "--json"}), 0) << output_;  // of the last stage
+  EXPECT_EQ(Json::parse(output_)["objectives"], json["stages"][1]["front"]["points"][1]["objectives"]);
+  ASSERT_EQ(run({"evaluate", "--from", "f.h5", "--json"}), 0) << output_;  // the compromise
+  EXPECT_EQ(Json::parse(output_)["objectives"], json["best"]["objectives"]);
+}
+
+TEST_F(TradeOffProgram, RefinedPointsDominateTheirStarts) {
+  write(volume_conditioning());
+  ASSERT_EQ(run({"run", "study.toml", "--output", "f.h5", "--quiet"}), 0) << output_;
+  const StudyContents contents = read("f.h5");
+  const StageRecord &evolved = contents.stages[0], &refined = contents.stages[1];
+  ASSERT_EQ(refined.starts.size(), 4u);
+  for (const StartOutcome& start : refined.starts) {
+    const auto from = refined.table.objective_row(static_cast<std::size_t>(start.first_row));
+    const auto to = refined.table.objective_row(static_cast<std::size_t>(start.end_row));
+    EXPECT_GE(to[0], from[0]);
+    EXPECT_GE(to[1], from[1]);
+    EXPECT_EQ(refined.table.status[static_cast<std::size_t>(start.end_row)], Status::feasible);
+    EXPECT_LT(start.optimality, 1e-2);  // ends may lie on a kink of the conditioning's quadrature
+  }
+  // No evolved design dominates a refined one.
+  const auto& objectives = contents.problem.objectives;
+  const Scores a = scores_of(objectives, evolved.table, evolved.front->rows);
+  const Scores b = scores_of(objectives, refined.table, refined.front->rows);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < b.size(); ++k) EXPECT_FALSE(dominates(a[i], b[k], 2)) << i << ' ' << k;
+}
+
+TEST_F(TradeOffProgram, RefusesWhatDoesNotFit) {
+  const std::string good = volume_conditioning();
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    replace(text, from, to);
+    return refusal(text);
+  };
+  std::string one = good;
+  replace(one, "[[objective]]\ntype = \"conditioning\"", "[[report]]\ntype = \"conditioning\"");
+  replace(one, "reference", "# reference");
+  EXPECT_THAT(refusal(one),
+              HasSubstr("the optimiser nsga2 needs 2 objectives, but the study has one (workspace-ratio)"));
+  EXPECT_THAT(changed("optimiser = \"nsga2\"\npopulation = 40\ngenerations = 20\nreference", "optimiser = \"ga\"\n#"),
+              HasSubstr("the optimiser ga handles 1 objective, but the study has 2 (workspace-ratio, conditioning)"));
+  EXPECT_THAT(changed(", conditioning = 0 }", " }"),
+              HasSubstr("a value for every objective: workspace-ratio, conditioning"));
+  EXPECT_THAT(changed("conditioning = 0 }", "conditionin = 0 }"), HasSubstr("did you mean 'conditioning'?"));
+  EXPECT_THAT(changed("start = \"pareto\"", "start = \"best\""), HasSubstr("handles 1 objective, but the study has 2"));
+  EXPECT_THAT(changed("\"slsqp\"", "\"lbfgs\""), HasSubstr("handles no constraints"));
+  EXPECT_THAT(changed("start = \"pareto\"", "start = \"pareto\"\nobjective = \"volume\""),
+              HasSubstr("one of workspace-ratio, conditioning"));
+  std::string first = good;
+  first.erase(first.find("[[stage]]\noptimiser = \"nsga2\""),
+              first.find("[[stage]]         ") - first.find("[[stage]]\n"));
+  EXPECT_THAT(refusal(first), HasSubstr("needs a [[stage]] before it that finds a front, such as nsga2"));
+}
+
+TEST_F(TradeOffProgram, RefusesPointsThatAreNotThere) {
+  std::string text = volume_conditioning();
+  text.erase(text.find("[[stage]]                                     # points"));
+  write(text);
+  ASSERT_EQ(run({"run", "study.toml", "--output", "f.h5", "--quiet"}), 0) << output_;
+  const std::size_t count = read("f.h5").stages[0].front->rows.size();
+  const auto refused = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "evaluate");
+    EXPECT_EQ(run(arguments), 2);
+    return output_;
+  };
+  EXPECT_THAT(refused({"--from", "f.h5", "--front", "0"}),
+              HasSubstr("--front: found 0; expected a point of the front of stage 1, 1 to " + std::to_string(count)));
+  EXPECT_THAT(refused({"--from", "f.h5", "--front", "1", "--stage", "2"}),
+              HasSubstr("--stage: found 2; expected a stage with a front: 1"));
+  EXPECT_THAT(refused({"--from", "f.h5", "--stage", "1"}), HasSubstr("--stage: found no --front"));
+  EXPECT_THAT(refused({"4ppa-2par", "--front", "1"}), HasSubstr("--front: found no --from"));
+  EXPECT_THAT(refused({"4ppa-2par", "--from", "f.h5"}), HasSubstr("'4ppa-2par' together with --from"));
+  EXPECT_THAT(refused({}), HasSubstr("expected a mechanism, a study in TOML or --from F.h5"));
+}
+
+}  // namespace
+}  // namespace pkm::testing
