@@ -159,8 +159,13 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
 
 std::vector<OptionSpec> options() {
   std::vector<OptionSpec> specs = evolution_options("the hypervolume");
-  for (OptionSpec& spec : specs)  // differences of members far apart on a front lead nowhere
-    if (spec.name == "crossover") spec.initial = "sbx";
+  for (OptionSpec& spec : specs) {
+    if (spec.name == "crossover") spec.initial = "sbx";  // differences of members far apart on a front lead nowhere
+    if (spec.name == "tolerance") spec.initial = 1e-4;   // a front goes on growing a little
+    if (spec.name != "population") continue;
+    spec.initial = std::int64_t{100};
+    spec.meaning = "designs per generation";
+  }
   specs.push_back(integer_option("archive", {}, 4, 1e9,
                                  "most designs of the front that is kept; more are thinned out (default: no limit)"));
   OptionSpec reference;

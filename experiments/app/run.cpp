@@ -108,17 +108,30 @@ class SeedProgress final : public Progress {
   int seeds_, seed_ = 0;
 };
 
+/// Of the last front that has been measured; NaN where none has.
+double evolved_hypervolume(const StudyContents& contents) {
+  double last = std::numeric_limits<double>::quiet_NaN();
+  for (const StageRecord& stage : contents.stages)
+    if (stage.front && !stage.front->hypervolume.empty()) last = stage.front->hypervolume.back();
+  return last;
+}
+
 /// What came of the seeds: a row each, and the numbers of the spread.
 struct SeedTable {
-  std::vector<std::vector<std::string>> rows = {{"seed", "best", "exact", "evaluations", "time", "file"}};
+  explicit SeedTable(bool several_objectives)
+      : trade_off(several_objectives),
+        rows{{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}} {}
+
+  bool trade_off;
+  std::vector<std::vector<std::string>> rows;
   std::vector<double> best, exact, seconds;
 
   void add(const StudyContents& contents, const std::string& file) {
     const auto& final = contents.final;
     const auto objective = [](const std::optional<DesignRecord>& r) { return r && !r->objectives.empty(); };
     const bool feasible = final && objective(final->best) && final->best->status == Status::feasible;
-    const bool has_exact = feasible && objective(final->best_exact);
-    if (feasible) best.push_back(final->best->objectives[0]);
+    const bool has_exact = feasible && !trade_off && objective(final->best_exact);
+    if (feasible) best.push_back(trade_off ? evolved_hypervolume(contents) : final->best->objectives[0]);
     if (has_exact) exact.push_back(final->best_exact->objectives[0]);
     seconds.push_back(contents.seconds);
     rows.push_back({std::to_string(contents.seed), feasible ? digits(best.back()) : "nothing feasible",
@@ -154,7 +167,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
     if (std::filesystem::exists(file_of(i)))
       throw StorageError(file_of(i) + " exists already; resume it with --resume, or overwrite it with --force");
 
-  SeedTable table;
+  SeedTable table(study.problem->objectives().size() > 1);
   const auto screen = make_progress(arguments.common);
   SeedProgress progress(*screen, arguments.seeds);
   for (int i = 0; i < arguments.seeds && session.exit_code == kDone; ++i) {
