@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12 packages), builds everything and runs every test; the last lines are CTest's.
-# In this order: formatting; a GCC build with address and undefined-behaviour sanitizers; a Clang build, whose thread
-# sanitizer watches the tests that use threads; the release build. Warnings are errors in all three builds.
+# In this order: formatting; a Clang build with address and undefined-behaviour sanitizers; another whose thread sanitizer
+# watches the tests that use threads; the release build by GCC. Warnings are errors in all three builds.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source experiments/debian-packages.sh
@@ -27,7 +27,7 @@ step "packages" pkm_install_missing "${pkm_build_packages[@]}" "${pkm_test_packa
 step "formatting" check_format
 step "build with address and undefined-behaviour sanitizers" build asan
 step "its tests" ctest --preset asan
-step "build with Clang and the thread sanitizer" build tsan
+step "build with the thread sanitizer" build tsan
 step "its tests" ctest --preset tsan
 step "release build" build ci
 
