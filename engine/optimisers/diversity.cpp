@@ -222,7 +222,7 @@ std::vector<std::uint32_t> most_diverse(const Scores& scores, std::size_t keep) 
 }
 
 double spread(const Scores& scores) {
-  if (scores.size() < 3) return 0;
+  if (scores.size() < 3) return std::numeric_limits<double>::quiet_NaN();
   Line line(scores);
   line.normalise();
   Neighbours nearest(line, 1);

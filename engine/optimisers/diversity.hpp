@@ -20,7 +20,7 @@ namespace pkm {
 std::vector<std::uint32_t> most_diverse(const Scores& scores, std::size_t keep);
 
 /// How unevenly the designs of a front lie: mean absolute deviation of the distances to the nearest neighbour over
-/// their mean, each score in units of its range. 0: all alike. 0 for fewer than three designs.
+/// their mean, each score in units of its range. 0: all alike. NaN for fewer than three designs.
 double spread(const Scores& scores);
 
 }  // namespace pkm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "engine/math/hypervolume.hpp"
@@ -67,13 +68,24 @@ std::vector<double> prices(const Scores& front) {
 }
 
 std::size_t compromise(const Scores& front) {
+  const Scores scaled = normalised(front);
   const std::vector<double> price = prices(front);
-  return static_cast<std::size_t>(std::min_element(price.begin(), price.end()) - price.begin());
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < scaled.size(); ++i) {
+    const double worst = *std::max_element(scaled[i], scaled[i] + scaled.objectives);
+    if (worst > least || (worst == least && price[i] >= price[best])) continue;
+    least = worst;
+    best = i;
+  }
+  return best;
 }
 
 std::vector<std::size_t> knees(const Scores& front) {
   constexpr double kRadius = 0.2;
+  constexpr double kCheaper = 1e-9;  // than an end, so that rounding makes no knee of a straight front
   const Scores scaled = normalised(front);
+  const Extent extent = extent_of(front);
   const std::vector<double> price = prices(front);
   std::vector<std::size_t> order(front.size()), found;
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -81,10 +93,11 @@ std::vector<std::size_t> knees(const Scores& front) {
   double end = std::numeric_limits<double>::infinity();  // price of the cheapest end
   for (std::size_t k = 0; k < front.objectives; ++k)
     for (std::size_t i = 0; i < front.size(); ++i)
-      if (scaled[i][k] == 0) end = std::min(end, price[i]);
-  for (std::size_t i = 0; i < order.size() && price[order[i]] < end; ++i) {
+      if (extent.range(k) > 0 && scaled[i][k] == 0) end = std::min(end, price[i]);
+  for (std::size_t i = 0; i < order.size() && price[order[i]] < end - kCheaper; ++i) {
+    // The next cheaper ones are the likeliest to be near.
     const auto near = [&](std::size_t cheaper) { return distance(scaled, cheaper, order[i]) <= kRadius; };
-    if (std::none_of(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(i), near)) found.push_back(order[i]);
+    if (std::none_of(order.rend() - static_cast<std::ptrdiff_t>(i), order.rend(), near)) found.push_back(order[i]);
   }
   return found;
 }
@@ -101,13 +114,13 @@ std::vector<std::size_t> spread_choice(const Scores& front, std::size_t count) {
     chosen.push_back(i);
     for (std::size_t j = 0; j < n; ++j) away[j] = std::min(away[j], distance(scaled, i, j));
   };
+  choose(compromise(front));
   for (std::size_t k = 0; k < front.objectives; ++k) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < n; ++i)
       if (front[i][k] < front[best][k]) best = i;
     choose(best);
   }
-  choose(compromise(front));
   while (chosen.size() < count) {
     const auto farthest = static_cast<std::size_t>(std::max_element(away.begin(), away.end()) - away.begin());
     if (away[farthest] == 0) break;
@@ -121,6 +134,7 @@ FrontKeeper::FrontKeeper(const FrontPlan& plan, const Problem& problem, const Ev
     : problem_(problem),
       table_(table),
       archive_(problem.objectives().size(), plan.limit),
+      settled_(plan.settled),
       seen_{problem.objectives().size()} {
   const auto& objectives = problem.objectives();
   for (std::size_t k = 0; k < objectives.size() && !plan.reference.empty(); ++k) {
@@ -136,32 +150,39 @@ FrontKeeper::FrontKeeper(const FrontPlan& plan, const Problem& problem, const Ev
 }
 
 bool FrontKeeper::add(std::span<const std::int64_t> rows) {
-  Scores feasible{seen_.objectives};
+  Scores feasible{archive_.scores().objectives};
   std::vector<std::int64_t> ids;
   for (const std::int64_t row : rows) {
+    if (row < next_row_) continue;  // a design known already
+    next_row_ = row + 1;
     if (table_.status[static_cast<std::size_t>(row)] != Status::feasible) continue;
     ids.push_back(row);
     add_scores(problem_.objectives(), table_, static_cast<std::size_t>(row), feasible);
   }
-  if (corner_.empty()) fix_reference(feasible);
-  if (!archive_.add(feasible, ids)) return false;
+  const bool fixed = corner_.empty() && fix_reference(feasible);
+  const bool gained = archive_.add(feasible, ids);
+  if (archive_.size() == 0 || !(gained || fixed)) return false;
   const Scores& scores = archive_.scores();
   front_.rows = archive_.ids();
   compromise_ = front_.rows[compromise(scores)];
   if (!corner_.empty()) front_.hypervolume = hypervolume(scores.values, scores.objectives, corner_);
   if (!target_.empty()) front_.igd_plus = igd_plus(scores.values, scores.objectives, target_, per_range_);
-  return true;
+  return gained;
 }
 
-void FrontKeeper::fix_reference(const Scores& feasible) {
+bool FrontKeeper::fix_reference(const Scores& feasible) {
   constexpr double kBeyond = 0.1;
+  if (feasible.objectives > 3) return false;  // the hypervolume is for two and three objectives
   seen_.values.insert(seen_.values.end(), feasible.values.begin(), feasible.values.end());
-  if (seen_.size() < 2 || seen_.objectives > 3) return;  // the hypervolume is for two and three objectives
+  if (seen_.size() < std::max<std::size_t>(settled_, 2)) return false;
   const Extent extent = extent_of(seen_);
+  for (std::size_t k = 0; k < seen_.objectives; ++k)
+    if (!(extent.range(k) > 0)) return false;
   for (std::size_t k = 0; k < seen_.objectives; ++k) {
     corner_.push_back(extent.greatest[k] + kBeyond * extent.range(k));
     front_.reference.push_back(sign(k) * corner_[k]);
   }
+  return true;
 }
 
 }  // namespace pkm

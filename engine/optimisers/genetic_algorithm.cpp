@@ -117,7 +117,7 @@ std::vector<OptionSpec> options() {
 OptimiserEntry genetic_algorithm() {
   return {"ga",
           "genetic algorithm for one objective with constraints",
-          [](const Options&) { return Capabilities{}; },
+          [](const Options&) { return Capabilities{.objectives_hint = "nsga2 works on several"}; },
           options(),
           make,
           resolve_breeding};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pkm {
 namespace {
@@ -17,12 +18,14 @@ Goal::Goal(const Scalarisation& scalarisation, const Problem& problem, const Eva
   for (std::size_t k = 0; k < objectives(); ++k) from_.push_back(smooth(start, k));
   const double value = from_[how_.objective];
   const bool usable = table.status[start] != Status::failed && std::isfinite(value);
+  keeps_ = table.status[start] == Status::feasible;
   scale_ = 1 / (usable && value != 0 ? std::fabs(value) : 1.0);
 }
 
 std::size_t Goal::margins() const {
   const std::size_t own = problem_.margins().size();
-  return how_.kind == Kind::none ? own : how_.kind == Kind::epsilon ? own + objectives() - 1 : own + objectives();
+  if (how_.kind == Kind::achievement) return own + objectives();
+  return how_.kind == Kind::epsilon && keeps_ ? own + objectives() - 1 : own;
 }
 
 double Goal::smooth(std::size_t row, std::size_t k) const {
@@ -59,9 +62,8 @@ void Goal::read(std::size_t row, double slack, GoalPoint& point) const {
   }
   const std::size_t j = how_.objective;
   if (how_.kind == Kind::achievement) {
-    const double t = slack - 1;
-    point.objective = t;
-    if (slopes) point.gradient[n - 1] = 1;
+    point.objective = t_of(slack);
+    if (slopes) point.gradient[n - 1] = most_t() - least_t();
     for (std::size_t k = 0; k < objectives(); ++k) point.objective += kRho * gain(row, k);
     for (std::size_t k = 0; slopes && k < objectives(); ++k)
       add_gradient(row, k, kRho / how_.extents[k], point.gradient);
@@ -69,15 +71,15 @@ void Goal::read(std::size_t row, double slack, GoalPoint& point) const {
     point.objective = smooth(row, j) * scale_;
     if (slopes) add_gradient(row, j, scale_, point.gradient);
   }
-  if (how_.kind == Kind::none) return;
+  if (margins() == own) return;
   std::size_t m = own;
   for (std::size_t k = 0; k < objectives(); ++k) {
     if (how_.kind == Kind::epsilon && k == j) continue;
-    point.margins[m] = (has_slack() ? slack - 1 : 0) - gain(row, k);
+    point.margins[m] = (has_slack() ? t_of(slack) : 0) - gain(row, k);
     if (slopes) {
       const std::span gradient(&point.margin_gradient[m * n], n);
       add_gradient(row, k, -1 / how_.extents[k], gradient);
-      if (has_slack()) gradient[n - 1] = 1;
+      if (has_slack()) gradient[n - 1] = most_t() - least_t();
     }
     ++m;
   }
@@ -85,14 +87,14 @@ void Goal::read(std::size_t row, double slack, GoalPoint& point) const {
 
 double Goal::slack(std::size_t row) const {
   if (!has_slack()) return 0;
-  double t = -1;
+  double t = least_t();
   for (std::size_t k = 0; k < objectives(); ++k) t = std::max(t, gain(row, k));
-  return std::isfinite(t) ? std::min(t + 1, 1.0) : 1;
+  return std::isfinite(t) ? std::min((t - least_t()) / (most_t() - least_t()), 1.0) : 1;
 }
 
 double Goal::value(std::size_t row) const {
   if (how_.kind != Kind::achievement) return stored(row, how_.objective);
-  double greatest = -1, sum = 0;
+  double greatest = -std::numeric_limits<double>::infinity(), sum = 0;
   for (std::size_t k = 0; k < objectives(); ++k) {
     const double g = (stored(row, k) - stored(start_, k)) / how_.extents[k];
     greatest = std::max(greatest, g);
@@ -103,7 +105,7 @@ double Goal::value(std::size_t row) const {
 
 double Goal::violation(std::size_t row) const {
   double sum = pkm::violation(table_.margin_row(row));
-  if (how_.kind == Kind::none) return sum;
+  if (how_.kind == Kind::none || !keeps_) return sum;
   for (std::size_t k = 0; k < objectives(); ++k)
     if (stored(row, k) > stored(start_, k)) sum += (stored(row, k) - stored(start_, k)) / how_.extents[k];
   return sum;
@@ -113,9 +115,8 @@ Ranked Goal::rank(std::size_t row) const {
   Ranked r{table_.status[row], 0, static_cast<std::int64_t>(row)};
   if (r.status == Status::failed) return r;
   const double broken = violation(row);
-  // An end that gives up an objective is no better than an infeasible one, unless the start was infeasible itself.
-  const bool kept = table_.status[start_] != Status::feasible || broken == 0;
-  if (r.status == Status::feasible && !kept) r.status = Status::infeasible;
+  // An end that gives up an objective is no better than an infeasible one.
+  if (r.status == Status::feasible && broken > 0) r.status = Status::infeasible;
   r.value = r.status == Status::feasible ? value(row) : broken;
   return r;
 }

@@ -4,11 +4,12 @@
 // the front's extents r_i:
 //
 //   epsilon-constraint (Haimes et al. 1971):  min f_j / |f_j0|            subject to  f_i <= f_i0  for all i
-//   achievement (Wierzbicki 1980):            min t + rho sum_i g_i       subject to  g_i <= t <= 0,  g_i = (f_i -
-//   f_i0) / r_i
+//   achievement (Wierzbicki 1980):            min t + rho sum_i g_i       subject to  g_i <= t <= 0
+//                                             with  g_i = (f_i - f_i0) / r_i
 //
-// Either way what a solver ends with dominates its start or equals it. The achievement's t is one more variable of the
-// unit cube, t = u - 1; rho = 1e-4 keeps it from ending where one objective could still be had for nothing.
+// Either way what a solver ends with dominates its start or equals it. A start that is not feasible has nothing to
+// keep: there f_i <= f_i0 is left out, and t may be positive. t is one more variable of the unit cube, within 10
+// extents; rho = 1e-4 keeps it from ending where one objective could still be had for nothing.
 #pragma once
 
 #include <cmath>
@@ -67,6 +68,10 @@ class Goal {
   double smooth(std::size_t row, std::size_t k) const;
   /// Value and derivatives of (f_k - f_k0) / r_k.
   double gain(std::size_t row, std::size_t k) const { return (smooth(row, k) - from_[k]) / how_.extents[k]; }
+  /// t of the slack u, and its range.
+  double t_of(double u) const { return least_t() + u * (most_t() - least_t()); }
+  static double least_t() { return -10; }
+  double most_t() const { return keeps_ ? 0 : 10; }
   void add_gradient(std::size_t row, std::size_t k, double factor, std::span<double> gradient) const;
 
   const Scalarisation& how_;
@@ -75,6 +80,7 @@ class Goal {
   std::size_t start_;
   std::vector<double> from_;  ///< smooth values at the start
   double scale_ = 1;          ///< of the one objective
+  bool keeps_ = true;         ///< the start is feasible: no objective may become worse
 };
 
 }  // namespace pkm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "engine/optimisers/diversity.hpp"
@@ -33,7 +34,7 @@ class TradeOff final : public Survivors {
 
   bool take(const std::vector<std::int64_t>& children) override {
     join(children);
-    keeper_.add(children);
+    const bool gained = keeper_.add(children);
     std::vector<Ranked> others;
     candidates_.clear();
     scores_.clear();
@@ -53,7 +54,7 @@ class TradeOff final : public Survivors {
       if (rows_.size() < most()) rows_.push_back(other.row);
     if (!others.empty() && (best_infeasible_.row < 0 || others.front() < best_infeasible_))
       best_infeasible_ = others.front();
-    return progress();
+    return progress(gained);
   }
 
   const std::vector<std::int64_t>& population() const override { return rows_; }
@@ -74,22 +75,19 @@ class TradeOff final : public Survivors {
 
   void survive_by_fronts() {
     sort_fronts(scores_, front_of_);
+    std::vector<std::vector<std::size_t>> members;  // of each front
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      if (front_of_[i] >= members.size()) members.resize(front_of_[i] + 1);
+      members[front_of_[i]].push_back(i);
+    }
     Scores front{scores_.objectives};
-    std::vector<std::size_t> members;
-    std::size_t taken = 0;
-    for (std::uint32_t number = 0; rows_.size() < most() && taken < candidates_.size(); ++number) {
+    for (std::size_t number = 0; number < members.size() && rows_.size() < most(); ++number) {
       front.clear();
-      members.clear();
-      for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        if (front_of_[i] != number) continue;
-        members.push_back(i);
-        front.add({scores_[i], scores_.objectives});
-      }
-      taken += members.size();
+      for (const std::size_t i : members[number]) front.add({scores_[i], scores_.objectives});
       const std::vector<std::uint32_t> order = most_diverse(front, most() - rows_.size());
       if (number == 0) keeper_.set_spread(spread_of(front, order));
       for (std::size_t i = 0; i < order.size() && rows_.size() < most(); ++i)
-        rows_.push_back(candidates_[members[order[i]]]);
+        rows_.push_back(candidates_[members[number][order[i]]]);
     }
   }
 
@@ -100,14 +98,14 @@ class TradeOff final : public Survivors {
     return spread(survivors);
   }
 
-  /// A larger hypervolume, or, while nothing is feasible, less violation.
-  bool progress() {
+  /// A larger hypervolume; while there is none, any change of the front, or, while nothing is feasible, less violation.
+  bool progress(bool gained) {
     const double now = keeper_.front().hypervolume;
     if (std::isnan(now)) {
       const bool better =
           best_infeasible_.row >= 0 && (!(last_violation_.row >= 0) || best_infeasible_ < last_violation_);
       last_violation_ = best_infeasible_;
-      return better || keeper_.compromise_row() >= 0;
+      return gained || (better && keeper_.compromise_row() < 0);
     }
     if (now - last_hypervolume_ <= plan_.tolerance * std::fabs(last_hypervolume_)) return false;
     last_hypervolume_ = now;
@@ -144,6 +142,8 @@ Capabilities capabilities(const Options& options) {
   Capabilities can;
   can.min_objectives = 2;
   can.max_objectives = options.has("stall") || options.has("reference") ? 3 : kManyObjectives;
+  can.objectives_hint =
+      "stall and reference are for the hypervolume of two and three objectives, and it handles more without";
   return can;
 }
 
@@ -153,7 +153,10 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
   plan.tolerance = options.number("tolerance");
   if (options.has("archive")) plan.front.limit = static_cast<std::size_t>(options.integer("archive"));
   if (options.has("reference")) plan.front.reference = options.numbers("reference");
+  plan.front.settled = plan.evolution.breeding.population;
   if (options.has("reference_front")) plan.front.front = options.list("reference_front");
+  if (options.has("reference_front") && plan.front.front.empty())
+    throw std::invalid_argument("reference_front has no points");
   return std::make_unique<Nsga2>(plan);
 }
 
@@ -174,7 +177,7 @@ std::vector<OptionSpec> options() {
   reference.field_names = FieldNames::objectives;
   reference.meaning =
       "corner of the hypervolume, a value per objective (default: a tenth beyond the worst of the first feasible "
-      "designs)";
+      "designs, as many as the population)";
   specs.push_back(reference);
   OptionSpec front = reference;
   front.name = "reference_front";

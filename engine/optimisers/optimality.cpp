@@ -98,8 +98,13 @@ FirstOrder first_order(std::span<const double> u, std::span<const double> gradie
       columns.back()[i] = upper ? -1 : 1;
       multipliers.push_back(upper ? &result.upper[i] : &result.lower[i]);
     }
-  std::vector<double> left(gradient.begin(), gradient.end());
-  const std::vector<double> found = non_negative_least_squares(columns, left);
+  std::vector<double> left(gradient.begin(), gradient.end()), found;
+  try {
+    found = non_negative_least_squares(columns, left);
+  } catch (const std::runtime_error&) {  // nothing is known then
+    result.left = kNotActive;
+    return result;
+  }
   for (std::size_t k = 0; k < columns.size(); ++k) {
     *multipliers[k] = found[k];
     for (std::size_t i = 0; i < n; ++i) left[i] -= found[k] * columns[k][i];

@@ -18,7 +18,7 @@ namespace pkm {
 
 /// Stationarity of a point of the unit cube: multipliers and what they leave of the gradient.
 struct FirstOrder {
-  double left = 0;                   ///< largest component of what is left
+  double left = 0;                   ///< largest component of what is left; NaN: the multipliers do not settle
   std::vector<double> margins;       ///< multiplier of each margin; NaN: not active
   std::vector<double> lower, upper;  ///< of each variable's bounds
 };

@@ -24,6 +24,7 @@ inline constexpr std::size_t kManyObjectives = std::numeric_limits<std::size_t>:
 struct Capabilities {
   std::size_t min_objectives = 1;  ///< 0: a plain sweep
   std::size_t max_objectives = 1;
+  const char* objectives_hint = "";  ///< said where a study has more
   bool constraints = true;
   bool discrete = true;         ///< variables with a step
   bool needs_gradient = false;  ///< refuses surveys without derivative (voxels)
@@ -43,7 +44,8 @@ struct StartOutcome {
   double optimality = 0;
 };
 
-/// A trade-off: the designs of a stage that no other one dominates.
+/// A trade-off: feasible designs of a stage that no other one dominates (as many as an archive's limit allows); of a
+/// solver stage the ends of its starts.
 struct Front {
   std::vector<std::int64_t> rows;  ///< of the stage's table; the best by the first objective first
   /// Corner of the hypervolume, in the objectives' units, and what it encloses with the front: only what is better than
@@ -106,7 +108,7 @@ struct StartDesign {
 
 /// Of the front that the stages before have found: what solvers scale by, and compare with.
 struct KnownFront {
-  std::vector<double> extents = {};    ///< range of each objective, > 0; 1 where there is none yet
+  std::vector<double> extents = {};    ///< range of each objective, else its size, > 0
   std::vector<double> reference = {};  ///< corner of its hypervolume; empty: none
 };
 
@@ -115,8 +117,8 @@ struct StageInput {
   Evaluator& evaluator;
   Monitor& monitor;
   std::uint64_t seed = 1;
-  std::vector<StartDesign> starts;   ///< designs to begin from; may be empty
-  KnownFront known_front = {};       ///< several objectives
+  std::vector<StartDesign> starts;  ///< designs to begin from; may be empty
+  KnownFront known_front = {};      ///< several objectives
   /// A resumed stage: the evaluations on record, which the evaluator serves, and the starts that had ended.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};

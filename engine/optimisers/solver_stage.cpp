@@ -142,7 +142,9 @@ class Run {
     Trials trials(input_, table_, plan_.limits, how_, start.design, generation_, best_, finished_);
     SolverEnd end;
     std::vector<double> from = trials.start();
-    for (int round = 0; round < kRounds && trials.stop() == Trials::Stop::none; ++round) {
+    const bool measurable = !front_ || table_.status[trials.first_row()] != Status::failed;
+    if (!measurable) end.message = "the start's evaluation failed, and several objectives are measured from it";
+    for (int round = 0; measurable && round < kRounds && trials.stop() == Trials::Stop::none; ++round) {
       const std::int64_t before = trials.best().row;
       end = plan_.solver->solve(trials, from, input_.seed + k);
       trials.rethrow();
@@ -282,6 +284,7 @@ class SolverStage final : public Optimiser {
 std::unique_ptr<Optimiser> make_solver_stage(SolverPlan plan) { return std::make_unique<SolverStage>(std::move(plan)); }
 
 void allow_fronts(const Options& options, Capabilities& can) {
+  can.objectives_hint = "start = \"pareto\" works on several";
   if (options.word("start") != "pareto") return;
   can.min_objectives = 2;
   can.max_objectives = kManyObjectives;
@@ -330,6 +333,10 @@ SolverPlan solver_plan(const Options& options) {
     plan.scalarisation.kind = options.word("scalarisation") == "achievement" ? Scalarisation::Kind::achievement
                                                                              : Scalarisation::Kind::epsilon;
   if (options.has("objective")) plan.objective = options.word("objective");
+  if (options.has("objective") && plan.scalarisation.kind != Scalarisation::Kind::epsilon)
+    throw std::invalid_argument(
+        "objective = \"" + plan.objective +
+        "\" is for start = \"pareto\" with scalarisation = \"epsilon-constraint\", which this stage does not have");
   if (options.has("designs")) plan.starts += static_cast<std::int64_t>(options.list("designs").size());
   if (plan.starts + plan.multistart == 0)
     throw std::invalid_argument("no start: start = \"none\" needs designs or multistart");

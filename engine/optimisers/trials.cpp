@@ -38,6 +38,7 @@ const Trials::Point* Trials::at(const double* u) noexcept {
       if (stop_ != Stop::none) return nullptr;
       evaluate({inside.data(), variables});
     }
+    if (stop_ == Stop::not_a_point) return nullptr;
     if (inside != unit_) {  // only the slack differs
       unit_ = inside;
       read(row_, unit_.back());

@@ -31,7 +31,7 @@ std::string refusal_of(const OptimiserEntry& entry, const Options& options, cons
   if (parts.objectives.size() > can.max_objectives)
     return who + "handles " + std::to_string(can.max_objectives) + " objective" + (can.max_objectives == 1 ? "" : "s") +
            ", but the study has " + std::to_string(parts.objectives.size()) + " (" + join(names_of(parts.objectives)) +
-           ")";
+           ")" + (*can.objectives_hint ? std::string("; ") + can.objectives_hint : "");
   auto margins = names_of(parts.design_margins);
   for (const auto& name : names_of(parts.survey_margins)) margins.push_back(name);
   if (!can.constraints && !margins.empty()) return who + "handles no constraints, but the study has " + join(margins);

@@ -171,16 +171,17 @@ void describe_generations(Archive& archive, const std::string& stage, Generation
 template <class Archive, class Problem, class Stage, class Record>
 void describe_front(Archive& archive, const std::string& group, const Problem& problem, const Stage& stage,
                     Record& front) {
-  archive.group(group, "The trade-off: feasible designs that no other evaluation of the stage dominates");
+  archive.group(group, "The trade-off: feasible designs that no other one dominates, of solvers the ends of starts");
   archive.array(Leaf{group + "/row", "Rows (0-based) in evaluations, the best by the first objective first", {"1"}, {}},
                 front.rows, {kAnyRows});
-  archive.array(Leaf{group + "/reference", "Corner of the hypervolume, per objective; empty: none", {"1"}, {}},
-                front.reference, {kAnyRows});
-  const auto series = [&](const char* name, const char* description, auto& values) {
-    archive.array(Leaf{group + "/" + name, description, {"1"}, {}}, values, {kAnyRows});
+  archive.array(
+      Leaf{group + "/reference", "Corner of the hypervolume, per objective; empty: none", {"as objectives"}, {}},
+      front.reference, {kAnyRows});
+  const auto series = [&](const char* name, const char* description, auto& values, const char* unit = "1") {
+    archive.array(Leaf{group + "/" + name, description, {unit}, {}}, values, {kAnyRows});
   };
-  series("hypervolume", "After each generation: what reference and front enclose, product of the objectives' units",
-         front.hypervolume);
+  series("hypervolume", "After each generation: what reference and front enclose", front.hypervolume,
+         "product of the objectives' units");
   series("spread", "After each generation: unevenness of the population's part of the front, 0 is even", front.spread);
   series("igd_plus", "After each generation: distance (IGD+) to the reference front; NaN: none given", front.igd_plus);
   if constexpr (Archive::kDerives) {

@@ -109,7 +109,8 @@ class Run final : public Monitor {
     const bool timed = replaying_ && index < record->generations.size();
     list.seconds.push_back(timed ? record->generations.seconds[index] : seconds());
     made_ = evaluator_.made;
-    take_best(table, g.best_row);
+    // A solver's starts are points of a front: of them only the stage's end says which stands for all.
+    if (g.front || study_.problem->objectives().size() < 2) take_best(table, g.best_row);
     report(g, stage.optimiser);
 
     if (const int signal = StopRequest::signal())
@@ -193,6 +194,7 @@ class Run final : public Monitor {
     limit_ = stage.optimiser->evaluation_limit(*study_.problem);
     const StageResult result = stage.optimiser->minimise(input, record.table);
     record.starts = result.starts;
+    if (result.reason != StopReason::interrupted) take_best(record.table, result.best_row);
     if (result.reason == StopReason::interrupted) return false;
     const bool restarted = !warnings_.empty();  // a start that left its recorded path may have become shorter
     if (again && !restarted && record.table.size() < recorded_[index].table.size())
@@ -217,15 +219,17 @@ class Run final : public Monitor {
     if (row < 0 || study_.problem->objectives().empty()) return;
     const auto stage = static_cast<std::int64_t>(stage_);
     const bool first = contents_.best.row < 0 || contents_.best.stage == stage;
-    // Of several objectives the best is each stage's compromise, and the last stage's stands.
-    if (!first && study_.problem->objectives().size() == 1) {
+    if (!first) {
       // Earlier stages win ties, so that a stage that finds nothing better changes nothing.
       const EvaluationTable& before = contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table;
       EvaluationTable pair(table.shape());
       pair.extend(2);
       copy_row(before, static_cast<std::size_t>(contents_.best.row), pair, 0);
       copy_row(table, static_cast<std::size_t>(row), pair, 1);
-      if (!better(pair, study_.problem->objectives()[0].direction, 1, 0)) return;
+      // Of several objectives the best is a stage's compromise; the last one that is as feasible stands.
+      if (study_.problem->objectives().size() > 1 ? pair.status[1] > pair.status[0]
+                                                  : !better(pair, study_.problem->objectives()[0].direction, 1, 0))
+        return;
     }
     contents_.best = {stage, row};
   }

@@ -1,6 +1,7 @@
 #include "engine/study/starts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/optimisers/front.hpp"
@@ -81,7 +82,8 @@ std::vector<StartDesign> on_front(const Study& study, const StudyContents& conte
   if (s < 0) return {best_so_far(study, contents)};
   const StageRecord& stage = contents.stages[static_cast<std::size_t>(s)];
   std::vector<StartDesign> starts;
-  for (const std::size_t point : spread_choice(scores_of(study.problem->objectives(), stage.table, stage.front->rows), most)) {
+  for (const std::size_t point :
+       spread_choice(scores_of(study.problem->objectives(), stage.table, stage.front->rows), most)) {
     const auto design = stage.table.design(static_cast<std::size_t>(stage.front->rows[point]));
     starts.push_back({{design.begin(), design.end()},
                       "point " + std::to_string(point + 1) + " of the front of stage " + std::to_string(s + 1)});
@@ -96,12 +98,21 @@ KnownFront known_front(const Study& study, const StudyContents& contents) {
   if (objectives.size() < 2) return {};
   KnownFront known{std::vector<double>(objectives.size(), 1.0), {}};
   const std::int64_t s = stage_with_front(contents);
-  if (s < 0) return known;
-  const StageRecord& stage = contents.stages[static_cast<std::size_t>(s)];
-  const Extent extent = extent_of(scores_of(objectives, stage.table, stage.front->rows));
-  for (std::size_t k = 0; k < objectives.size(); ++k)
-    if (extent.range(k) > 0) known.extents[k] = extent.range(k);
-  known.reference = stage.front->reference;
+  Scores scores{objectives.size()};
+  if (s >= 0) {
+    const StageRecord& stage = contents.stages[static_cast<std::size_t>(s)];
+    scores = scores_of(objectives, stage.table, stage.front->rows);
+    known.reference = stage.front->reference;
+  } else if (contents.best.row >= 0) {
+    const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
+    scores = scores_of(objectives, stage.table, std::array{contents.best.row});
+  }
+  const Extent extent = extent_of(scores);
+  for (std::size_t k = 0; k < extent.least.size(); ++k) {
+    // An objective without a range has at least a size.
+    const double size = extent.range(k) > 0 ? extent.range(k) : std::fabs(extent.least[k]);
+    if (std::isfinite(size) && size > 0) known.extents[k] = size;
+  }
   return known;
 }
 

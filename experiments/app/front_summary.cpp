@@ -12,7 +12,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kAll = 20, kShown = 10;  // shorter fronts are shown whole, others by a choice and their knees
+constexpr std::size_t kAll = 20, kShown = 10;  // short lists are shown whole, longer fronts by a choice and their knees
 
 std::string digits(double value) {
   char text[40];
@@ -130,16 +130,21 @@ std::string front_starts_text(const ProblemRecord& problem, const StageRecord& s
   std::vector<std::vector<std::string>> rows = {{"  start", "evaluations"}};
   for (const auto& o : problem.objectives) rows[0].push_back(o.name);
   rows[0].insert(rows[0].end(), {"optimality", "ended"});
-  for (const StartOutcome& start : stage.starts) {
+  for (std::size_t s = 0; s < std::min(stage.starts.size(), kAll); ++s) {
+    const StartOutcome& start = stage.starts[s];
     auto& cells = rows.emplace_back(std::vector<std::string>{"  " + start.origin, std::to_string(start.rows)});
-    const auto from = stage.table.objective_row(static_cast<std::size_t>(start.first_row));
-    const auto to = stage.table.objective_row(static_cast<std::size_t>(start.end_row));
-    for (std::size_t k = 0; k < from.size(); ++k) cells.push_back(digits(from[k]) + " -> " + digits(to[k]));
+    const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);
+    const auto from = stage.table.objective_row(first), to = stage.table.objective_row(end);
+    for (std::size_t k = 0; k < from.size(); ++k)
+      cells.push_back(stage.table.status[first] == Status::failed ? "failed"
+                                                                  : digits(from[k]) + " -> " + digits(to[k]));
     char optimality[16] = "-";
     if (!std::isnan(start.optimality)) std::snprintf(optimality, sizeof optimality, "%.1e", start.optimality);
-    cells.insert(cells.end(), {optimality, start.stop + (start.message.empty() ? "" : " (" + start.message + ")")});
+    cells.insert(cells.end(), {optimality, start.stop + (start.message.empty() ? "" : " (" + start.message + ")") +
+                                               (stage.table.status[end] == Status::feasible ? "" : ", infeasible")});
   }
-  return aligned(rows);
+  return aligned(rows) +
+         (stage.starts.size() > kAll ? "  and " + std::to_string(stage.starts.size() - kAll) + " more\n" : "");
 }
 
 }  // namespace pkm

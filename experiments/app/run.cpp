@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -108,12 +109,15 @@ class SeedProgress final : public Progress {
   int seeds_, seed_ = 0;
 };
 
-/// Of the last front that has been measured; NaN where none has.
-double evolved_hypervolume(const StudyContents& contents) {
-  double last = std::numeric_limits<double>::quiet_NaN();
-  for (const StageRecord& stage : contents.stages)
-    if (stage.front && !stage.front->hypervolume.empty()) last = stage.front->hypervolume.back();
-  return last;
+/// The last hypervolume of the study's evolved front; none where its corner is not the study's to say: hypervolumes
+/// from different corners cannot be compared.
+std::optional<double> evolved_hypervolume(const Study& study, const StudyContents& contents) {
+  for (std::size_t i = contents.stages.size(); i-- > 0;) {
+    const std::optional<FrontRecord>& front = contents.stages[i].front;
+    if (!front || front->hypervolume.empty() || !study.stages[i].options.has("reference")) continue;
+    if (std::isfinite(front->hypervolume.back())) return front->hypervolume.back();
+  }
+  return {};
 }
 
 /// What came of the seeds: a row each, and the numbers of the spread.
@@ -123,20 +127,26 @@ struct SeedTable {
         rows{{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}} {}
 
   bool trade_off;
+  int feasible_seeds = 0;
   std::vector<std::vector<std::string>> rows;
   std::vector<double> best, exact, seconds;
 
-  void add(const StudyContents& contents, const std::string& file) {
+  void add(const Study& study, const StudyContents& contents, const std::string& file) {
     const auto& final = contents.final;
     const auto objective = [](const std::optional<DesignRecord>& r) { return r && !r->objectives.empty(); };
     const bool feasible = final && objective(final->best) && final->best->status == Status::feasible;
     const bool has_exact = feasible && !trade_off && objective(final->best_exact);
-    if (feasible) best.push_back(trade_off ? evolved_hypervolume(contents) : final->best->objectives[0]);
+    std::string value = feasible ? "" : "nothing feasible";
+    const auto shown = !feasible   ? std::nullopt
+                       : trade_off ? evolved_hypervolume(study, contents)
+                                   : std::optional(final->best->objectives[0]);
+    feasible_seeds += feasible;
+    if (shown) best.push_back(*shown);
+    if (shown) value = digits(*shown);
     if (has_exact) exact.push_back(final->best_exact->objectives[0]);
     seconds.push_back(contents.seconds);
-    rows.push_back({std::to_string(contents.seed), feasible ? digits(best.back()) : "nothing feasible",
-                    has_exact ? digits(exact.back()) : "", std::to_string(contents.evaluations()),
-                    duration_text(contents.seconds), file});
+    rows.push_back({std::to_string(contents.seed), value, has_exact ? digits(exact.back()) : "",
+                    std::to_string(contents.evaluations()), duration_text(contents.seconds), file});
   }
 
   void add_spread() {
@@ -174,7 +184,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
     study.seed = first + static_cast<std::uint64_t>(i);
     progress.next();
     const RunOutcome outcome = run_one(study, file_of(i), arguments, session, progress);
-    if (outcome.stopped.empty()) table.add(outcome.contents, file_of(i));
+    if (outcome.stopped.empty()) table.add(study, outcome.contents, file_of(i));
     const bool last = i == arguments.seeds - 1;
     if (!outcome.stopped.empty() || (StopRequest::signal() != 0 && !last)) session.exit_code = kStoppedEarly;
   }
@@ -182,7 +192,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   table.add_spread();
   if (!arguments.common.quiet)
     std::cout << study.name << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
-              << aligned(table.rows) << table.best.size() << " of " << table.seconds.size()
+              << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
               << " seeds ended feasible\n";
   if (session.exit_code == kStoppedEarly)
     std::cout << "stopped; go on with: pkmopt run " << quoted(arguments.study) << " --seeds " << arguments.seeds

@@ -1,5 +1,7 @@
 // pkmopt show: what a study found, from its file.
 
+#include <cmath>
+#include <cstdio>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +15,15 @@
 
 namespace pkm {
 namespace {
+
+/// "-" for what does not exist.
+template <std::size_t size>
+void print_number(char (&text)[size], const char* format, double value) {
+  if (std::isnan(value))
+    std::snprintf(text, size, "-");
+  else
+    std::snprintf(text, size, format, value);
+}
 
 /// The history in brief: about ten generations of each stage.
 std::string history(const StudyContents& contents) {
@@ -33,7 +44,7 @@ std::string history(const StudyContents& contents) {
           g + 1 < list.size() ? static_cast<std::size_t>(list.first_row[g + 1]) : stage.table.size();
       char best[40] = "-", share[16], spread[16];
       if (front)
-        std::snprintf(best, sizeof best, "%.10g", stage.front->hypervolume[g]);
+        print_number(best, "%.10g", stage.front->hypervolume[g]);
       else if (list.best_row[g] >= 0)
         std::snprintf(best, sizeof best, "%.10g",
                       stage.table.objective_row(static_cast<std::size_t>(list.best_row[g]))[0]);
@@ -42,7 +53,7 @@ std::string history(const StudyContents& contents) {
       rows.push_back(
           {std::to_string(g), std::to_string(rows_so_far), best, share, spread, duration_text(list.seconds[g])});
       if (!front) continue;
-      std::snprintf(spread, sizeof spread, "%.2g", stage.front->spread[g]);
+      print_number(spread, "%.2g", stage.front->spread[g]);
       rows.back().insert(rows.back().begin() + 3, spread);
     }
     text += '\n' + stage.optimiser + '\n' + aligned(rows);

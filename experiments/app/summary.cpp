@@ -189,7 +189,9 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
       out << (status == Status::feasible ? "best so far:" : "best so far, which is " + status_word(status) + ":");
       for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
         out << ' ' << contents.problem.variables[i].name << " = " << digits(stage.table.design(row)[i]);
-      out << ", " << contents.problem.objectives[0].name << " = " << digits(stage.table.objective_row(row)[0]) << '\n';
+      for (std::size_t i = 0; i < contents.problem.objectives.size(); ++i)
+        out << ", " << contents.problem.objectives[i].name << " = " << digits(stage.table.objective_row(row)[i]);
+      out << '\n';
     }
     return out.str();
   }

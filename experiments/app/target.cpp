@@ -125,7 +125,10 @@ std::string known_mode(const MechanismInfo& info, const std::string& mode) {
 void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
   command.add_option("MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path; else --from")
       ->type_name("");
-  command.add_option("--from", arguments.from, "The best design of a study file, and its problem")->type_name("F.h5");
+  command
+      .add_option("--from", arguments.from,
+                  "The best design of a study file (of a trade-off the compromise), and its problem")
+      ->type_name("F.h5");
   command.add_option("--front", arguments.front, "Instead: point N of its trade-off (see 'pkmopt show F.h5')")
       ->type_name("N");
   command.add_option("--stage", arguments.stage, "The stage of that front (default: the last that has one)")

@@ -15,6 +15,7 @@ namespace pkm::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 class TradeOffProgram : public StudyProgram {
@@ -126,6 +127,9 @@ TEST_F(TradeOffProgram, ShowsFrontsAndEvaluatesTheirPointsAnew) {
   EXPECT_EQ(Json::parse(output_)["objectives"], json["stages"][1]["front"]["points"][1]["objectives"]);
   ASSERT_EQ(run({"evaluate", "--from", "f.h5", "--json"}), 0) << output_;  // the compromise
   EXPECT_EQ(Json::parse(output_)["objectives"], json["best"]["objectives"]);
+  for (const Json& point : json["stages"][1]["front"]["points"])
+    EXPECT_EQ(point["marks"].dump().find("compromise") != std::string::npos,
+              point["objectives"] == json["best"]["objectives"]);
 }
 
 TEST_F(TradeOffProgram, RefinedPointsDominateTheirStarts) {
@@ -168,13 +172,33 @@ TEST_F(TradeOffProgram, RefusesWhatDoesNotFit) {
               HasSubstr("a value for every objective: workspace-ratio, conditioning"));
   EXPECT_THAT(changed("conditioning = 0 }", "conditionin = 0 }"), HasSubstr("did you mean 'conditioning'?"));
   EXPECT_THAT(changed("start = \"pareto\"", "start = \"best\""), HasSubstr("handles 1 objective, but the study has 2"));
+  EXPECT_THAT(changed("start = \"pareto\"", "start = \"best\""), HasSubstr("start = \"pareto\" works on several"));
   EXPECT_THAT(changed("\"slsqp\"", "\"lbfgs\""), HasSubstr("handles no constraints"));
+  EXPECT_THAT(changed("start = \"pareto\"", "start = \"pareto\"\nobjective = \"conditioning\""),
+              HasSubstr("is for start = \"pareto\" with scalarisation = \"epsilon-constraint\""));
   EXPECT_THAT(changed("start = \"pareto\"", "start = \"pareto\"\nobjective = \"volume\""),
               HasSubstr("one of workspace-ratio, conditioning"));
   std::string first = good;
   first.erase(first.find("[[stage]]\noptimiser = \"nsga2\""),
               first.find("[[stage]]         ") - first.find("[[stage]]\n"));
   EXPECT_THAT(refusal(first), HasSubstr("needs a [[stage]] before it that finds a front, such as nsga2"));
+}
+
+TEST_F(TradeOffProgram, SeedsAreComparedByHypervolumesFromOneCorner) {
+  std::string text = volume_conditioning();
+  text.erase(text.find("[[stage]]                                     # points"));
+  write(text);
+  ASSERT_EQ(run({"run", "study.toml", "--seeds", "2"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("hypervolume"));
+  char value[40];
+  std::snprintf(value, sizeof value, "%.10g", read("study-seed-1.h5").stages[0].front->hypervolume.back());
+  EXPECT_THAT(output_, HasSubstr(value));
+  replace(text, "reference", "# reference");
+  write(text);
+  ASSERT_EQ(run({"run", "study.toml", "--seeds", "2", "--force"}), 0) << output_;
+  std::snprintf(value, sizeof value, "%.10g", read("study-seed-1.h5").stages[0].front->hypervolume.back());
+  EXPECT_THAT(output_, Not(HasSubstr(value)));  // each seed has a corner of its own
+  EXPECT_THAT(output_, HasSubstr("2 of 2 seeds ended feasible"));
 }
 
 TEST_F(TradeOffProgram, RefusesPointsThatAreNotThere) {

@@ -77,7 +77,7 @@ TEST(Diversity, ThinnedFrontsAreMoreEven) {
 TEST(Diversity, EvenFrontsHaveNoSpread) {
   EXPECT_NEAR(spread(line({0, 0.25, 0.5, 0.75, 1})), 0, 1e-15);
   EXPECT_GT(spread(line({0, 0.1, 0.5, 0.6, 1})), 0.1);
-  EXPECT_EQ(spread(line({0, 1})), 0);
+  EXPECT_TRUE(std::isnan(spread(line({0, 1}))));
 }
 
 TEST(Front, TheCompromiseWeighsRanges) {
@@ -85,6 +85,25 @@ TEST(Front, TheCompromiseWeighsRanges) {
   const Scores scores{2, {0, 4000, 1, 1000, 4, 0}};
   EXPECT_EQ(compromise(scores), 1u);
   EXPECT_THAT(prices(scores), ElementsAre(1, 0.5, 1));
+}
+
+TEST(Front, TheCompromiseOfABulgingFrontIsInItsMiddle) {
+  for (const TradeOff& known : {zdt_problems()[1], zdt_problems()[4], dtlz2()}) {
+    const Scores front{known.objectives(), known.front};
+    const Extent extent = extent_of(front);
+    const std::size_t chosen = compromise(front);
+    for (std::size_t k = 0; k < front.objectives; ++k)
+      EXPECT_LT((front[chosen][k] - extent.least[k]) / extent.range(k), 0.65) << known.name;
+    EXPECT_TRUE(knees(front).empty()) << known.name;
+    const auto one = spread_choice(front, 1);
+    EXPECT_THAT(one, ElementsAre(chosen));
+  }
+}
+
+TEST(Front, AConstantScoreTakesNoKneeAway) {
+  Scores scores{3};
+  for (int i = 0; i <= 50; ++i) scores.add(std::array{i / 50.0, std::pow(1 - i / 50.0, 3), 7.0});
+  EXPECT_EQ(knees(scores).size(), 1u);
 }
 
 TEST(Front, KneesAreBendsAndNotEnds) {
@@ -143,8 +162,10 @@ TEST_F(Given, OnlyFeasibleDesignsCount) {
 }
 
 TEST_F(Given, TheReferenceIsATenthBeyondTheFirstFeasibleDesigns) {
-  FrontKeeper keeper({}, problem_, table_);
-  keeper.add(add({{2, 5}, {4, 7}, {3, 15}}));
+  FrontKeeper keeper({.settled = 3}, problem_, table_);
+  keeper.add(add({{2, 5}, {4, 7}}));
+  EXPECT_TRUE(keeper.front().reference.empty());
+  EXPECT_FALSE(keeper.add(add({{3, 15}})));  // dominated, but from now on there is a reference
   EXPECT_THAT(keeper.front().reference, ElementsAre(2 - 0.1 * 2, 15 + 0.1 * 10));
   const auto fixed = keeper.front().reference;
   const double before = keeper.front().hypervolume;
@@ -152,6 +173,17 @@ TEST_F(Given, TheReferenceIsATenthBeyondTheFirstFeasibleDesigns) {
   keeper.add(add({{5, 1}, {0, 0}}));
   EXPECT_EQ(keeper.front().reference, fixed);
   EXPECT_NEAR(keeper.front().hypervolume, (5 - 1.8) * (16 - 1), 1e-12);  // (0, 0) is worse than the corner
+}
+
+TEST_F(Given, TheReferenceWaitsForARangeAndRowsCountOnce) {
+  FrontKeeper keeper({}, problem_, table_);
+  const auto rows = add({{2, 5}, {3, 5}});
+  keeper.add(rows);
+  keeper.add(rows);
+  EXPECT_TRUE(keeper.front().reference.empty());  // the second objective has no range yet
+  keeper.add(add({{4, 6}}));
+  EXPECT_EQ(keeper.front().reference.size(), 2u);
+  EXPECT_FALSE(std::isnan(keeper.front().hypervolume));
 }
 
 TEST_F(Given, ReferencesCanBeGiven) {

@@ -106,6 +106,33 @@ INSTANTIATE_TEST_SUITE_P(All, RefinedFront,
                                            Case{"nlopt", "isres", "achievement"}),
                          kName);
 
+TEST(RefinedFrontOf, AStartThatCannotBeEvaluatedEndsThere) {
+  const FunctionProblem problem(box(1, -1, 1), kBothLeast, 0, [](auto x, auto f, auto) {
+    f[0] = x[0] * x[0] + 0.0 * sqrt(x[0]);
+    f[1] = 1.0 - x[0];
+  });
+  const Outcome outcome = refine(problem, {"ipopt", "", "achievement"}, {{-0.5}, {0.5}});
+  EXPECT_EQ(outcome.result.starts[0].stop, "failed");
+  EXPECT_EQ(outcome.result.starts[0].rows, 1);
+  EXPECT_EQ(outcome.result.starts[1].stop, "converged");
+  EXPECT_EQ(outcome.result.front->rows.size(), 1u);
+}
+
+TEST(RefinedFrontOf, AnInfeasibleStartMayPayForFeasibility) {
+  // Least x0 and least x1 with x0 + x1 >= 1.5: from the origin both must grow.
+  const FunctionProblem problem(box(2, 0, 2), kBothLeast, 1, [](auto x, auto f, auto g) {
+    f[0] = x[0] * 1.0;
+    f[1] = x[1] * 1.0;
+    g[0] = x[0] + x[1] - 1.5;
+  });
+  for (const char* how : {"achievement", "epsilon-constraint"}) {
+    const Outcome outcome = refine(problem, {"nlopt", "slsqp", how}, {{0, 0}});
+    const auto end = static_cast<std::size_t>(outcome.result.starts[0].end_row);
+    EXPECT_EQ(outcome.table.status[end], Status::feasible) << how;
+    EXPECT_NEAR(outcome.table.objective_row(end)[0] + outcome.table.objective_row(end)[1], 1.5, 1e-8) << how;
+  }
+}
+
 TEST(RefinedFrontOf, EpsilonConstraintGainsInTheObjectiveNamed) {
   const FunctionProblem problem = two_directions();
   const auto gain = [&](const char* name) {

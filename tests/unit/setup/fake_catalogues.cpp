@@ -143,11 +143,6 @@ void resolve_width(Options& options, const DesignSpace& space) {
   if (!options.has("width")) options.set("width", static_cast<std::int64_t>(3 * space.dimension()));
 }
 
-template <Capabilities kCan>
-Capabilities can(const Options&) {
-  return kCan;
-}
-
 std::vector<OptimiserEntry> make_optimisers() {
   OptionSpec target;
   target.name = "target";
@@ -157,11 +152,20 @@ std::vector<OptimiserEntry> make_optimisers() {
       {"rate", OptionKind::number, "1", 0.5, false, 0, 1, {}, "mutation rate"},
       target,
       {"width", OptionKind::integer, "1", {}, false, 1, 100, {}, "starts per variable (default: 3 per variable)"}};
-  return {{"ga", "evolves", can<Capabilities{}>, options, make_idle, resolve_width},
-          {"simple", "unconstrained, continuous", can<Capabilities{.constraints = false, .discrete = false}>, {}, make_idle},
-          {"newton", "by derivatives", can<Capabilities{.needs_gradient = true}>, {}, make_idle},
-          {"sweep", "tries all", can<Capabilities{.min_objectives = 0, .max_objectives = 9}>, {}, make_idle},
-          {"broken", "refuses its options", can<Capabilities{}>, {}, make_broken}};
+  return {
+      {"ga", "evolves", [](const Options&) { return Capabilities{}; }, options, make_idle, resolve_width},
+      {"simple",
+       "unconstrained, continuous",
+       [](const Options&) { return Capabilities{.constraints = false, .discrete = false}; },
+       {},
+       make_idle},
+      {"newton", "by derivatives", [](const Options&) { return Capabilities{.needs_gradient = true}; }, {}, make_idle},
+      {"sweep",
+       "tries all",
+       [](const Options&) { return Capabilities{.min_objectives = 0, .max_objectives = 9}; },
+       {},
+       make_idle},
+      {"broken", "refuses its options", [](const Options&) { return Capabilities{}; }, {}, make_broken}};
 }
 
 }  // namespace
