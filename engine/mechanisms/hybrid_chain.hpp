@@ -22,9 +22,10 @@
 // special case zeta = 0, T = 0.
 #pragma once
 
-#include "engine/math/small_matrix.hpp"
 #include "engine/mechanisms/hybrid.hpp"
 #include "engine/model/capsule.hpp"
+#include "engine/model/chain.hpp"
+#include "engine/motion/motion.hpp"
 
 namespace pkm::hybrid {
 
@@ -115,27 +116,8 @@ Ratio<S> ratio(const Forks<S>& k) {
   return {S(1.0) / greatest, greatest};
 }
 
-/// An angle [rad] and its derivatives by time.
-struct Turning {
-  double angle = 0, speed = 0, acceleration = 0;
-};
-
-/// What the chain gives off while the platform and its input move. Meaningless where the forks do not turn.
-/// @param velocity, acceleration  of the pose
-Turning output_motion(const Geometry<double>& g, const Pose<double>& pose, const Vector<double, 4>& velocity,
-                      const Vector<double, 4>& acceleration, const Turning& theta, double zeta);
-
-/// Derivatives of gamma by (x, y, z, beta, theta).
-struct ChainInfluence {
-  Vector<double, 5> gradient;
-  Matrix<double, 5, 5> hessian;
-};
-ChainInfluence chain_influence(const Geometry<double>& g, const Pose<double>& pose, double theta, double zeta);
-
-/// Absolute motion of the output shaft in the fixed frame [rad/s, rad/s^2].
-struct Spin {
-  Vector<double, 3> velocity, acceleration;
-};
-Spin output_spin(const Turning& beta, const Turning& gamma);
+/// The chain while the platform and its input move.
+/// @param zeta  phase of the forks [rad]
+ChainReport inspect_chain(const Geometry<double>& g, const MotionSample& at, double zeta);
 
 }  // namespace pkm::hybrid

@@ -6,17 +6,17 @@ namespace pkm::hybrid {
 
 Forward forward(const Geometry<double>& g, const std::array<double, 4>& s) {
   Forward found;
-  const auto none = [&](ForwardStatus status) {
+  const auto none = [&](Closure status) {
     found.status = status;
     return found;
   };
   const double xA = g.a - g.b1 + s[0], xB = -g.a + g.b2 + s[2], D = xB - xA;
   const double sum = g.L1 + g.L2, same = kRoundoff * sum;
   if (std::fabs(D) <= same)
-    return none(std::fabs(g.L1 - g.L2) <= same ? ForwardStatus::degenerate_xz : ForwardStatus::no_xz);
+    return none(std::fabs(g.L1 - g.L2) <= same ? Closure::degenerate_xz : Closure::no_xz);
   const double x = ((g.L1 - g.L2) * sum / D + xA + xB) / 2;
   const double h = (g.L1 - (x - xA)) * (g.L1 + (x - xA)), h_zero = kRoundoff * g.L1 * g.L1;
-  if (h < -h_zero) return none(ForwardStatus::no_xz);
+  if (h < -h_zero) return none(Closure::no_xz);
   const bool flat = h <= h_zero;
   const double height = flat ? 0 : std::sqrt(h);
 
@@ -24,9 +24,9 @@ Forward forward(const Geometry<double>& g, const std::array<double, 4>& s) {
   const double w = g.d * g.d + height * height + g.e * g.e + n3 * n3 - g.L3 * g.L3;
   const double w_zero = kRoundoff * g.L3 * g.L3;
   if (g.e * rho <= w_zero)
-    return none(std::fabs(w) <= w_zero ? ForwardStatus::degenerate_beta : ForwardStatus::no_beta);
+    return none(std::fabs(w) <= w_zero ? Closure::degenerate_beta : Closure::no_beta);
   const double K = w / (2 * g.e * rho);
-  if (std::fabs(K) > 1 + kRoundoff) return none(ForwardStatus::no_beta);
+  if (std::fabs(K) > 1 + kRoundoff) return none(Closure::no_beta);
   const bool one_beta = std::fabs(std::fabs(K) - 1) <= kRoundoff;
   const double xi = one_beta ? (K > 0 ? 0 : kPi) : atan2(std::sqrt((1 - K) * (1 + K)), K);
 

@@ -15,7 +15,7 @@
 
 namespace pkm::hybrid {
 
-enum class ForwardStatus { ok, no_xz, degenerate_xz, no_beta, degenerate_beta };
+enum class Closure { ok, no_xz, degenerate_xz, no_beta, degenerate_beta };
 
 struct Assembly {
   Pose<double> pose;
@@ -26,7 +26,7 @@ struct Assembly {
 };
 
 struct Forward {
-  ForwardStatus status = ForwardStatus::ok;
+  Closure status = Closure::ok;
   std::vector<Assembly> assemblies;  ///< (+,+), (+,-), (-,+), (-,-), as far as they are there and differ
 };
 

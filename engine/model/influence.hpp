@@ -32,6 +32,27 @@ Vector<S, 4> accelerations(const Influence<S>& influence, const Vector<S, 4>& ve
   return influence.G * acceleration + velocity_terms(influence, velocity);
 }
 
+/// The matrices of quadratic forms, from their values form(v) at unit vectors and sums of two of them.
+template <class Form>
+std::array<Matrix<double, 4, 4>, 4> matrices_of(const Form& form) {
+  std::array<Matrix<double, 4, 4>, 4> H;
+  const auto unit = [](std::size_t j) {
+    Vector<double, 4> v;
+    v[j] = 1;
+    return v;
+  };
+  for (std::size_t j = 0; j < 4; ++j) {
+    const Vector<double, 4> terms = form(unit(j));
+    for (std::size_t i = 0; i < 4; ++i) H[i](j, j) = terms[i];
+  }
+  for (std::size_t j = 0; j < 4; ++j)
+    for (std::size_t k = 0; k < j; ++k) {
+      const Vector<double, 4> terms = form(unit(j) + unit(k));
+      for (std::size_t i = 0; i < 4; ++i) H[i](j, k) = H[i](k, j) = (terms[i] - H[i](j, j) - H[i](k, k)) / 2;
+    }
+  return H;
+}
+
 /// The coefficients back. Infinite or NaN where G is singular.
 template <class S>
 Influence<S> reversed(const Influence<S>& influence) {

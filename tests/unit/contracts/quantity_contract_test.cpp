@@ -207,7 +207,8 @@ TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
       const LimitInfo* limit = find_named(info.limits, spec.name);
       if (!limit) continue;
       // Where nothing, or little, is left; a length without a natural end counts up to 1 m.
-      const double end = limit->inactive == limit->lower ? std::min(limit->upper, 1.0) : limit->lower;
+      const auto index = static_cast<std::size_t>(limit - info.limits.data());
+      const double end = std::min(*test::absurd_limits(info).given[index], 1.0);
       double least_left = 1;  // a limit may cut nothing of a sweep that holds the very coordinate that it bounds
       for (const Sweep& sweep : sweeps) {
         const double free = uncut(sweep);

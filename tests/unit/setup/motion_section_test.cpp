@@ -13,7 +13,7 @@ namespace {
 
 std::shared_ptr<const Motion> read(const std::string& text) {
   const TomlValue document = parse_toml(text, "m.toml");
-  return read_motion(ConfigValue(document, "m.toml", ""), {"x", "y", "z", "phi"});
+  return read_motion(ConfigValue(document, "m.toml", ""), {{"x", "y", "z", "phi"}});
 }
 
 std::string complaint(const std::string& text) {
@@ -152,7 +152,7 @@ TEST(MotionSection, AsATableOfAStudy) {
 
 TEST(MotionSection, FilesThatCannotBeRead) {
   try {
-    load_motion_toml("/no/such/motion.toml", {"x", "y", "z", "phi"});
+    load_motion_toml("/no/such/motion.toml", {{"x", "y", "z", "phi"}});
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(),
