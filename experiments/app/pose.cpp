@@ -33,7 +33,7 @@ Vector<double, 4> four(const std::vector<double>& v) { return {{v[0], v[1], v[2]
 double chain_angle(const MechanismInfo& info, const std::string& text, const std::string& option) {
   if (text.empty()) return 0;
   if (info.chain_input.empty())
-    throw ConfigError({"", 0, option}, "'" + text + "', but mechanism " + info.name + " has no auxiliary chain");
+    throw ConfigError({"", 0, option}, "mechanism " + info.name + " has no auxiliary chain");
   return parse_number(text, option, "rad");
 }
 

@@ -123,11 +123,11 @@ std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments
   const auto& [mode, branch] = arguments;
   const SourcePlace place{"", 0, "--branch"};
   if (!branch.empty() && info.branches.empty())
-    throw ConfigError(place, "'" + branch + "', but mechanism " + info.name + " has one branch only");
+    throw ConfigError(place, "mechanism " + info.name + " has one branch only");
   if (!branch.empty() && std::find(info.branches.begin(), info.branches.end(), branch) == info.branches.end())
     throw ConfigError(place, "'" + branch + "'", "one of " + join(info.branches));
   if (!branch.empty() && mode.find('/') != std::string::npos)
-    throw ConfigError(place, "'" + branch + "' beside --mode " + mode + ", which says the branch itself");
+    throw ConfigError(place, "the mode " + mode + " says its branch itself");
   if (!branch.empty() && branch != info.branches.front())
     return known_mode(info, {(mode.empty() ? info.modes.front() : mode) + "/" + branch, ""});
   if (mode.empty()) return info.modes.front();

@@ -49,6 +49,12 @@ NamedValues chain_values(const MechanismInfo& info, const TrajectoryPoint& p) {
   add(info.chain_input, in);
   add(info.chain_output, out);
   values.insert(values.end(), p.chain->angles.begin(), p.chain->angles.end());
+  const auto add_axes = [&](const std::string& name, const Vector<double, 3>& vector) {
+    for (std::size_t k = 0; k < 3; ++k)
+      values.emplace_back(name + "_" + "xyz"[k], p.chain->turns ? vector[k] : kAbsent);
+  };
+  add_axes("omega", p.chain->spin.velocity);
+  add_axes("alpha", p.chain->spin.acceleration);
   return values;
 }
 

@@ -11,14 +11,14 @@
 namespace pkm::testing {
 namespace {
 
-std::shared_ptr<const Motion> read(const std::string& text) {
+std::shared_ptr<const Motion> read(const std::string& text, const MotionNames& names = {{"x", "y", "z", "phi"}}) {
   const TomlValue document = parse_toml(text, "m.toml");
-  return read_motion(ConfigValue(document, "m.toml", ""), {{"x", "y", "z", "phi"}});
+  return read_motion(ConfigValue(document, "m.toml", ""), names);
 }
 
-std::string complaint(const std::string& text) {
+std::string complaint(const std::string& text, const MotionNames& names = {{"x", "y", "z", "phi"}}) {
   try {
-    read(text);
+    read(text, names);
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -148,6 +148,27 @@ TEST(MotionSection, AsATableOfAStudy) {
                     "s.toml:9: motion[1].type: found \"swing\"; expected one of points, pick-and-place, oscillation, "
                     "formulas"}},
                   kStage);
+}
+
+TEST(MotionSection, InputOfAnAuxiliaryChain) {
+  const MotionNames with_chain = {{"x", "y", "z", "phi"}, "theta"};
+  const std::string swing = "type = \"oscillation\"\n" + kPose + "amplitude = 0.01\nperiod = 1\n";
+  const auto motion = read(swing + "theta = \"0.3 + t^2\"\n", with_chain);
+  const MotionSample at = motion->at(0.5), still = read(swing, with_chain)->at(0.5);
+  EXPECT_NEAR(at.input.angle, 0.55, 1e-15);
+  EXPECT_NEAR(at.input.speed, 1, 1e-15);
+  EXPECT_NEAR(at.input.acceleration, 2, 1e-15);
+  EXPECT_EQ(at.pose.m, still.pose.m);
+  EXPECT_EQ(still.input.angle, 0);
+  EXPECT_EQ(read(swing + "theta = \"90 deg\"\n", with_chain)->at(1).input.angle, kPi / 2);
+  EXPECT_FALSE(is_periodic(*motion));
+  EXPECT_TRUE(is_periodic(*read(swing + "theta = \"sin(2*pi*t)\"\n", with_chain)));
+  EXPECT_EQ(complaint(swing + "theta = 1\n"),
+            "m.toml:8: theta: found an unknown key; expected one of type, x, y, z, phi, amplitude, period, cycles");
+  EXPECT_EQ(
+      complaint(swing + "theta = [1]\n", with_chain),
+      "m.toml:8: theta: found a list; expected a number in rad, or text with a unit made of urad, mrad, rad, deg, "
+      "turn");
 }
 
 TEST(MotionSection, FilesThatCannotBeRead) {
