@@ -12,6 +12,8 @@
 // parallelograms, translate only: C_j as (0, y_j', z_cj'), D_j as (+/- x_j', y_j', z').
 #pragma once
 
+#include <optional>
+
 #include "engine/dynamics/body.hpp"
 #include "engine/mechanisms/four_ppa_two_par_masses.hpp"
 #include "engine/model/influence.hpp"

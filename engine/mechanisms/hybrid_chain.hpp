@@ -69,8 +69,9 @@ template <class S>
 Forks<S> forks(const Shaft<S>& s, const S& beta, double zeta) {
   const auto [sin_b, cos_b] = sincos(beta);
   const S PQ = s.P * s.Q;
-  const bool mirrored = value_of(s.Q)<0, turns = value_of(PQ)> 0 && !(mirrored && zeta != 0);
-  if (!turns) return {S(0.0), S(0.0), S(0.0), S(0.0), PQ, false};
+  const bool bent = !(value_of(PQ) > 0);
+  const bool mirrored = value_of(s.Q) < 0;
+  if (bent || (mirrored && zeta != 0)) return {S(0.0), S(0.0), S(0.0), S(0.0), PQ, false};
   const S &x = s.w[0], &wy = s.w[1], &wz = s.w[2];
   const double sign = mirrored ? -1 : 1;
   const auto [sin, cos] = sincos(zeta);

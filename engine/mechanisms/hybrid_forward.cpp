@@ -12,8 +12,7 @@ Forward forward(const Geometry<double>& g, const std::array<double, 4>& s) {
   };
   const double xA = g.a - g.b1 + s[0], xB = -g.a + g.b2 + s[2], D = xB - xA;
   const double sum = g.L1 + g.L2, same = kRoundoff * sum;
-  if (std::fabs(D) <= same)
-    return none(std::fabs(g.L1 - g.L2) <= same ? Closure::degenerate_xz : Closure::no_xz);
+  if (std::fabs(D) <= same) return none(std::fabs(g.L1 - g.L2) <= same ? Closure::degenerate_xz : Closure::no_xz);
   const double x = ((g.L1 - g.L2) * sum / D + xA + xB) / 2;
   const double h = (g.L1 - (x - xA)) * (g.L1 + (x - xA)), h_zero = kRoundoff * g.L1 * g.L1;
   if (h < -h_zero) return none(Closure::no_xz);
@@ -23,8 +22,7 @@ Forward forward(const Geometry<double>& g, const std::array<double, 4>& s) {
   const double n3 = x - g.c - s[3], rho = std::sqrt(g.d * g.d + height * height);
   const double w = g.d * g.d + height * height + g.e * g.e + n3 * n3 - g.L3 * g.L3;
   const double w_zero = kRoundoff * g.L3 * g.L3;
-  if (g.e * rho <= w_zero)
-    return none(std::fabs(w) <= w_zero ? Closure::degenerate_beta : Closure::no_beta);
+  if (g.e * rho <= w_zero) return none(std::fabs(w) <= w_zero ? Closure::degenerate_beta : Closure::no_beta);
   const double K = w / (2 * g.e * rho);
   if (std::fabs(K) > 1 + kRoundoff) return none(Closure::no_beta);
   const bool one_beta = std::fabs(std::fabs(K) - 1) <= kRoundoff;

@@ -138,6 +138,13 @@ class Hybrid final : public Mechanism {
   ChainReport chain(std::span<const double> p, const MotionSample& at, double phase) const override {
     return inspect_chain(geometry(p), at, phase);
   }
+  std::optional<double> chain_input(std::span<const double> p, const Pose<double>& pose, double output,
+                                    double phase) const override {
+    const auto g = geometry(p);
+    const Forks<double> k = forks(shaft(g, pose), pose.angle, phase);
+    if (!k.turns) return std::nullopt;
+    return input_angle(g, k, output);
+  }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& s) const override {
     std::vector<AssemblyMode> modes;
     for (const Assembly& found : hybrid::forward(geometry(p), s).assemblies) {

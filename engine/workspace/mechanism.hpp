@@ -154,8 +154,11 @@ class Mechanism {
   }
   /// The auxiliary chain at a pose on its way, with the motion of its input.
   /// @param phase  of the forks of the chain's two universal joints [rad]
-  virtual ChainReport chain(std::span<const double>, const MotionSample&, double /*phase*/) const {
-    throw std::logic_error("mechanism " + info().name + " has no auxiliary chain");
+  virtual ChainReport chain(std::span<const double>, const MotionSample&, double /*phase*/) const { throw no_chain(); }
+  /// The chain's input angle for one of its output [rad]; absent where it does not turn.
+  virtual std::optional<double> chain_input(std::span<const double>, const Pose<double>&, double /*output*/,
+                                            double /*phase*/) const {
+    throw no_chain();
   }
 
   /// Equations of motion at states of one design, with its masses. Where a state does not assemble,
@@ -188,6 +191,7 @@ class Mechanism {
   }
 
  private:
+  std::logic_error no_chain() const { return std::logic_error("mechanism " + info().name + " has no auxiliary chain"); }
   std::logic_error no_masses() const { return std::logic_error("mechanism " + info().name + " has no dynamics"); }
   std::logic_error no_duals() const { return std::logic_error("mechanism " + info().name + " has no derivatives"); }
 };

@@ -15,7 +15,7 @@ namespace {
 
 struct PoseArguments : DesignArguments, ModeArguments {
   std::vector<std::string> at, velocity, acceleration;
-  std::string theta, zeta;
+  std::string theta, gamma, zeta;
 };
 
 /// What the command line asks for, and what was found.
@@ -49,11 +49,16 @@ Found find(const Target& target, const PoseArguments& arguments) {
     throw ConfigError({}, "mechanism " + info.name + " has no influence coefficients, so no speeds of joints");
   f.at.velocity = four(rates);
   f.at.acceleration = four(changes);
+  if (!arguments.theta.empty() && !arguments.gamma.empty())
+    throw ConfigError({"", 0, "--gamma"}, "the chain's input follows from its output; give --theta or --gamma");
   f.at.input.angle = chain_angle(info, arguments.theta, "--theta");
   f.zeta = chain_angle(info, arguments.zeta, "--zeta");
+  const double gamma = chain_angle(info, arguments.gamma, "--gamma");
   f.pose = mechanism.inspect(target.parameters, f.at.as_pose(), f.mode, target.limits);
   if (info.has_influence) f.influence = mechanism.influence(target.parameters, f.at.as_pose(), f.mode);
   if (info.chain_input.empty()) return f;
+  if (!arguments.gamma.empty())
+    f.at.input.angle = mechanism.chain_input(target.parameters, f.at.as_pose(), gamma, f.zeta).value_or(0);
   f.at.input.speed = rates.back();
   f.at.input.acceleration = changes.back();
   f.chain = mechanism.chain(target.parameters, f.at, f.zeta);
@@ -160,14 +165,15 @@ std::vector<Row> joint_rows(const MechanismInfo& info, const Found& f) {
   return rows;
 }
 
-void print_chain(const MechanismInfo& info, const ChainReport& chain) {
+void print_chain(const MechanismInfo& info, const Turning& input, const ChainReport& chain) {
   if (!chain.turns) {
     std::cout << '\n' << info.chain_output << " does not exist: " << chain.reason << '\n';
     return;
   }
   const Turning& out = chain.output;
   print_section(std::cout, "auxiliary chain",
-                {{info.chain_output, number(out.angle, "rad")},
+                {{info.chain_input, number(input.angle, "rad")},
+                 {info.chain_output, number(out.angle, "rad")},
                  {"speed", number(out.speed, "rad/s")},
                  {"acceleration", number(out.acceleration, "rad/s^2")}});
 }
@@ -204,7 +210,7 @@ void print_pose(const MechanismInfo& info, const Found& f) {
   }
   print_section(std::cout, "indices", indices);
   print_section(std::cout, "angles and lengths (rad, m)", angles);
-  if (f.chain) print_chain(info, *f.chain);
+  if (f.chain) print_chain(info, f.at.input, *f.chain);
   print_section(std::cout, "margins (>= 0 holds)", margins);
 }
 
@@ -232,6 +238,7 @@ void add_pose(CLI::App& app, Session& session) {
                   "Rates of the coordinates, and of an auxiliary chain's input; 0 where not given", false);
   add_list_option(*command, "--acceleration", arguments->acceleration, "Accelerations of the same", false);
   command->add_option("--theta", arguments->theta, "Input angle of an auxiliary chain; default 0")->type_name("ANGLE");
+  command->add_option("--gamma", arguments->gamma, "Its output angle instead: the input follows")->type_name("ANGLE");
   command->add_option("--zeta", arguments->zeta, "Phase of its forks; default 0")->type_name("ANGLE");
   command->footer(
       "The limits are those of the study; a bare mechanism has none but its design's. A pose that breaks a limit is\n"

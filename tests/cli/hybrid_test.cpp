@@ -132,6 +132,10 @@ TEST(CliHybrid, AuxiliaryChain) {
     }
     const json phased = pose(entry, {"--theta", entry["theta"].dump(), "--zeta", entry["zeta"].dump()}).json();
     expect_near(phased["angles"]["gamma"], entry["gamma_zeta"], "gamma at zeta");
+    if (entry["gamma"].is_null()) continue;
+    const json back = pose(entry, {"--gamma", entry["gamma"].dump()}).json();
+    expect_near(back["chain"]["theta"], entry["theta_back"], "theta");
+    expect_near(back["angles"]["gamma"], entry["gamma"], "gamma there and back");
   }
 }
 
