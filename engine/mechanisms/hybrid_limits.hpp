@@ -23,6 +23,9 @@ namespace pkm::hybrid {
 /// Order of the pose-level limits that a study may set.
 enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
 
+/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
+inline constexpr double kNoClearance = -2;
+
 /// Thresholds in the form in which the tests use them.
 template <class S>
 struct Limits {

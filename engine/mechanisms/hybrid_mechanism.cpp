@@ -6,15 +6,13 @@
 #include "engine/mechanisms/hybrid_forward.hpp"
 #include "engine/mechanisms/hybrid_influence.hpp"
 #include "engine/mechanisms/hybrid_inspect.hpp"
+#include "engine/mechanisms/hybrid_survey.hpp"
 #include "engine/mechanisms/list.hpp"
 
 namespace pkm {
 namespace {
 
 using namespace hybrid;
-
-/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
-constexpr double kNoClearance = -2;
 
 /// Signs of n1, n2, n3, and the required one of N2.
 struct Mode {
@@ -58,12 +56,15 @@ MechanismInfo make_info() {
   i.held_can_integrate = true;
   i.volume_unit = "m^2 rad";
   i.integrated_unit = "m^3 rad";
+  i.size_unit = "m^2";
+  i.size_meaning = "(2 a + L1 + L2) L3";
   for (const ParameterIndex tau : {kTauS, kTauP, kTauC}) {
     const Parameter& own = i.parameters[tau];
     i.limits.push_back({own.name, own.unit, own.nominal, own.lower, own.upper, "singularity-margin", "", own.meaning});
   }
-  i.limits.push_back({"clearance_min", "m", 0, kNoClearance, 100, "clearance", "",
-                      "least distance of links that do not share a joint; < 0: they may overlap that far"});
+  i.limits.push_back({"clearance_min", "m", kNoClearance, kNoClearance, 100, "clearance", "",
+                      "least distance of links that do not share a joint; < 0: they may overlap that far. Where it is "
+                      "not given, poses need 0 and surveys leave the links' thickness out"});
   i.characteristic_length = "e";
   i.margin_unit = "m";
   i.has_influence = true;
@@ -77,19 +78,28 @@ bool is_length(std::size_t margin) {
   return (margin >= kStroke1 && margin <= kZClearance) || margin == kCarriageGap || margin >= kAuxLength;
 }
 
+/// The platform and links A and B stretched along their rails, by link C.
+template <class S>
+S size_of(std::span<const S> p) {
+  return (p[kA] * 2.0 + p[kL1] + p[kL2]) * p[kL3];
+}
+
 class Hybrid final : public Mechanism {
  public:
   const MechanismInfo& info() const override { return info_; }
 
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand&) const override {
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
     sweep_of(info_, plan);  // refuses a plan that holds another coordinate than y
-    throw no_surveys();
+    const Mode& mode = demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
+    return make_surveyor(mode.signs, mode.branch, plan, demand);
   }
-  VoxelMap voxel_map(std::span<const double>, const SurveyPlan&) const override { throw no_surveys(); }
+  VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
+    return hybrid::voxel_map(modes_.front().signs, modes_.front().branch, p, plan);
+  }
   void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
   void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const override {}
-  double size(std::span<const double>) const override { return 1; }
-  Dual4 size(std::span<const Dual4>) const override { return 1; }
+  double size(std::span<const double> p) const override { return size_of(p); }
+  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
   void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
     find_thresholds(p, spec, values);
   }
@@ -167,9 +177,6 @@ class Hybrid final : public Mechanism {
   }
 
  private:
-  static std::invalid_argument no_surveys() {
-    return std::invalid_argument("mechanism 2t1r-p-hybrid has no surveys of its workspace");
-  }
   const Mode& mode_called(const std::string& name) const {
     for (const Mode& known : modes_)
       if (name == name_of(known)) return known;

@@ -200,11 +200,12 @@ void find_plain_strips(const Section<double>& s, std::size_t curves, const Strip
 
 /// Takes the columns of `inner` out of those of `outer`.
 void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
+  constexpr double kSame = 1e-13;  // m: ends that both sets of strips have in common may differ by their rounding
   strips.clear();
   for (const Strip& o : outer) {
     StripEnd from = o.from;
     const auto add = [&](const StripEnd& to, const Strip* hole) {
-      if (!(from.z < to.z)) return;
+      if (!(to.z - from.z > kSame)) return;
       if (!hole) {
         strips.push_back({from, to, o.left, o.right});
       } else {
