@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "engine/math/intervals.hpp"
-
 namespace pkm::hybrid {
 namespace {
 
@@ -69,10 +67,24 @@ double may_meet(const Section<double>& s, const Edge& above, const Edge& below, 
   return p.z + std::fmin(std::fmax(along, 0.1 * width), 0.9 * width);
 }
 
-/// Where two edges that have changed places between p and q meet.
+/// Where two edges that have changed places between p and q meet: Newton's method, kept between them by bisection.
 double meeting(const Section<double>& s, const Edge& first, const Edge& second, double p, double q) {
   const auto gap = [&](double z) { return edge_at(s, first, z) - edge_at(s, second, z); };
-  return bracketed_root(gap, p, gap(p), q, gap(q), 1e-15 * q);
+  const auto slope = [&](const Edge& e, double z) {
+    const Curve<double>& c = s.curve[e.curve];
+    return sign_of(s, e) * c.slope(z, c.root(z));
+  };
+  const double at_p = gap(p), at_q = gap(q);
+  double z = p - at_p * (q - p) / (at_q - at_p);
+  for (int step = 0; step < 80; ++step) {
+    if (!(z > p && z < q)) z = 0.5 * (p + q);
+    const double here = gap(z), change = -here / (slope(first, z) - slope(second, z));
+    if (std::fabs(change) <= 2e-16 * z) break;
+    ((here >= 0) == (at_p >= 0) ? p : q) = z;
+    if (!(q - p > 4e-16 * z)) break;
+    z += change;
+  }
+  return z;
 }
 
 /// The curves of one side in force over a range of z.
