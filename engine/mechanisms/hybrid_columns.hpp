@@ -1,6 +1,7 @@
 // Hybrid robot: exact volume, and weighted samples, by quadrature over beta of closed-form x-z sections.
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 
 #include "engine/math/pieces.hpp"
@@ -29,58 +30,109 @@ Section<S> section_of(const Frame<S>& f, const S& beta, ColumnScratch<S>& scratc
   return s;
 }
 
-/// A break of the structure with its derivatives. There two heights of a section meet: both ends of a strip that
-/// closes, or two ends of z that change places. With a and b those heights, a(p, beta(p)) = b(p, beta(p)) gives beta' =
-/// -(d(a - b)/dp) / (d(a - b)/dbeta); which they are, and that quotient, show a little beside the break. A Newton step
-/// from there ends at it.
+/// What happens to a section at a break: two heights meet, or two edges at a height.
+struct Event {
+  StripEnd first, second;
+  bool across = false;  ///< `left` and `right` meet at `first`; `second` means nothing
+  Edge left, right;
+};
+
+/// The curve that begins or ends at an end of z, where its root is 0; kCurves: none.
+inline std::size_t tip(const StripEnd& end) {
+  if (end.kind == StripEnd::Kind::hole) return kCurveH;
+  if (end.kind == StripEnd::Kind::meeting) return kCurves;
+  if (end.index == kEndP1 || end.index == kEndP2) return kCurveP;
+  if (end.index == kEndL && end.kind == StripEnd::Kind::upper) return kCurveL;
+  return end.index == kEndQ && end.kind == StripEnd::Kind::lower ? std::size_t{kCurveQ} : std::size_t{kCurves};
+}
+
+/// x of an edge at an end of z, where a root of the section may begin.
+template <class S>
+S edge_at_end(const Section<S>& s, const Edge& edge, const StripEnd& end) {
+  return edge.curve == tip(end) ? S(0.0) : edge_at(s, edge, height(s, end));
+}
+
+/// How far the two are apart: 0 at the break.
+template <class S>
+S distance(const Section<S>& s, const Event& event) {
+  if (event.across) return edge_at_end(s, event.right, event.first) - edge_at_end(s, event.left, event.first);
+  return height(s, event.second) - height(s, event.first);
+}
+
+/// The event between two sections near each other that have different structures; false: nothing is seen to meet.
+inline bool find_event(const Section<double>& s, const Structure& below, const Section<double>& t,
+                       const Structure& above, Event& event) {
+  using Kind = StripEnd::Kind;
+  const auto end = [&](Kind kind, std::size_t index) {
+    const double z = kind == Kind::lower ? s.lower[index] : kind == Kind::upper ? s.upper[index] : s.hole_end;
+    return StripEnd{z, kind, static_cast<std::uint8_t>(index), {}, {}};
+  };
+  const auto changes = [&](const Event& candidate) {
+    return (distance(s, candidate) >= 0) != (distance(t, candidate) >= 0);
+  };
+  const StripEnd low = end(Kind::lower, below.lower), high = end(Kind::upper, below.upper), hole = end(Kind::hole, 0);
+  const auto take = [&](const Event& candidate) {
+    event = candidate;
+    return true;
+  };
+  if (below.lower != above.lower) return take({low, end(Kind::lower, above.lower), false, {}, {}});
+  if (below.upper != above.upper) return take({high, end(Kind::upper, above.upper), false, {}, {}});
+  for (const StripEnd& other : {high, hole})
+    if (const Event closes{low, other, false, {}, {}}; changes(closes)) return take(closes);
+  if (const Event covers{hole, high, false, {}, {}}; hole.z > low.z && changes(covers)) return take(covers);
+  for (const StripEnd& at : {low, high, hole}) {
+    if (at.z < low.z || at.z > high.z) continue;
+    std::array<Edge, 2 * kCurves> edge;
+    std::array<double, 2 * kCurves> in_s, in_t;
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+      edge[k] = {static_cast<std::uint8_t>(k / 2), static_cast<std::uint8_t>(k % 2)};
+      in_s[k] = edge_at_end(s, edge[k], at);
+      in_t[k] = edge_at_end(t, edge[k], at);
+    }
+    for (std::size_t i = 0; i < edge.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
+        const bool apart = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
+        if (!apart) return take({at, {}, true, edge[j], edge[i]});  // the chain's -x and x never meet but at a tip
+      }
+  }
+  double least = 1e-3 * high.z;
+  for (const Structure* structure : {&below, &above})
+    for (const Strip& strip : structure->strips)
+      if (strip.to.z - strip.from.z < least) {
+        least = strip.to.z - strip.from.z;
+        event = {strip.from, strip.to, false, {}, {}};
+      }
+  return least < 1e-3 * high.z;
+}
+
+/// A break of the structure with its derivatives. With a and b the two that meet there, a(p, beta(p)) = b(p, beta(p))
+/// gives beta' = -(d(a - b)/dp) / (d(a - b)/dbeta). Which they are, and that quotient, show a little beside the break;
+/// a Newton step ends at it.
 /// @param plain, still  the same design without derivatives, and for those by beta
 /// @param at            the break, to `beside`
 template <class S>
 S moving_break(const Frame<S>& f, const Frame<double>& plain, const Frame<Dual<1>>& still, double at, double beside,
                StripScratch& scratch, Structure& structure) {
-  double least = 1e-3 * value_of(f.z_high), beta = at;
-  StripEnd first, second;
-  for (const double candidate : {at - beside, at + beside}) {
-    const Section<double> s = section(plain, candidate);
-    find_strips(s, scratch, structure);
-    const auto compare = [&](const StripEnd& a, const StripEnd& b) {
-      const double apart = std::fabs(b.z - a.z);
-      if (!(apart > 0 && apart < least)) return;
-      least = apart;
-      beta = candidate;
-      first = a;
-      second = b;
-    };
-    const auto end = [&](StripEnd::Kind kind, std::size_t index) {
-      const bool lower = kind == StripEnd::Kind::lower;
-      return StripEnd{lower ? s.lower[index] : s.upper[index], kind, static_cast<std::uint8_t>(index), {}, {}};
-    };
-    const StripEnd low = end(StripEnd::Kind::lower, structure.lower),
-                   high = end(StripEnd::Kind::upper, structure.upper);
-    compare(low, high);
-    compare(low, end(StripEnd::Kind::lower, structure.next_lower));
-    compare(high, end(StripEnd::Kind::upper, structure.next_upper));
-    for (std::size_t i = 0; i < structure.strips.size(); ++i) {
-      const Strip& strip = structure.strips[i];
-      compare(strip.from, strip.to);
-      compare(low, strip.from);  // where nothing is left of a strip's beginning or end
-      compare(strip.to, high);
-      if (i > 0) compare(structure.strips[i - 1].to, strip.from);
-    }
-  }
-  if (beta == at) return S(at);
-  const auto apart = [&](const auto& frame, const auto& outer) {
-    const auto s = section(frame, outer);
-    return height(s, second) - height(s, first);
+  thread_local Structure before;
+  const Section<double> below = section(plain, at - 2 * beside), above = section(plain, at + beside);
+  find_strips(below, scratch, before);
+  find_strips(above, scratch, structure);
+  Event event;
+  if (!find_event(below, before, above, structure, event)) return S(at);
+  // Heights where edges meet are known on the side where the strip is
+  const auto known_in = [&](const Structure& of) {
+    return std::ranges::any_of(of.strips, [&](const Strip& s) { return s.from.z == event.first.z; });
   };
-  const Dual<1> by_beta = apart(still, Dual<1>::variable(beta, 0));
-  const double step = -by_beta.a / by_beta.v[0];
-  if (!(std::fabs(step) <= 4 * beside)) return S(at);
+  const double beta = !event.across && !known_in(before) && known_in(structure) ? at + beside : at - 2 * beside;
+  const Dual<1> apart = distance(section(still, Dual<1>::variable(beta, 0)), event);
+  const double step = -apart.a / apart.v[0];
+  if (!(std::fabs(step) <= 8 * beside)) return S(at);
   if constexpr (std::is_same_v<S, double>) {
     return beta + step;
   } else {
-    const S by_design = apart(f, S(beta));
-    return S(beta + step) - (by_design - value_of(by_design)) / by_beta.v[0];
+    const S by_design = distance(section(f, S(beta)), event);
+    return S(beta + step) - (by_design - value_of(by_design)) / apart.v[0];
   }
 }
 
@@ -99,7 +151,7 @@ void find_outer_pieces(const Frame<S>& f, const Frame<double>& plain, const Fram
     find_strips(section(plain, beta), scratch.strips, scratch.structure);
     return scratch.structure.signature;
   };
-  constexpr double kBeside = 1e-7;
+  constexpr double kBeside = 1e-10;
   const double beside = kBeside * (plain.l.beta_max - plain.l.beta_min);
   const auto moving = [&](double at) {
     return moving_break(f, plain, still, at, beside, scratch.strips, scratch.structure);

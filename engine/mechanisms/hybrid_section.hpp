@@ -131,6 +131,8 @@ struct Curve {
 };
 
 inline constexpr std::size_t kLowerEnds = 9, kUpperEnds = 9;
+/// Those at which a curve begins or ends: P at either, L at an upper, Q at a lower one.
+inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
 
 template <class S>
 struct Section {
@@ -167,8 +169,8 @@ Section<S> section(const Frame<S>& f, const S& beta) {
   const S d_sin = g.d * sin_b * f.mu.sin;
   set(0, S(mu_sin + mu_cos), S(middle - d_sin));
   set(1, S(mu_sin - mu_cos), S(-middle - d_sin));
-  set(2, S(t * cos_b - sin_b), S(v_0 - t * P0));
-  set(3, S(t * cos_b + sin_b), S(-v_0 - t * P0));
+  set(kEndP1, S(t * cos_b - sin_b), S(v_0 - t * P0));
+  set(kEndP2, S(t * cos_b + sin_b), S(-v_0 - t * P0));
   s.lower[4] = f.z_low;
   s.upper[4] = f.z_high;
   const S far2 = reach2 - l.tau_s * l.tau_s * g.L3 * g.L3, near2 = reach2 - l.psiC.sin * l.psiC.sin * g.L3 * g.L3;
@@ -178,11 +180,11 @@ Section<S> section(const Frame<S>& f, const S& beta) {
   s.upper[6] = beyond ? none : S(width * f.cot_c - lift);
   s.lower[7] = max(l.z_clear, S(width * f.lam.cos / f.lam.sin)) - lift;
   const S shaft2 = (l.lw_max - w_y) * (l.lw_max + w_y);  // Q^2 + x^2 at the greatest length
-  s.upper[7] = value_of(shaft2) > 0 ? S(sqrt(shaft2) - Q0) : none;
-  s.lower[8] = magnitude(w_y) * f.cot_phi - Q0;
+  s.upper[kEndL] = value_of(shaft2) > 0 ? S(sqrt(shaft2) - Q0) : none;
+  s.lower[kEndQ] = magnitude(w_y) * f.cot_phi - Q0;
   const S hole2 = (l.lw_min - w_y) * (l.lw_min + w_y);
   s.hole_end = value_of(hole2) > 0 ? S(sqrt(hole2) - Q0) : none;
-  s.upper[8] = all;
+  s.upper[kEndQ] = all;
 
   // x
   const auto circle = [&](const S& radius, const S& foot) {  // of the radius about z = foot

@@ -212,12 +212,16 @@ void find_plain_strips(const Section<double>& s, std::size_t curves, const Strip
 
 /// Takes the columns of `inner` out of those of `outer`.
 void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
-  constexpr double kSame = 1e-13;  // m: ends that both sets of strips have in common may differ by their rounding
+  const auto same = [](const StripEnd& p, const StripEnd& q) {  // but for the rounding of either search
+    constexpr double kRoundoff = 1e-13;                         // m
+    return p.kind == q.kind && p.index == q.index && p.first == q.first && p.second == q.second &&
+           std::fabs(p.z - q.z) < kRoundoff;
+  };
   strips.clear();
   for (const Strip& o : outer) {
     StripEnd from = o.from;
     const auto add = [&](const StripEnd& to, const Strip* hole) {
-      if (!(to.z - from.z > kSame)) return;
+      if (!(from.z < to.z) || same(from, to)) return;
       if (!hole) {
         strips.push_back({from, to, o.left, o.right});
       } else {
@@ -261,14 +265,6 @@ void find_strips(const Section<double>& s, StripScratch& scratch, Structure& str
     if (s.lower[i] > s.lower[structure.lower]) structure.lower = i;
   for (std::size_t i = 1; i < kUpperEnds; ++i)
     if (s.upper[i] < s.upper[structure.upper]) structure.upper = i;
-  const auto next = [](const auto& ends, std::size_t in_force, double sign) {
-    std::size_t best = in_force == 0 ? 1 : 0;
-    for (std::size_t i = 0; i < ends.size(); ++i)
-      if (i != in_force && sign * ends[i] > sign * ends[best]) best = i;
-    return best;
-  };
-  structure.next_lower = next(s.lower, structure.lower, 1);
-  structure.next_upper = next(s.upper, structure.upper, -1);
   const StripEnd low{
       s.lower[structure.lower], StripEnd::Kind::lower, static_cast<std::uint8_t>(structure.lower), {}, {}};
   const StripEnd high{

@@ -41,8 +41,7 @@ struct Strip {
 struct Structure {
   std::vector<Strip> strips;         ///< from below, not empty; where there is a hole, two over the same heights
   std::size_t lower = 0, upper = 0;  ///< the ends of z in force
-  std::size_t next_lower = 0, next_upper = 0;  ///< those that would be without them
-  std::uint64_t signature = 0;                 ///< of everything but the numbers; 0: no strip
+  std::uint64_t signature = 0;       ///< of everything but the numbers; 0: no strip
 };
 
 /// What finding strips reuses.

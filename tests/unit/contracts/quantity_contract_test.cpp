@@ -157,7 +157,8 @@ TEST(ConstraintContract, DesignLevelOnesHoldForSomeDesignsAndFailForOthers) {
     Stream random(1, 0, 0, Stream::Use::start);
     for (int i = 0; i < 200; ++i) {
       auto design = nominal(mechanism.info());
-      for (double& p : design) p *= 0.4 + 1.6 * random.u01();
+      const double share = i / 200.0;  // of the way from the nominal design to 0.4 to 2 times its parameters
+      for (double& p : design) p *= 1 + share * (1.6 * random.u01() - 0.6);
       const double m = margin(entry, mechanism, design);
       ASSERT_TRUE(std::isfinite(m));
       ++(m >= 0 ? holds : violated);
