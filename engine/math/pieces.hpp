@@ -29,7 +29,9 @@ struct Break {
 /// @param signature  of the section at a value of the outer coordinate, 0: empty
 /// @param moving     gives a break that was found its derivatives
 /// @param samples    of the signature over the whole range
-/// @param width      to which a change of the signature is followed, relative to the range; 0: to the last bits
+/// @param width      to which a change of the signature is followed, relative to the range; 0: to the last bits.
+/// Further
+///                   changes within 100 widths count as the same: what rounding makes of the structure near a break
 template <class S, class Signature, class Moving>
 void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, const Moving& moving, int samples,
                  std::vector<Piece<S>>& pieces, double width = 0) {
@@ -76,7 +78,7 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
           (signature(middle) == now ? same : other) = middle;
         }
         add({moving(other), true, true}, now);
-        at = other;
+        at = std::fmin(other + 100 * width * whole, next);
         now = signature(at);
       }
       at = next;

@@ -97,12 +97,16 @@ inline bool find_event(const Section<double>& s, const Structure& below, const S
       }
   }
   double least = 1e-3 * high.z;
-  for (const Structure* structure : {&below, &above})
-    for (const Strip& strip : structure->strips)
-      if (strip.to.z - strip.from.z < least) {
-        least = strip.to.z - strip.from.z;
-        event = {strip.from, strip.to, false, {}, {}};
-      }
+  const auto closes_from = [&](const Structure& here, const Structure& there) {
+    for (const Strip& strip : here.strips) {
+      const bool stays = std::ranges::any_of(there.strips, [&](const Strip& s) { return alike(s, strip); });
+      if (stays || strip.to.z - strip.from.z >= least) continue;
+      least = strip.to.z - strip.from.z;
+      event = {strip.from, strip.to, false, {}, {}};
+    }
+  };
+  closes_from(below, above);
+  closes_from(above, below);
   return least < 1e-3 * high.z;
 }
 
@@ -110,12 +114,13 @@ inline bool find_event(const Section<double>& s, const Structure& below, const S
 /// gives beta' = -(d(a - b)/dp) / (d(a - b)/dbeta). Which they are, and that quotient, show a little beside the break;
 /// a Newton step ends at it.
 /// @param plain, still  the same design without derivatives, and for those by beta
-/// @param at            the break, to `beside`
+/// @param at            the break, to much less than `beside`
 template <class S>
 S moving_break(const Frame<S>& f, const Frame<double>& plain, const Frame<Dual<1>>& still, double at, double beside,
                StripScratch& scratch, Structure& structure) {
   thread_local Structure before;
-  const Section<double> below = section(plain, at - 2 * beside), above = section(plain, at + beside);
+  const double low = at - beside, high = at + beside;
+  const Section<double> below = section(plain, low), above = section(plain, high);
   find_strips(below, scratch, before);
   find_strips(above, scratch, structure);
   Event event;
@@ -124,7 +129,7 @@ S moving_break(const Frame<S>& f, const Frame<double>& plain, const Frame<Dual<1
   const auto known_in = [&](const Structure& of) {
     return std::ranges::any_of(of.strips, [&](const Strip& s) { return s.from.z == event.first.z; });
   };
-  const double beta = !event.across && !known_in(before) && known_in(structure) ? at + beside : at - 2 * beside;
+  const double beta = !event.across && !known_in(before) && known_in(structure) ? high : low;
   const Dual<1> apart = distance(section(still, Dual<1>::variable(beta, 0)), event);
   const double step = -apart.a / apart.v[0];
   if (!(std::fabs(step) <= 8 * beside)) return S(at);
@@ -151,12 +156,12 @@ void find_outer_pieces(const Frame<S>& f, const Frame<double>& plain, const Fram
     find_strips(section(plain, beta), scratch.strips, scratch.structure);
     return scratch.structure.signature;
   };
-  constexpr double kBeside = 1e-10;
-  const double beside = kBeside * (plain.l.beta_max - plain.l.beta_min);
+  constexpr double kWidth = 1e-10;
+  const double beside = 50 * kWidth * (plain.l.beta_max - plain.l.beta_min);
   const auto moving = [&](double at) {
     return moving_break(f, plain, still, at, beside, scratch.strips, scratch.structure);
   };
-  find_pieces(scratch.breaks, signature, moving, kSamples, scratch.pieces, kBeside);
+  find_pieces(scratch.breaks, signature, moving, kSamples, scratch.pieces, kWidth);
 }
 
 /// Area of the section at a beta [m^2].

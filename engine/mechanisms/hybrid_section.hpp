@@ -142,6 +142,8 @@ struct Section {
   std::array<S, kLowerEnds> lower;               ///< ends of z [m]; those that do not apply cut nothing
   std::array<S, kUpperEnds> upper;
   S hole_end;  ///< up to this z there is a hole of x
+  /// Of Q, P, L, H: their squares are ((m + m_z z) / cos(phi_max))^2 less what they have in common.
+  std::array<double, 4> m, m_z;
 };
 
 template <class S>
@@ -204,13 +206,15 @@ Section<S> section(const Frame<S>& f, const S& beta) {
     s.sign_lo[i] = limb ? f.signs[i] : -1;
     s.sign_hi[i] = limb ? f.signs[i] : 1;
   }
+  s.m = {value_of(Q0), value_of(P0), value_of(l.lw_max * l.phi.cos), value_of(l.lw_min * l.phi.cos)};
+  s.m_z = {1, value_of(cos_b), 0, 0};
   return s;
 }
 
 /// The values of a section.
 template <class S>
 Section<double> values(const Section<S>& s) {
-  Section<double> v{{}, s.sign_lo, s.sign_hi, {}, {}, {}, {}, value_of(s.hole_end)};
+  Section<double> v{{}, s.sign_lo, s.sign_hi, {}, {}, {}, {}, value_of(s.hole_end), s.m, s.m_z};
   for (std::size_t i = 0; i < kCurves; ++i) {
     const Curve<S>& c = s.curve[i];
     v.curve[i] = {value_of(c.a), value_of(c.a_z), value_of(c.b), value_of(c.b_z)};

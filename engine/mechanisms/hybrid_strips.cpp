@@ -32,12 +32,17 @@ double place(const Section<double>& s, const Edge& e, const Node& n) {
   return (e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]) + n.root[e.curve] * sign_of(s, e);
 }
 
+/// Both belong to the chain, on one side: they differ as Q, P, lw_max cos(phi_max), lw_min cos(phi_max) do, which are
+/// linear in z.
+bool of_chain(const Edge& first, const Edge& second) {
+  return first.curve >= kCurveQ && second.curve >= kCurveQ && first.side == second.side;
+}
+
 /// Where `above` may come down to `below` between two heights at which it is not below it: at that height its least
 /// bound is negative; NaN: it stays above. A convex function lies above its tangents, a concave one above its chord.
 double may_meet(const Section<double>& s, const Edge& above, const Edge& below, const Node& p, const Node& q) {
   constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-  // On one side, those of the chain differ as Q, P, and lw cos(phi_max) do, which are linear.
-  if (above.curve >= kCurveQ && below.curve >= kCurveQ && above.side == below.side) return kNowhere;
+  if (of_chain(above, below)) return kNowhere;
   const double high = sign_of(s, above), low = sign_of(s, below);
   const bool high_bends = high<0, low_bends = low> 0;  // convex, and the other concave
   const double width = q.z - p.z, gap_p = place(s, above, p) - place(s, below, p),
@@ -67,8 +72,14 @@ double may_meet(const Section<double>& s, const Edge& above, const Edge& below, 
   return p.z + std::fmin(std::fmax(along, 0.1 * width), 0.9 * width);
 }
 
-/// Where two edges that have changed places between p and q meet: Newton's method, kept between them by bisection.
+/// Where two edges that have changed places between p and q meet: Newton's method, kept between them by bisection. The
+/// chain's meet at the same height on either side, to the last bit.
 double meeting(const Section<double>& s, const Edge& first, const Edge& second, double p, double q) {
+  if (of_chain(first, second)) {
+    const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
+    const double z = (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
+    return std::fmin(std::fmax(z, p), q);
+  }
   const auto gap = [&](double z) { return edge_at(s, first, z) - edge_at(s, second, z); };
   const auto slope = [&](const Edge& e, double z) {
     const Curve<double>& c = s.curve[e.curve];
@@ -214,8 +225,7 @@ void find_plain_strips(const Section<double>& s, std::size_t curves, const Strip
 void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
   const auto same = [](const StripEnd& p, const StripEnd& q) {  // but for the rounding of either search
     constexpr double kRoundoff = 1e-13;                         // m
-    return p.kind == q.kind && p.index == q.index && p.first == q.first && p.second == q.second &&
-           std::fabs(p.z - q.z) < kRoundoff;
+    return alike(p, q) && std::fabs(p.z - q.z) < kRoundoff;
   };
   strips.clear();
   for (const Strip& o : outer) {

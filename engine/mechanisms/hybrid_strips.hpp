@@ -37,6 +37,14 @@ struct Strip {
   Edge left, right;
 };
 
+/// Whether two are the same but for their numbers.
+inline bool alike(const StripEnd& p, const StripEnd& q) {
+  return p.kind == q.kind && p.index == q.index && p.first == q.first && p.second == q.second;
+}
+inline bool alike(const Strip& p, const Strip& q) {
+  return alike(p.from, q.from) && alike(p.to, q.to) && p.left == q.left && p.right == q.right;
+}
+
 /// A section as strips.
 struct Structure {
   std::vector<Strip> strips;         ///< from below, not empty; where there is a hole, two over the same heights
