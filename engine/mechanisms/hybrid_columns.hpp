@@ -99,7 +99,7 @@ inline bool find_event(const Section<double>& s, const Structure& below, const S
   double least = 1e-3 * high.z;
   const auto closes_from = [&](const Structure& here, const Structure& there) {
     for (const Strip& strip : here.strips) {
-      const bool stays = std::ranges::any_of(there.strips, [&](const Strip& s) { return alike(s, strip); });
+      const bool stays = std::ranges::any_of(there.strips, [&](const Strip& of) { return alike(of, strip); });
       if (stays || strip.to.z - strip.from.z >= least) continue;
       least = strip.to.z - strip.from.z;
       event = {strip.from, strip.to, false, {}, {}};
