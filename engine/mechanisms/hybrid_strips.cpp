@@ -1,5 +1,6 @@
 #include "engine/mechanisms/hybrid_strips.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace pkm::hybrid {
