@@ -72,8 +72,8 @@ class ColumnSurveyor final : public Surveyor {
     }
     for (const Piece<S>& piece : scratch.pieces)
       for (std::size_t i = 0; i < beta_rule_.node.size(); ++i) {
-        const auto [beta, jacobian] = map_node(piece, beta_rule_.node[i]);
-        const S outer = jacobian * beta_rule_.weight[i] * stroke;
+        const MappedNode<S> at = map_node(piece, beta_rule_.node[i]);
+        const S &beta = at.point, outer = at.jacobian * beta_rule_.weight[i] * stroke;
         visit_columns(f, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
           const S weight = outer * inner * length;
           if (demand_.conditioning) add_conditioning(f, demand_, z, beta, weight, survey);

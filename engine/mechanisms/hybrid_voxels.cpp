@@ -85,7 +85,7 @@ void VoxelColumns::fill(std::int64_t k) {
                  H2 = square(H, z);
     const double n3 = sign * std::sqrt(C2 > 0 ? C2 : 0);
     const double QP2 = Q2 < P2 ? Q2 : P2, X2 = QP2 < L2 ? QP2 : L2;
-    const double x = std::sqrt(X2 > 0 ? X2 : 0), inside = std::sqrt((H2 > 0) & (z < hole_end) ? H2 : 0);
+    const double x = std::sqrt(X2 > 0 ? X2 : 0), inside = std::sqrt(((H2 > 0) & (z < hole_end)) ? H2 : 0);
     const double left_C = lo_C + n3, right_C = hi_C + n3;
     double left = left_[j] > left_C ? left_[j] : left_C, right = right_[j] < right_C ? right_[j] : right_C;
     left = left > -x ? left : -x;
