@@ -15,11 +15,6 @@
 namespace pkm {
 
 template <class S>
-S magnitude(const S& x) {
-  return value_of(x) < 0 ? S(x * -1.0) : x;
-}
-
-template <class S>
 Vector<S, 4> coupling_indices(const Matrix<S, 4, 4>& M) {
   const S m01 = magnitude(M(0, 1)), m02 = magnitude(M(0, 2)), m03 = magnitude(M(0, 3)), m12 = magnitude(M(1, 2)),
           m13 = magnitude(M(1, 3)), m23 = magnitude(M(2, 3));

@@ -44,6 +44,18 @@ S clamp(const S& x, const S& lower, const S& upper) {
   return min(max(x, lower), upper);
 }
 
+template <class S>
+S magnitude(const S& x) {
+  return value_of(x) < 0 ? S(-x) : x;
+}
+
+/// An angle [rad] less whole turns, in (-pi, pi].
+template <class S>
+S wrapped(const S& angle) {
+  const double turns = std::ceil(value_of(angle) / (2 * kPi) - 0.5);
+  return turns == 0 ? angle : S(angle - turns * (2 * kPi));
+}
+
 /// sqrt(x) where x > 0, else 0 with derivative 0 (the end of a range, where the true slope is infinite).
 template <class S>
 S root_or_zero(const S& x) {

@@ -9,6 +9,7 @@ const MechanismList& all_mechanisms() {
       make_four_ppa_two_par(),
       make_three_crr_r_cru(),
       make_quadrupteron(),
+      make_hybrid(),
   };
   return list;
 }

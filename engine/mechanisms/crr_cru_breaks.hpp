@@ -2,7 +2,8 @@
 // a closed form.
 #pragma once
 
-#include "engine/mechanisms/crr_cru_pieces.hpp"
+#include "engine/math/pieces.hpp"
+#include "engine/mechanisms/crr_cru_section.hpp"
 
 namespace pkm::crr_cru {
 

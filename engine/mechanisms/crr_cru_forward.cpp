@@ -12,8 +12,7 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<do
   const double turn = asin(std::clamp(kappa, -1.0, 1.0)), delta = offset(y);
   std::vector<AssemblyMode> modes;
   const auto add = [&](double phi, const char* branch) {
-    if (phi > kPi) phi -= 2 * kPi;
-    if (phi <= -kPi) phi += 2 * kPi;
+    phi = wrapped(phi);
     const auto [s, c] = sincos(phi);
     const auto arm = arms(g, s, c);
     modes.push_back(

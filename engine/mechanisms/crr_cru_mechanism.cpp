@@ -69,6 +69,7 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
   for (Parameter& parameter : mass_parameters(mass_model)) i.parameters.push_back(std::move(parameter));
   i.margin_unit = "m";
   i.columns_take_box = true;
+  i.has_influence = true;
   i.has_dynamics = true;
   i.has_reactions = true;
   i.mass_models = kMassModels;
@@ -148,6 +149,12 @@ class CrrCru final : public Mechanism {
   PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
     return crr_cru::inspect(geometry(platform_, p), link_radii(p), limits(spec), pose, mode_called(mode));
+  }
+  std::optional<Influence<double>> influence(std::span<const double> p, const Pose<double>& pose,
+                                             const std::string& mode) const override {
+    const Limbs<double> limbs = inverse(geometry(platform_, p), pose, mode_called(mode));
+    if (!limbs.assembles) return std::nullopt;
+    return crr_cru::influence(limbs.arm);
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& rho) const override {
     return crr_cru::forward(geometry(platform_, p), rho);

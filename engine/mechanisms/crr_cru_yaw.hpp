@@ -11,6 +11,7 @@
 
 #include "engine/mechanisms/crr_cru.hpp"
 #include "engine/model/conditioning.hpp"
+#include "engine/model/influence.hpp"
 
 namespace pkm::crr_cru {
 
@@ -61,6 +62,20 @@ Eigen::Matrix<S, 4, 4> jacobian_rate(const std::array<Arm<S>, 4>& arm, const S& 
     if (arm[i].turns && kLimbs[i].e < 2)
       rate(static_cast<Eigen::Index>(i), 3) = -arm[i].to_joint[kLimbs[i].e] * phi_rate;
   return rate;
+}
+
+/// Influence coefficients of the slides: their speeds follow from J, and their accelerations at a steady yaw rate from
+/// dJ/dt, which is proportional to it.
+template <class S>
+Influence<S> influence(const std::array<Arm<S>, 4>& arm) {
+  const Eigen::Matrix<S, 4, 4> J = jacobian(arm), rate = jacobian_rate(arm, S(1.0));
+  Influence<S> q;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t c = 0; c < 4; ++c) q.G(i, c) = J(row, static_cast<Eigen::Index>(c));
+    q.H[i](3, 3) = rate(row, 3);
+  }
+  return q;
 }
 
 /// The length that the phi column is divided by, unless a study gives one: l, or l + r [m].

@@ -29,7 +29,9 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<do
     const double t = std::sqrt(std::fmax(0.0, under) / distance2);
     for (const int side : {-1, 1}) {
       const double x = 0.5 * (x1 + x2) - side * t * rise, z = 0.5 * (z1 + z2) - g.d + side * t * w;
+      const auto branch = [&](double z_cj) { return z_cj < z + g.d ? "upper" : "lower"; };
       modes.push_back({{x, y, z, angle}, above});
+      modes.back().working_mode = std::string(branch(z1)) + "," + branch(z2);
       if (t == 0) break;
     }
   };

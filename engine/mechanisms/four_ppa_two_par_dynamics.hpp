@@ -12,8 +12,11 @@
 // parallelograms, translate only: C_j as (0, y_j', z_cj'), D_j as (+/- x_j', y_j', z').
 #pragma once
 
+#include <optional>
+
 #include "engine/dynamics/body.hpp"
 #include "engine/mechanisms/four_ppa_two_par_masses.hpp"
+#include "engine/model/influence.hpp"
 
 namespace pkm::four_ppa_two_par {
 
@@ -69,6 +72,21 @@ LimbMotion<S> limb_motion(const Geometry<S>& g, const MotionState<S>& state, con
   return m;
 }
 
+/// The sliders at y_j - h_j (side 0) and at y_j + h_j (side 1).
+template <class S>
+Follower<S> slider_motion(const LimbMotion<S>& m, std::size_t side) {
+  return side == 0 ? m.y - m.h : m.y + m.h;
+}
+
+/// sigma_j with the sign that limb_motion takes.
+template <class S>
+S signed_sigma(const Limbs<S>& limbs, WorkingMode mode, std::size_t j) {
+  return mode[j] == Branch::lower ? limbs.sigma[j] : S(limbs.sigma[j] * -1.0);
+}
+
+/// Influence coefficients of the sliders; absent where the pose does not assemble or they are infinite.
+std::optional<Influence<double>> influence(const Geometry<double>& g, const Pose<double>& pose, WorkingMode mode);
+
 /// A body by the velocity of its centre along the world's axes.
 template <class S>
 Body<S> body(const S& mass, const std::array<Follower<S>, 3>& centre) {
@@ -110,12 +128,11 @@ PoseDynamics<S> pose_dynamics(const Geometry<S>& g, const Masses<S>& b, const Mo
   }
   const auto add = [&](const Body<S>& moving) { add_body(d, moving, X); };
   for (std::size_t j = 0; j < 2; ++j) {
-    const S sigma = mode[j] == Branch::lower ? limbs.sigma[j] : S(limbs.sigma[j] * -1.0);
-    const LimbMotion<S> m = limb_motion(g, state, theta, limbs, j, sigma);
+    const LimbMotion<S> m = limb_motion(g, state, theta, limbs, j, signed_sigma(limbs, mode, j));
     const Follower<S> x_d = m.x * S(j == 0 ? 1.0 : -1.0);
-    for (std::size_t k = 0; k < 2; ++k) {  // slider at y_j - h_j, at y_j + h_j
+    for (std::size_t k = 0; k < 2; ++k) {
       const std::size_t i = 2 * j + k;
-      const Follower<S> q = k == 0 ? m.y - m.h : m.y + m.h;
+      const Follower<S> q = slider_motion(m, k);
       d.q[i] = limbs.q[i];
       for (std::size_t c = 0; c < 4; ++c) d.J(i, c) = q.row[c];
       d.J_rate_X[i] = q.bias;

@@ -40,6 +40,7 @@ MechanismInfo make_info() {
       {"R_s", "m", 0.020, 0, 1, "radius of the sliders as capsules"},
   };
   for (Parameter& parameter : mass_parameters()) i.parameters.push_back(std::move(parameter));
+  i.has_influence = true;
   i.has_dynamics = true;
   i.mass_models = {kMassModel};
   i.mass_model = kMassModel;
@@ -148,6 +149,10 @@ class FourPpaTwoPar final : public Mechanism {
                      const LimitSpec& spec) const override {
     const auto g = geometry(p);
     return four_ppa_two_par::inspect(g, limits(g, spec), pose, mode_called(mode));
+  }
+  std::optional<Influence<double>> influence(std::span<const double> p, const Pose<double>& pose,
+                                             const std::string& mode) const override {
+    return four_ppa_two_par::influence(geometry(p), pose, mode_called(mode));
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& q) const override {
     return four_ppa_two_par::forward(geometry(p), q);

@@ -10,5 +10,6 @@ namespace pkm {
 std::shared_ptr<const Mechanism> make_four_ppa_two_par();
 std::shared_ptr<const Mechanism> make_three_crr_r_cru();
 std::shared_ptr<const Mechanism> make_quadrupteron();
+std::shared_ptr<const Mechanism> make_hybrid();
 
 }  // namespace pkm

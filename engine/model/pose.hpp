@@ -27,7 +27,7 @@ struct PoseReport {
   bool assembles = false;  ///< the inverse kinematics has a solution in the working mode asked for
   bool feasible = false;   ///< assembles and every margin >= 0
   std::string reason;      ///< why it does not assemble, or the first broken margin; "" when feasible
-  std::optional<std::array<double, 4>> joints;  ///< [m], order of MechanismInfo::joints
+  std::optional<std::array<double, 4>> joints;  ///< [m], order of MechanismInfo::joints; NaN for one that is not there
   std::optional<Eigen::Matrix4d> Jq, G, J;      ///< Jq qdot = G V, J = Jq^-1 G (absent when Jq is singular)
   std::optional<double> det_Jq, det_G;
   std::optional<double> conditioning;  ///< inverse condition number in [0, 1]
@@ -39,8 +39,16 @@ struct PoseReport {
 /// One solution of the forward kinematics.
 struct AssemblyMode {
   Pose<double> pose;
-  std::string mode;   ///< how the mechanism calls this assembly
-  bool usual = true;  ///< listed by default; the others only on request
+  std::string mode;                            ///< how the mechanism calls this assembly
+  bool usual = true;                           ///< listed by default; the others only on request
+  std::string working_mode = {};               ///< the inverse kinematics finds the joints in; "": in every one
+  std::vector<std::string> double_roots = {};  ///< coordinates in which two assembly modes meet here
+};
+
+/// Why forward kinematics finds what it finds.
+struct ForwardStatus {
+  std::string word = "OK";  ///< or "NO_POSE" or another, in capitals
+  std::string reason;       ///< one sentence; "" when OK
 };
 
 }  // namespace pkm

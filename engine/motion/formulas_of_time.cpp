@@ -5,6 +5,12 @@
 namespace pkm {
 namespace {
 
+/// The value of a formula at a time, with its derivatives.
+Taylor at_time(const Formula& formula, double time) {
+  const Taylor t = Taylor::variable(time);
+  return formula.value(std::span<const Taylor>(&t, 1));
+}
+
 class FormulasOfTime final : public Motion {
  public:
   FormulasOfTime(const std::array<Formula, 4>& coordinates, double duration)
@@ -12,11 +18,10 @@ class FormulasOfTime final : public Motion {
 
   double duration() const override { return duration_; }
   MotionSample at(double time) const override {
-    const Taylor t = Taylor::variable(time);
     MotionSample sample;
     sample.time = time;
     for (std::size_t i = 0; i < 4; ++i) {
-      const Taylor x = coordinates_[i].value(std::span<const Taylor>(&t, 1));
+      const Taylor x = at_time(coordinates_[i], time);
       sample.pose[i] = x.a;
       sample.velocity[i] = x.d;
       sample.acceleration[i] = x.dd;
@@ -29,7 +34,28 @@ class FormulasOfTime final : public Motion {
   double duration_;
 };
 
+class WithInput final : public Motion {
+ public:
+  WithInput(std::shared_ptr<const Motion> motion, const Formula& input) : motion_(std::move(motion)), input_(input) {}
+
+  double duration() const override { return motion_->duration(); }
+  MotionSample at(double time) const override {
+    MotionSample sample = motion_->at(time);
+    const Taylor input = at_time(input_, time);
+    sample.input = {input.a, input.d, input.dd};
+    return sample;
+  }
+
+ private:
+  std::shared_ptr<const Motion> motion_;
+  Formula input_;
+};
+
 }  // namespace
+
+std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, const Formula& input) {
+  return std::make_shared<WithInput>(std::move(motion), input);
+}
 
 std::shared_ptr<const Motion> formulas_of_time(const std::array<Formula, 4>& coordinates, double duration) {
   PKM_EXPECTS(duration > 0);

@@ -21,13 +21,15 @@ bool is_periodic(const Motion& motion) {
   constexpr double kSame = 1e-9;
   const MotionSample first = motion.at(0), last = motion.at(motion.duration());
   const auto same = [](double a, double b) { return std::fabs(a - b) <= kSame; };
+  const auto no_turn = [&](double turned) { return same(std::remainder(turned, 2 * kPi), 0); };
   for (std::size_t i = 0; i < 4; ++i) {
     const double moved = last.pose[i] - first.pose[i];
-    if (!same(i == 3 ? std::remainder(moved, 2 * kPi) : moved, 0) || !same(first.velocity[i], last.velocity[i]) ||
+    if (!(i == 3 ? no_turn(moved) : same(moved, 0)) || !same(first.velocity[i], last.velocity[i]) ||
         !same(first.acceleration[i], last.acceleration[i]))
       return false;
   }
-  return true;
+  return no_turn(last.input.angle - first.input.angle) && same(first.input.speed, last.input.speed) &&
+         same(first.input.acceleration, last.input.acceleration);
 }
 
 }  // namespace pkm

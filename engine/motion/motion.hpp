@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/math/small_matrix.hpp"
-#include "engine/model/pose.hpp"
+#include "engine/model/chain.hpp"
 
 namespace pkm {
 
@@ -17,6 +16,7 @@ namespace pkm {
 struct MotionSample {
   double time = 0;                                       ///< [s]
   Vector<double, 4> pose{}, velocity{}, acceleration{};  ///< with their derivatives by time
+  Turning input;                                         ///< of the auxiliary chain, where there is one
 
   Pose<double> as_pose() const { return {pose[0], pose[1], pose[2], pose[3]}; }
 };

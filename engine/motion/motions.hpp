@@ -51,6 +51,9 @@ std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);
 /// Four formulas of the time t [s]; derivatives are exact. What is undefined is NaN in the samples.
 std::shared_ptr<const Motion> formulas_of_time(const std::array<Formula, 4>& coordinates, double duration);
 
+/// The same motion, with the auxiliary chain's input [rad] as a formula of the time.
+std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, const Formula& input);
+
 /// The only name that formulas of time know.
 inline const std::vector<std::string>& time_name() {
   static const std::vector<std::string> names = {"t"};

@@ -18,6 +18,7 @@ std::vector<ExpressionName> expression_names(const MechanismInfo& mechanism, con
   std::vector<ExpressionName> names;
   for (std::size_t i = 0; i < mechanism.parameters.size(); ++i) {
     const Parameter& parameter = mechanism.parameters[i];
+    if (find_named(mechanism.limits, parameter.name)) continue;  // known as the threshold in force
     names.push_back({parameter.name, parameter.unit, parameter.meaning, Origin::parameter, i});
   }
   for (std::size_t i = 0; i < mechanism.limits.size(); ++i) {

@@ -105,6 +105,13 @@ std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::s
   std::vector<Assignable> known;
   for (std::size_t i = 0; i < info.coordinates.size(); ++i)
     known.push_back({info.coordinates[i], (i == 3 ? "rad/" : "m/") + per});
+  if (!info.chain_input.empty()) known.push_back({info.chain_input, "rad/" + per});
+  return known;
+}
+
+std::vector<Assignable> assignable_joint_rates(const MechanismInfo& info, const std::string& per) {
+  std::vector<Assignable> known;
+  for (const auto& joint : info.joints) known.push_back({joint, "m/" + per});
   return known;
 }
 
@@ -118,6 +125,14 @@ std::vector<Assignable> assignable_wrench() {
   std::vector<Assignable> known;
   for (const auto& name : wrench_names()) known.push_back({name, name[0] == 'F' ? "N" : "N m"});
   return known;
+}
+
+double parse_number(const std::string& text, const std::string& option, const std::string& unit) {
+  try {
+    return parse_quantity(text, unit);
+  } catch (const std::invalid_argument&) {
+    throw ConfigError({"", 0, option}, text, quantity_hint(unit));
+  }
 }
 
 std::vector<std::optional<double>> parse_assignments(const std::vector<std::string>& lists, const std::string& option,

@@ -23,11 +23,15 @@ struct Assignable {
 std::vector<Assignable> assignable_parameters(const MechanismInfo& info);
 std::vector<Assignable> assignable_coordinates(const MechanismInfo& info);
 std::vector<Assignable> assignable_joints(const MechanismInfo& info);
-/// The pose coordinates as names of their rates, per "s" or "s^2"; the joints as names of their forces; force and
-/// moment on the platform.
+/// The pose coordinates as names of their rates, per "s" or "s^2", and behind them the auxiliary chain's input where
+/// there is one; the joints as names of theirs and of their forces; force and moment on the platform.
 std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::string& per);
+std::vector<Assignable> assignable_joint_rates(const MechanismInfo& info, const std::string& per);
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);
 std::vector<Assignable> assignable_wrench();
+
+/// The value [SI] of an option that takes one number. Throws ConfigError.
+double parse_number(const std::string& text, const std::string& option, const std::string& unit);
 
 /// Values [SI] of comma-separated `name=value` lists, in the order of `known`; absent where a name is not given.
 /// `option` ("--set") is named in messages. Throws ConfigError for anything unknown, malformed, out of range or twice.

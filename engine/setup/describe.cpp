@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/setup/study.hpp"
@@ -105,6 +106,10 @@ std::vector<Row> limit_rows(const Study& study) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto& limit = known[i];
     std::string value = with_unit(limit.inactive, limit.unit), origin = "(default: cuts nothing)";
+    if (const Parameter* own = find_named(parts.mechanism->info().parameters, limit.name)) {
+      value = "the parameter";
+      origin = "(default: " + own->name + " of the design)";
+    }
     if (!study.limit_origins[i].empty()) {
       value = parts.plan.limits.given[i] ? with_unit(*parts.plan.limits.given[i], limit.unit) : limit.derivation;
       origin = "from " + study.limit_origins[i];

@@ -207,19 +207,26 @@ const std::vector<Kind>& kinds() {
 
 }  // namespace
 
-std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const std::array<std::string, 4>& coordinates,
+MotionNames motion_names(const MechanismInfo& info) { return {info.coordinates, info.chain_input}; }
+
+std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const MotionNames& names,
                                           const std::vector<std::string>& more_keys) {
   const std::string& type = type_of(table, "type", names_of(kinds()));
-  return find_named(kinds(), type)->read(table, coordinates, more_keys);
+  const auto& [coordinates, input] = names;
+  Keys keys = more_keys;
+  if (!input.empty()) keys.push_back(input);
+  const auto motion = find_named(kinds(), type)->read(table, coordinates, keys);
+  const auto turning = input.empty() ? std::nullopt : table.find(input);
+  return turning ? with_input(motion, coordinate_formula(*turning, "rad")) : motion;
 }
 
-std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const std::array<std::string, 4>& coordinates) {
+std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const MotionNames& names) {
   const std::string text = read_text_file(path, "a motion in TOML");
   const TomlValue document = parse_toml(text, path);
   if (document.keys.empty())
     throw ConfigError({path, 0, ""}, "an empty file",
                       "a motion in TOML, with type = one of " + join(names_of(kinds())));
-  return read_motion(ConfigValue(document, path, ""), coordinates);
+  return read_motion(ConfigValue(document, path, ""), names);
 }
 
 void read_motions(const ConfigValue& root, StudyDraft& draft) {
@@ -228,7 +235,7 @@ void read_motions(const ConfigValue& root, StudyDraft& draft) {
     const std::string& text = name.text("a name for objectives to refer to");
     if (text.empty()) throw name.error("a name for objectives to refer to");
     if (find_named(draft.study.motions, text)) throw name.refusal("there is already a motion called '" + text + "'");
-    draft.study.motions.push_back({text, read_motion(table, draft.info().coordinates, {"name"})});
+    draft.study.motions.push_back({text, read_motion(table, motion_names(draft.info()), {"name"})});
   }
 }
 

@@ -7,17 +7,24 @@
 
 #include "engine/motion/motion.hpp"
 #include "engine/setup/config_value.hpp"
+#include "engine/workspace/mechanism.hpp"
 
 namespace pkm {
 
+/// What motions of a mechanism are written in: MechanismInfo::coordinates and chain_input.
+struct MotionNames {
+  std::array<std::string, 4> coordinates;  ///< x, y, z, rotation
+  std::string chain_input = {};            ///< a formula of the time beside them; "": there is no chain
+};
+MotionNames motion_names(const MechanismInfo& info);
+
 /// Reads one motion.
-/// @param coordinates  the mechanism's names of x, y, z, rotation: MechanismInfo::coordinates
-/// @param more_keys    keys of the table that the caller reads
+/// @param more_keys  keys of the table that the caller reads
 /// Throws ConfigError.
-std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const std::array<std::string, 4>& coordinates,
+std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const MotionNames& names,
                                           const std::vector<std::string>& more_keys = {});
 
 /// Reads the file at `path`, which is one motion. Throws ConfigError, also when the file cannot be read.
-std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const std::array<std::string, 4>& coordinates);
+std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const MotionNames& names);
 
 }  // namespace pkm

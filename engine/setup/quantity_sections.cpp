@@ -200,12 +200,24 @@ void for_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level
   }
 }
 
+/// A threshold that is called like a parameter takes its place, so such a parameter may not vary beside it.
+void check_thresholds(const ConfigValue& root, const StudyDraft& draft) {
+  const auto variables = root.find("variables");
+  if (!variables) return;
+  const auto& limits = draft.info().limits;
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    if (const auto varied = variables->find(limits[i].name); varied && draft.parts.plan.limits.given[i])
+      throw varied->refusal("the threshold " + limits[i].name + " is set in " + draft.study.limit_origins[i] +
+                            "; it can either vary or be set");
+}
+
 }  // namespace
 
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
   for_constraints(root, draft, true, [&](const ConfigValue& table, const ConstraintEntry* entry, const std::string&) {
     read_pose_constraint(table, *entry, draft);
   });
+  check_thresholds(root, draft);
 }
 
 void read_quantities(const ConfigValue& root, StudyDraft& draft) {

@@ -12,7 +12,10 @@
 #include "engine/dynamics/pose_dynamics.hpp"
 #include "engine/dynamics/reactions.hpp"
 #include "engine/math/dual.hpp"
+#include "engine/model/chain.hpp"
+#include "engine/model/influence.hpp"
 #include "engine/model/pose.hpp"
+#include "engine/motion/motion.hpp"
 #include "engine/workspace/plan.hpp"
 #include "engine/workspace/survey.hpp"
 
@@ -22,7 +25,8 @@ namespace pkm {
 struct LimitInfo {
   std::string name;  ///< "beta_max"
   std::string unit;
-  double inactive = 0;  ///< value that cuts nothing; the default
+  double inactive = 0;  ///< value that cuts nothing; the default. Of a limit that is called like a parameter: its
+                        ///< nominal value; where no threshold is given, the parameter of the design holds
   double lower = 0;     ///< allowed range of a given threshold
   double upper = 0;
   std::string group;       ///< the constraint that owns it: "interference" or "singularity-margin"
@@ -53,24 +57,27 @@ struct MechanismInfo {
   std::array<std::string, 4> coordinates;  ///< names of x, y, z, rotation
   std::array<std::string, 4> joints;       ///< names of the four actuated joints
   std::vector<std::string> modes;          ///< working modes; the first is the default
-  std::array<int, 3> swept{};              ///< the usual sweep, as in Sweep
-  int held = 1;                            ///< as in Sweep
-  bool held_can_integrate = false;         ///< HeldCoordinate::Kind::integrated is available
-  bool columns_take_box = false;           ///< column surveys can be cut by SurveyPlan::box
-  std::vector<Sweep> more_sweeps;          ///< those that a study may ask for by holding another coordinate
+  std::vector<std::string> branches;  ///< signs that a mode may require behind a "/"; the first goes without saying
+  std::array<int, 3> swept{};         ///< the usual sweep, as in Sweep
+  int held = 1;                       ///< as in Sweep
+  bool held_can_integrate = false;    ///< HeldCoordinate::Kind::integrated is available
+  bool columns_take_box = false;      ///< column surveys can be cut by SurveyPlan::box
+  std::vector<Sweep> more_sweeps;     ///< those that a study may ask for by holding another coordinate
   std::vector<LimitInfo> limits;
   std::vector<DesignMarginInfo> design_margins;
   std::string volume_unit;      ///< of the swept set: "m^2 rad"
   std::string integrated_unit;  ///< when integrated over the held coordinate: "m^3 rad"
   std::string size_unit;        ///< unit of size(); "" when the mechanism has no size
   std::string size_meaning;
-  std::string characteristic_length;     ///< formula of the default characteristic length
-  std::string margin_unit;               ///< of Mechanism::pose_margins, which then has derivatives; "": mixed SI units
-  bool has_dynamics = false;             ///< Mechanism::dynamics answers
-  bool has_reactions = false;            ///< Mechanism::reactions answers
-  std::vector<std::string> mass_models;  ///< where masses can come from; the first is the default; none: no masses
-  std::string mass_model;                ///< the one in force
-  int column = 2;                        ///< as in Sweep
+  std::string characteristic_length;  ///< formula of the default characteristic length
+  std::string margin_unit;            ///< of Mechanism::pose_margins, which then has derivatives; "": mixed SI units
+  bool has_influence = false;         ///< Mechanism::influence answers
+  std::string chain_input, chain_output;  ///< angles of the auxiliary chain: Mechanism::chain answers; "": none
+  bool has_dynamics = false;              ///< Mechanism::dynamics answers
+  bool has_reactions = false;             ///< Mechanism::reactions answers
+  std::vector<std::string> mass_models;   ///< where masses can come from; the first is the default; none: no masses
+  std::string mass_model;                 ///< the one in force
+  int column = 2;                         ///< as in Sweep
 };
 
 /// What every voxel surveyor answers when asked for derivatives.
@@ -138,6 +145,22 @@ class Mechanism {
     throw no_duals();
   }
 
+  /// First- and second-order influence coefficients of a pose: what speeds and accelerations of the joints it takes.
+  /// Absent where the pose does not assemble or they are infinite.
+  /// @param mode  one of MechanismInfo::modes
+  virtual std::optional<Influence<double>> influence(std::span<const double>, const Pose<double>&,
+                                                     const std::string&) const {
+    throw std::logic_error("mechanism " + info().name + " has no influence coefficients");
+  }
+  /// The auxiliary chain at a pose on its way, with the motion of its input.
+  /// @param phase  of the forks of the chain's two universal joints [rad]
+  virtual ChainReport chain(std::span<const double>, const MotionSample&, double /*phase*/) const { throw no_chain(); }
+  /// The chain's input angle for one of its output [rad]; absent where it does not turn.
+  virtual std::optional<double> chain_input(std::span<const double>, const Pose<double>&, double /*output*/,
+                                            double /*phase*/) const {
+    throw no_chain();
+  }
+
   /// Equations of motion at states of one design, with its masses. Where a state does not assemble,
   /// PoseDynamics::assembles is false. Throws std::domain_error where a mass is not positive.
   /// @param mode  one of MechanismInfo::modes
@@ -157,11 +180,18 @@ class Mechanism {
   /// The same mechanism with masses from another of MechanismInfo::mass_models; null: it knows no such model.
   virtual std::shared_ptr<const Mechanism> with_masses(const std::string&) const { return nullptr; }
 
-  /// Every assembly mode for joint values [m]; empty when the joints cannot be reached.
+  /// Every assembly mode for joint values [m]; empty when the joints cannot be reached, or reached in infinitely many
+  /// ways.
   virtual std::vector<AssemblyMode> forward(std::span<const double> parameters,
                                             const std::array<double, 4>& joints) const = 0;
+  /// What forward's answer means.
+  virtual ForwardStatus forward_status(std::span<const double> parameters, const std::array<double, 4>& joints) const {
+    if (forward(parameters, joints).empty()) return {"NO_POSE", "no pose assembles with these joint values"};
+    return {};
+  }
 
  private:
+  std::logic_error no_chain() const { return std::logic_error("mechanism " + info().name + " has no auxiliary chain"); }
   std::logic_error no_masses() const { return std::logic_error("mechanism " + info().name + " has no dynamics"); }
   std::logic_error no_duals() const { return std::logic_error("mechanism " + info().name + " has no derivatives"); }
 };

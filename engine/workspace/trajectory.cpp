@@ -12,32 +12,6 @@ bool is_finite(const Vector<double, 4>& x) {
   return std::all_of(x.m.begin(), x.m.end(), [](double value) { return std::isfinite(value); });
 }
 
-Vector<double, 4> product(const Eigen::Matrix4d& J, const Vector<double, 4>& x) {
-  Vector<double, 4> y;
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = 0; j < 4; ++j) y[i] += J(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) * x[j];
-  return y;
-}
-
-/// Jdot Xdot by differences of J Xdot along Xdot; none where a neighbour has no J.
-template <class JacobianAt>
-std::optional<Vector<double, 4>> rate_term(const MotionSample& at, const JacobianAt& jacobian_at) {
-  double speed = 0;
-  for (const double v : at.velocity.m) speed = std::fmax(speed, std::fabs(v));
-  if (speed == 0) return Vector<double, 4>{};
-  const double h = 1e-3 / speed;
-  const auto moved = [&](double steps) -> std::optional<Vector<double, 4>> {
-    MotionSample near = at;
-    near.pose += at.velocity * (steps * h);
-    const auto J = jacobian_at(near.as_pose());
-    if (!J) return std::nullopt;
-    return product(*J, at.velocity);
-  };
-  const auto m2 = moved(-2), m1 = moved(-1), p1 = moved(1), p2 = moved(2);
-  if (!m2 || !m1 || !p1 || !p2) return std::nullopt;
-  return ((*p1 - *m1) * 8.0 - (*p2 - *m2)) * (1 / (12 * h));
-}
-
 TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points) {
   TrajectorySummary s;
   s.has_forces = std::all_of(points.begin(), points.end(), [](const auto& p) { return p.forces.has_value(); });
@@ -75,21 +49,22 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points) {
 }  // namespace
 
 Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
-                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench) {
-  const auto inspect = [&](const Pose<double>& pose) { return mechanism.inspect(parameters, pose, mode, limits); };
-  const bool has_dynamics = mechanism.info().has_dynamics;
+                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench,
+                  double phase) {
+  const bool has_dynamics = mechanism.info().has_dynamics, has_chain = !mechanism.info().chain_input.empty();
   Trajectory trajectory;
   trajectory.duration = motion.duration();
   trajectory.periodic = is_periodic(motion);
   for (const MotionSample& at : sample(motion, count)) {
     TrajectoryPoint point;
     point.motion = at;
-    if (!is_finite(at.pose) || !is_finite(at.velocity) || !is_finite(at.acceleration)) {
+    if (!is_finite(at.pose) || !is_finite(at.velocity) || !is_finite(at.acceleration) ||
+        !is_finite({{at.input.angle, at.input.speed, at.input.acceleration, 0}})) {
       point.reason = "the motion has no finite pose, velocity and acceleration";
       trajectory.points.push_back(std::move(point));
       continue;
     }
-    PoseReport report = inspect(at.as_pose());
+    PoseReport report = mechanism.inspect(parameters, at.as_pose(), mode, limits);
     point.feasible = report.feasible;
     point.reason = std::move(report.reason);
     if (!point.feasible && point.reason.empty()) point.reason = "not feasible";
@@ -104,11 +79,13 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
         point.power.emplace();
         for (std::size_t i = 0; i < 4; ++i) (*point.power)[i] = drive.power(i);
       });
-    } else if (report.J) {
-      point.speeds = product(*report.J, at.velocity);
-      if (const auto rate = rate_term(at, [&](const Pose<double>& pose) { return inspect(pose).J; }))
-        point.accelerations = product(*report.J, at.acceleration) + *rate;
+    } else if (mechanism.info().has_influence) {
+      if (const auto joints = mechanism.influence(parameters, at.as_pose(), mode)) {
+        point.speeds = joints->G * at.velocity;
+        point.accelerations = accelerations(*joints, at.velocity, at.acceleration);
+      }
     }
+    if (has_chain) point.chain = mechanism.chain(parameters, at, phase);
     trajectory.points.push_back(std::move(point));
   }
   trajectory.summary = summarise(trajectory.points);

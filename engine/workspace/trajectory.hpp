@@ -20,6 +20,7 @@ struct TrajectoryPoint {
   std::optional<double> conditioning;
   std::optional<Vector<double, 4>> joints, speeds, accelerations;  ///< q [m], qdot [m/s], qddot [m/s^2]
   std::optional<Vector<double, 4>> forces, power;                  ///< tau [N], tau qdot [W]; > 0: the actuator drives
+  std::optional<ChainReport> chain;                                ///< of the auxiliary chain
 };
 
 /// Over the samples that have the numbers; the rest is told by `infeasible`.
@@ -44,13 +45,14 @@ struct Trajectory {
 
 /// Follows `count` samples, both ends included.
 ///
-/// Accelerations of mechanisms without dynamics come from differences of J along the motion (of fourth order, step
-/// 1e-3 of the time in which a coordinate moves by 1; relative errors around 1e-9); the others have them exactly.
+/// Speeds and accelerations of the joints are exact; a mechanism without dynamics and influence coefficients has none.
 /// Throws std::domain_error where a mass is not positive.
 /// @param parameters  all parameters of the design
 /// @param mode        one of MechanismInfo::modes
 /// @param wrench      on the platform, the same all the time
+/// @param phase       of the auxiliary chain's forks [rad], where there is a chain
 Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
-                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench = {});
+                  const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench = {},
+                  double phase = 0);
 
 }  // namespace pkm

@@ -137,6 +137,10 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   json["joints"] = info.joints;
   json["modes"] = info.modes;
   json["default_mode"] = info.modes.front();
+  json["branches"] = info.branches.empty() ? Json() : Json(info.branches);
+  json["influence_coefficients"] = info.has_influence;
+  json["chain_input"] = info.chain_input.empty() ? Json() : Json(info.chain_input);
+  json["chain_output"] = info.chain_output.empty() ? Json() : Json(info.chain_output);
   for (const int swept : info.swept) json["swept"].push_back(coordinate(swept));
   json["columns_along"] = coordinate(info.column);
   json["held"] = coordinate(info.held);

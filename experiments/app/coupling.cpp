@@ -101,7 +101,7 @@ Found find(const Target& target, const CouplingArguments& arguments) {
   if (!info.has_dynamics)
     throw ConfigError({"", 0, "coupling"}, "mechanism " + info.name + " has no masses, so no coupling indices");
   Found f;
-  f.mode = known_mode(info, arguments.mode);
+  f.mode = known_mode(info, {arguments.mode, ""});
   f.plan = plan_of(target, arguments);
   f.held = f.plan.held_values;
   Demand demand;

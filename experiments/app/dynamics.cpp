@@ -14,9 +14,8 @@
 namespace pkm {
 namespace {
 
-struct DynamicsArguments : DesignArguments {
+struct DynamicsArguments : DesignArguments, ModeArguments {
   std::vector<std::string> at, velocity, acceleration, wrench;
-  std::string mode;
   bool reactions = false;
 };
 
@@ -40,7 +39,7 @@ Found find(const Target& target, const DynamicsArguments& arguments) {
   if (arguments.reactions && !info.has_reactions)
     throw ConfigError({"", 0, "--reactions"}, "mechanism " + info.name + " has no model of the forces in its joints");
   Found f;
-  f.mode = known_mode(info, arguments.mode);
+  f.mode = known_mode(info, arguments);
   f.at = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
   f.velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
   f.acceleration = parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(info, "s^2"));
@@ -179,7 +178,7 @@ void add_dynamics(CLI::App& app, Session& session) {
                   "Accelerations of the coordinates; 0 where not given", false);
   add_list_option(*command, "--wrench", arguments->wrench,
                   "Fx, Fy, Fz, Mx, My, Mz on the platform at its centre of mass; 0 where not given", false);
-  add_mode_option(*command, arguments->mode);
+  add_mode_options(*command, *arguments);
   command->add_flag("--reactions", arguments->reactions, "Also the forces and couples in every joint");
   command->footer(
       "The forces tau of the actuators give the motion asked for: tau = M_q qddot + coriolis + gravity - wrench.\n"

@@ -16,20 +16,15 @@
 namespace pkm {
 namespace {
 
-struct SimulateArguments : DesignArguments {
+struct SimulateArguments : DesignArguments, ModeArguments {
   std::vector<std::string> at, velocity, forces, wrench;
-  std::string mode, duration, step, csv;
+  std::string duration, step, csv;
 };
 
 Vector<double, 4> four(const std::vector<double>& x) { return {{x[0], x[1], x[2], x[3]}}; }
 
 double time_of(const std::string& text, const std::string& option) {
-  double value = 0;
-  try {
-    value = parse_quantity(text, "s");
-  } catch (const std::invalid_argument&) {
-    throw ConfigError({"", 0, option}, text, quantity_hint("s"));
-  }
+  const double value = parse_number(text, option, "s");
   if (!(value > 0)) throw ConfigError({"", 0, option}, text, "a number > 0 s");
   return value;
 }
@@ -132,7 +127,7 @@ int simulate_target(const Catalogues& catalogues, const SimulateArguments& argum
   const Target target = find_target(catalogues, arguments);
   const MechanismInfo& info = target.info();
   if (!info.has_dynamics) throw ConfigError({}, "simulate needs dynamics, and mechanism " + info.name + " has none");
-  const std::string mode = known_mode(info, arguments.mode);
+  const std::string mode = known_mode(info, arguments);
   const auto pose = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
   const auto velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
   const Simulation run = simulate(setup_of(target, mode, arguments), four(pose), four(velocity));
@@ -160,7 +155,7 @@ void add_simulate(CLI::App& app, Session& session) {
                   false);
   command->add_option("--duration", arguments->duration, "Time to simulate")->type_name("TIME")->required();
   command->add_option("--step", arguments->step, "Time between two states")->type_name("TIME")->required();
-  add_mode_option(*command, arguments->mode);
+  add_mode_options(*command, *arguments);
   command->add_option("--csv", arguments->csv, "Write all states to this file, numbers in SI")->type_name("FILE");
   command->footer(
       "Ends early, with exit code 1 and a sentence, where the mechanism leaves its reach, its slides' ranges or the\n"

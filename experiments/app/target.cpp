@@ -110,12 +110,26 @@ void add_list_option(CLI::App& command, const std::string& option, std::vector<s
       ->required(required);
 }
 
-void add_mode_option(CLI::App& command, std::string& mode) {
-  command.add_option("--mode", mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
+void add_mode_options(CLI::App& command, ModeArguments& arguments) {
+  command.add_option("--mode", arguments.mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
       ->type_name("MODE");
+  command
+      .add_option("--branch", arguments.branch,
+                  "Branch of the assembly that a pose must be on, for mechanisms that have several; default: the first")
+      ->type_name("SIGN");
 }
 
-std::string known_mode(const MechanismInfo& info, const std::string& mode) {
+std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments) {
+  const auto& [mode, branch] = arguments;
+  const SourcePlace place{"", 0, "--branch"};
+  if (!branch.empty() && info.branches.empty())
+    throw ConfigError(place, "mechanism " + info.name + " has one branch only");
+  if (!branch.empty() && std::find(info.branches.begin(), info.branches.end(), branch) == info.branches.end())
+    throw ConfigError(place, "'" + branch + "'", "one of " + join(info.branches));
+  if (!branch.empty() && mode.find('/') != std::string::npos)
+    throw ConfigError(place, "the mode " + mode + " says its branch itself");
+  if (!branch.empty() && branch != info.branches.front())
+    return known_mode(info, {(mode.empty() ? info.modes.front() : mode) + "/" + branch, ""});
   if (mode.empty()) return info.modes.front();
   if (std::find(info.modes.begin(), info.modes.end(), mode) != info.modes.end()) return mode;
   throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),

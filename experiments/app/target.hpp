@@ -30,10 +30,15 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments);
 void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
                      const std::string& meaning, bool required);
 
-/// Declares --mode.
-void add_mode_option(CLI::App& command, std::string& mode);
-/// Refuses a mode that the mechanism does not have; "": its default.
-std::string known_mode(const MechanismInfo& info, const std::string& mode);
+struct ModeArguments {
+  std::string mode;    ///< "": the default
+  std::string branch;  ///< sign required of the mechanism's branch; "": what the mode says
+};
+
+/// Declares --mode and --branch.
+void add_mode_options(CLI::App& command, ModeArguments& arguments);
+/// The mode asked for, as the mechanism calls it. Refuses one that it does not have.
+std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments);
 
 /// One design of a mechanism, and the study that it comes from, if it does.
 struct Target {

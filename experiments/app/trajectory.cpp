@@ -18,10 +18,10 @@
 namespace pkm {
 namespace {
 
-struct TrajectoryArguments : DesignArguments {
+struct TrajectoryArguments : DesignArguments, ModeArguments {
   std::string motion;
   std::size_t samples = 201;
-  std::string mode, csv;
+  std::string csv, zeta;
   std::vector<std::string> wrench;
   bool allow_infeasible = false;
 };
@@ -32,7 +32,39 @@ using Values = std::optional<Vector<double, 4>>;
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
   if (target.study)
     if (const NamedMotion* known = find_named(target.study->motions, name)) return known->motion;
-  return load_motion_toml(name, target.info().coordinates);
+  return load_motion_toml(name, motion_names(target.info()));
+}
+
+/// The auxiliary chain at a sample, NaN for what does not exist; empty where there is no chain.
+NamedValues chain_values(const MechanismInfo& info, const TrajectoryPoint& p) {
+  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+  NamedValues values;
+  if (!p.chain) return values;
+  const Turning &in = p.motion.input, out = p.chain->turns ? p.chain->output : Turning{kAbsent, kAbsent, kAbsent};
+  const auto add = [&values](const std::string& name, const Turning& turning) {
+    values.emplace_back(name, turning.angle);
+    values.emplace_back(name + "_speed", turning.speed);
+    values.emplace_back(name + "_acceleration", turning.acceleration);
+  };
+  add(info.chain_input, in);
+  add(info.chain_output, out);
+  values.insert(values.end(), p.chain->angles.begin(), p.chain->angles.end());
+  const auto add_axes = [&](const std::string& name, const Vector<double, 3>& vector) {
+    for (std::size_t k = 0; k < 3; ++k)
+      values.emplace_back(name + "_" + "xyz"[k], p.chain->turns ? vector[k] : kAbsent);
+  };
+  add_axes("omega", p.chain->spin.velocity);
+  add_axes("alpha", p.chain->spin.acceleration);
+  return values;
+}
+
+/// Names of the above, as far as any sample has a chain.
+std::vector<std::string> chain_columns(const MechanismInfo& info, const Trajectory& trajectory) {
+  std::vector<std::string> names;
+  for (const TrajectoryPoint& p : trajectory.points)
+    if (names.empty())
+      for (const auto& [name, value] : chain_values(info, p)) names.push_back(name);
+  return names;
 }
 
 CsvTable table_of(const MechanismInfo& info, const Trajectory& trajectory) {
@@ -47,6 +79,8 @@ CsvTable table_of(const MechanismInfo& info, const Trajectory& trajectory) {
     for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
     columns.emplace_back("power");
   }
+  const auto chain = chain_columns(info, trajectory);
+  columns.insert(columns.end(), chain.begin(), chain.end());
   CsvTable table(columns);
   const auto add = [&table](const Values& values) { values ? table.add(*values) : table.add_empty(4); };
   for (const TrajectoryPoint& p : trajectory.points) {
@@ -57,10 +91,14 @@ CsvTable table_of(const MechanismInfo& info, const Trajectory& trajectory) {
     p.conditioning ? table.add(*p.conditioning) : table.add_empty(1);
     table.add(p.feasible ? 1.0 : 0.0);
     table.add(p.reason);
-    if (!info.has_dynamics) continue;
-    add(p.forces);
-    add(p.power);
-    p.power ? table.add((*p.power)[0] + (*p.power)[1] + (*p.power)[2] + (*p.power)[3]) : table.add_empty(1);
+    if (info.has_dynamics) {
+      add(p.forces);
+      add(p.power);
+      p.power ? table.add((*p.power)[0] + (*p.power)[1] + (*p.power)[2] + (*p.power)[3]) : table.add_empty(1);
+    }
+    const NamedValues turning = chain_values(info, p);
+    for (const auto& [name, value] : turning) table.add(value);
+    if (turning.empty()) table.add_empty(chain.size());
   }
   return table;
 }
@@ -107,6 +145,10 @@ Json sample_json(const MechanismInfo& info, const TrajectoryPoint& p) {
   if (info.has_dynamics) {
     json["forces"] = by_name(info.joints, p.forces);
     json["power"] = by_name(info.joints, p.power);
+  }
+  if (p.chain) {
+    json["chain"] = Json::object();
+    for (const auto& [name, value] : chain_values(info, p)) json["chain"][name] = value;
   }
   return json;
 }
@@ -160,13 +202,16 @@ void print_trajectory(const MechanismInfo& info, const std::string& mode, const 
 int trajectory(const Catalogues& catalogues, const TrajectoryArguments& arguments) {
   const Target target = find_target(catalogues, arguments);
   const MechanismInfo& info = target.info();
-  const std::string mode = known_mode(info, arguments.mode);
+  const std::string mode = known_mode(info, arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
   if (!arguments.wrench.empty() && !info.has_dynamics)
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
+  if (!arguments.zeta.empty() && info.chain_input.empty())
+    throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");
+  const double zeta = arguments.zeta.empty() ? 0 : parse_number(arguments.zeta, "--zeta", "rad");
   const auto motion = find_motion(target, arguments.motion);
   const Trajectory found =
-      follow(*target.mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench);
+      follow(*target.mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench, zeta);
   if (!arguments.csv.empty()) table_of(info, found).write(arguments.csv);
   if (arguments.json)
     print_json(std::cout, trajectory_json(info, mode, arguments.motion, found));
@@ -195,14 +240,14 @@ void add_trajectory(CLI::App& app, Session& session) {
       ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(2, 10'000'000));
-  add_mode_option(*command, arguments->mode);
+  add_mode_options(*command, *arguments);
   add_list_option(*command, "--wrench", arguments->wrench, "Force and moment on the platform, the same all the time",
                   false);
+  command->add_option("--zeta", arguments->zeta, "Phase of an auxiliary chain's forks; default 0")->type_name("ANGLE");
   command->add_option("--csv", arguments->csv, "Write all samples to this file, numbers in SI")->type_name("FILE");
   command->add_flag("--allow-infeasible", arguments->allow_infeasible, "Exit code 0 also with infeasible samples");
   command->footer(
-      "The limits are those of the study; a bare mechanism has none but its slides' ranges. Samples that break a "
-      "limit\n"
+      "The limits are those of the study; a bare mechanism has none but its design's. Samples that break a limit\n"
       "are marked with the reason and make the exit code 1. experiments/README.md tells how motions are written.\n"
       "Example: pkmopt trajectory 3crr-r-cru --motion experiments/3crr-r-cru/motions/pick-and-place.toml --csv f.csv");
   command->callback([&session, arguments] { session.exit_code = trajectory(session.catalogues, *arguments); });

@@ -43,20 +43,28 @@ inline Survey<double> survey(const Mechanism& mechanism, const std::vector<doubl
   return result;
 }
 
-/// Motions called "swing" that the nominal design can follow, whichever mechanism it is.
-inline std::vector<NamedMotion> motions(const MechanismInfo& info) {
-  const Vector<double, 4> centre =
-      info.name == "4ppa-2par" ? Vector<double, 4>{{0.3, 0.85, -0.8, 0.1}} : Vector<double, 4>{{0.2, 0.17, 0.22, 0.1}};
-  return {{"swing", oscillation(centre, 0.01, 1, 1)}};
+/// A pose inside the nominal design's workspace, whichever mechanism it is.
+inline Vector<double, 4> usual_pose(const MechanismInfo& info) {
+  if (info.name == "4ppa-2par") return {{0.3, 0.85, -0.8, 0.1}};
+  if (info.name == "2t1r-p-hybrid") return {{0, 0.01, 0.23, 0.1}};
+  return {{0.2, 0.17, 0.22, 0.1}};
 }
 
-/// A small box of poses, feasible for the nominal design, whichever mechanism it is.
+/// Motions called "swing" that the nominal design can follow.
+inline std::vector<NamedMotion> motions(const MechanismInfo& info) {
+  return {{"swing", oscillation(usual_pose(info), 0.01, 1, 1)}};
+}
+
+/// A small box of poses around that one, feasible for the nominal design.
 inline Region task(const MechanismInfo& info) {
-  const bool rails = info.name == "4ppa-2par";
+  const Vector<double, 4> centre = usual_pose(info);
   Region region{"task", plan(info, Method::voxels, 4), {}};
-  region.plan.held = {HeldCoordinate::Kind::value, rails ? 0.85 : 0.1, {}};
-  region.plan.box =
-      rails ? Box{{{0.28, 0.32}, {-0.82, -0.78}, {0.08, 0.12}}} : Box{{{0.19, 0.21}, {0.16, 0.18}, {0.21, 0.23}}};
+  region.plan.held = {HeldCoordinate::Kind::value, centre[static_cast<std::size_t>(info.held)], {}};
+  region.plan.box.emplace();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double at = centre[static_cast<std::size_t>(info.swept[k])];
+    (*region.plan.box)[k] = {at - 0.01, at + 0.01};
+  }
   return region;
 }
 

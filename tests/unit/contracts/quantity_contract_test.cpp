@@ -157,7 +157,8 @@ TEST(ConstraintContract, DesignLevelOnesHoldForSomeDesignsAndFailForOthers) {
     Stream random(1, 0, 0, Stream::Use::start);
     for (int i = 0; i < 200; ++i) {
       auto design = nominal(mechanism.info());
-      for (double& p : design) p *= 0.4 + 1.6 * random.u01();
+      const double share = i / 200.0;  // of the way from the nominal design to 0.4 to 2 times its parameters
+      for (double& p : design) p *= 1 + share * (1.6 * random.u01() - 0.6);
       const double m = margin(entry, mechanism, design);
       ASSERT_TRUE(std::isfinite(m));
       ++(m >= 0 ? holds : violated);
@@ -207,7 +208,8 @@ TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
       const LimitInfo* limit = find_named(info.limits, spec.name);
       if (!limit) continue;
       // Where nothing, or little, is left; a length without a natural end counts up to 1 m.
-      const double end = limit->inactive == limit->lower ? std::min(limit->upper, 1.0) : limit->lower;
+      const auto index = static_cast<std::size_t>(limit - info.limits.data());
+      const double end = std::min(*test::absurd_limits(info).given[index], 1.0);
       double least_left = 1;  // a limit may cut nothing of a sweep that holds the very coordinate that it bounds
       for (const Sweep& sweep : sweeps) {
         const double free = uncut(sweep);

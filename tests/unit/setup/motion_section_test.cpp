@@ -11,14 +11,14 @@
 namespace pkm::testing {
 namespace {
 
-std::shared_ptr<const Motion> read(const std::string& text) {
+std::shared_ptr<const Motion> read(const std::string& text, const MotionNames& names = {{"x", "y", "z", "phi"}}) {
   const TomlValue document = parse_toml(text, "m.toml");
-  return read_motion(ConfigValue(document, "m.toml", ""), {"x", "y", "z", "phi"});
+  return read_motion(ConfigValue(document, "m.toml", ""), names);
 }
 
-std::string complaint(const std::string& text) {
+std::string complaint(const std::string& text, const MotionNames& names = {{"x", "y", "z", "phi"}}) {
   try {
-    read(text);
+    read(text, names);
   } catch (const ConfigError& error) {
     return error.what();
   }
@@ -150,9 +150,28 @@ TEST(MotionSection, AsATableOfAStudy) {
                   kStage);
 }
 
+TEST(MotionSection, InputOfAnAuxiliaryChain) {
+  const MotionNames with_chain = {{"x", "y", "z", "phi"}, "theta"};
+  const std::string swing = "type = \"oscillation\"\n" + kPose + "amplitude = 0.01\nperiod = 1\n";
+  const auto motion = read(swing + "theta = \"0.3 + t^2\"\n", with_chain);
+  const MotionSample at = motion->at(0.5), still = read(swing, with_chain)->at(0.5);
+  EXPECT_NEAR(at.input.angle, 0.55, 1e-15);
+  EXPECT_NEAR(at.input.speed, 1, 1e-15);
+  EXPECT_NEAR(at.input.acceleration, 2, 1e-15);
+  EXPECT_EQ(at.pose.m, still.pose.m);
+  EXPECT_EQ(still.input.angle, 0);
+  EXPECT_EQ(read(swing + "theta = \"90 deg\"\n", with_chain)->at(1).input.angle, kPi / 2);
+  EXPECT_FALSE(is_periodic(*motion));
+  EXPECT_TRUE(is_periodic(*read(swing + "theta = \"sin(2*pi*t)\"\n", with_chain)));
+  EXPECT_EQ(complaint(swing + "theta = 1\n"),
+            "m.toml:8: theta: found an unknown key; expected one of type, x, y, z, phi, amplitude, period, cycles");
+  EXPECT_EQ(complaint(swing + "theta = [1]\n", with_chain),
+            "m.toml:8: theta: found [1]; expected a number in rad, or text with a unit made of mrad, rad, deg");
+}
+
 TEST(MotionSection, FilesThatCannotBeRead) {
   try {
-    load_motion_toml("/no/such/motion.toml", {"x", "y", "z", "phi"});
+    load_motion_toml("/no/such/motion.toml", {{"x", "y", "z", "phi"}});
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(),

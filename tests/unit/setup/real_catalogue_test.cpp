@@ -180,5 +180,29 @@ TEST(RealCatalogue, GradientsAreRefusedUnderAClearance) {
   EXPECT_EQ(message_of(kClearance + "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"bobyqa\"\n"), "accepted");
 }
 
+TEST(RealCatalogue, AParameterCannotVaryBesideTheThresholdThatTakesItsPlace) {
+  const std::string hybrid =
+      "[mechanism]\ntype = \"2t1r-p-hybrid\"\n[variables]\ntau_s = { min = 0.05, max = 0.2 }\n"
+      "[[objective]]\ntype = \"workspace-volume\"\n" +
+      kStage;
+  const auto message = [&](const std::string& limit) -> std::string {
+    try {
+      read_study_toml(hybrid + limit, "s.toml",
+                      {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(
+      message("[workspace]\nlimits = { tau_s = 0.1 }\n"),
+      "s.toml:4: variables.tau_s: the threshold tau_s is set in workspace.limits (line 10); it can either vary or "
+      "be set");
+  EXPECT_EQ(
+      message("[[constraint]]\ntype = \"singularity-margin\"\ntau_s = 0.1\n"),
+      "s.toml:4: variables.tau_s: the threshold tau_s is set in constraint[1] singularity-margin (line 9); it can "
+      "either vary or be set");
+}
+
 }  // namespace
 }  // namespace pkm

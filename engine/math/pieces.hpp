@@ -1,21 +1,22 @@
-// (3CRR/R)&CRU and Quadrupteron: the pieces of the outer coordinate on which sections keep their formulas.
+// The pieces of an outer coordinate on which sections keep their formulas.
 //
-// The area of a section is smooth in the outer coordinate while its structure stays the same. Breaks with a closed
+// The measure of a section is smooth in the outer coordinate while its structure stays the same. Breaks with a closed
 // form are listed first; the structure's signature is then sampled between them, and each change that is seen is
 // followed to the last bits. Breaks move with the design: a closed form carries its derivative along, the others have
-// that of an implicit function (crr_cru_columns.hpp). Where the area jumps - a slide's range or kappa_p opens or closes
-// the section as a whole - the break has a closed form.
+// that of an implicit function, which is the mechanism's to tell. Where the measure jumps, the break must have a closed
+// form.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
-#include "engine/mechanisms/crr_cru_section.hpp"
+#include "engine/math/quadrature.hpp"
 
-namespace pkm::crr_cru {
+namespace pkm {
 
-/// A break: where, and on which sides the area behaves like a square root.
+/// A break: where, and on which sides the measure behaves like a square root.
 template <class S>
 struct Break {
   S at;
@@ -28,9 +29,12 @@ struct Break {
 /// @param signature  of the section at a value of the outer coordinate, 0: empty
 /// @param moving     gives a break that was found its derivatives
 /// @param samples    of the signature over the whole range
+/// @param width      to which a change of the signature is followed, relative to the range; 0: to the last bits.
+/// Further
+///                   changes within 100 widths count as the same: what rounding makes of the structure near a break
 template <class S, class Signature, class Moving>
 void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, const Moving& moving, int samples,
-                 std::vector<Piece<S>>& pieces) {
+                 std::vector<Piece<S>>& pieces, double width = 0) {
   pieces.clear();
   if (breaks.empty()) return;
   std::sort(breaks.begin(), breaks.end(),
@@ -69,12 +73,12 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
       const std::uint64_t then = signature(next);
       for (int more = 0; more < 8 && now != then; ++more) {  // several breaks may lie between two samples
         double same = at, other = next;
-        while (other - same > 1e-15 * (whole + std::fabs(other))) {
+        while (other - same > std::fmax(width * whole, 1e-15 * (whole + std::fabs(other)))) {
           const double middle = 0.5 * (same + other);
           (signature(middle) == now ? same : other) = middle;
         }
         add({moving(other), true, true}, now);
-        at = other;
+        at = std::fmin(other + 100 * width * whole, next);
         now = signature(at);
       }
       at = next;
@@ -84,4 +88,4 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
   }
 }
 
-}  // namespace pkm::crr_cru
+}  // namespace pkm

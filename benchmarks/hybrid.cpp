@@ -1,0 +1,101 @@
+// Surveys and pose tests of the hybrid robot: nominal, and random designs around it.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "engine/math/random.hpp"
+#include "engine/mechanisms/all.hpp"
+#include "engine/mechanisms/hybrid_voxels.hpp"
+
+namespace pkm::benchmarks {
+namespace {
+
+const Mechanism& hybrid_robot() {
+  return **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m->info().name == "2t1r-p-hybrid"; });
+}
+
+SurveyPlan plan_of(Method method) {
+  SurveyPlan plan;
+  plan.method = method;
+  plan.cells = {32, 34, 60};
+  plan.limits = no_limits(hybrid_robot().info());
+  return plan;
+}
+
+/// The nominal design first, then such with every parameter up to a tenth off.
+std::vector<std::vector<double>> designs(std::size_t count) {
+  Stream random(1, 0, 0, Stream::Use::start);
+  std::vector<std::vector<double>> all(count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (const Parameter& p : hybrid_robot().info().parameters)
+      all[i].push_back(p.nominal * (i == 0 ? 1 : 0.9 + 0.2 * random.u01()));
+  return all;
+}
+
+/// Times per design. @param S  with Dual4, derivatives by four variables
+template <class S>
+void survey(benchmark::State& state, Method method, std::size_t count, const Demand& demand = {}) {
+  std::vector<std::vector<S>> all;
+  for (const auto& design : designs(count)) all.emplace_back(design.begin(), design.end());
+  const auto surveyor = hybrid_robot().prepare(plan_of(method), demand);
+  Survey<S> result;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    surveyor->survey(std::span<const S>(all[next]), result);
+    benchmark::DoNotOptimize(result.volume);
+    next = next + 1 < count ? next + 1 : 0;
+  }
+}
+
+Demand with_conditioning() {
+  Demand demand;
+  demand.conditioning = true;
+  return demand;
+}
+
+void columns(benchmark::State& state) { survey<double>(state, Method::columns, 1); }
+void columns_random(benchmark::State& state) { survey<double>(state, Method::columns, 100); }
+void gradient(benchmark::State& state) { survey<Dual4>(state, Method::columns, 1); }
+void columns_conditioning(benchmark::State& state) { survey<double>(state, Method::columns, 1, with_conditioning()); }
+void voxels(benchmark::State& state) { survey<double>(state, Method::voxels, 1); }
+void voxels_conditioning(benchmark::State& state) { survey<double>(state, Method::voxels, 1, with_conditioning()); }
+
+using hybrid::VoxelDesign;
+
+VoxelDesign nominal() {
+  const std::vector<double> p = designs(1)[0];
+  const std::span<const double> all(p);
+  return {hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1),
+          1,
+          {}};
+}
+
+/// The plain loop over the same cells; fails if the survey counts others.
+void plain_loop(benchmark::State& state) {
+  const VoxelDesign design = nominal();
+  const SurveyPlan plan = plan_of(Method::voxels);
+  const VoxelGrid grid(plan.cells, hybrid::default_box(design));
+  Survey<double> plain, fast;
+  for (auto _ : state) {
+    summarise(
+        grid,
+        test_every_cell(grid, [&](double x, double z, double beta) { return hybrid::feasible(design, x, z, beta); }),
+        plain);
+    benchmark::DoNotOptimize(plain.volume);
+  }
+  hybrid_robot().prepare(plan, {})->survey(designs(1)[0], fast);
+  if (fast.feasible_cells != plain.feasible_cells) state.SkipWithError("the survey counts other cells");
+  state.counters["poses"] =
+      benchmark::Counter(static_cast<double>(grid.count()), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+BENCHMARK(columns)->Name("hybrid/columns")->Unit(benchmark::kMicrosecond);
+BENCHMARK(columns_random)->Name("hybrid/columns_100_random")->Unit(benchmark::kMicrosecond);
+BENCHMARK(gradient)->Name("hybrid/columns_gradient")->Unit(benchmark::kMicrosecond);
+BENCHMARK(columns_conditioning)->Name("hybrid/columns_conditioning")->Unit(benchmark::kMicrosecond);
+BENCHMARK(voxels)->Name("hybrid/voxels")->Unit(benchmark::kMicrosecond);
+BENCHMARK(voxels_conditioning)->Name("hybrid/voxels_conditioning")->Unit(benchmark::kMicrosecond);
+BENCHMARK(plain_loop)->Name("hybrid/plain_loop")->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace pkm::benchmarks
