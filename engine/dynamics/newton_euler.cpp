@@ -112,8 +112,10 @@ LeastNorm least_norm(const NewtonEuler& system) {
   for (std::size_t j = 0; j < system.joints.size(); ++j)
     solution.x.segment(first[j] + 3, first[j + 1] - first[j] - 3) *= length;
   // A = Q [T 0; 0 0] Z P^T: the last columns of P Z^T span what A does not see.
-  solution.null_space =
-      decomposition.colsPermutation() * Eigen::MatrixXd(decomposition.matrixZ().transpose().rightCols(unknowns - rank));
+  solution.null_space.resize(unknowns, 0);
+  if (rank < unknowns)
+    solution.null_space = decomposition.colsPermutation() *
+                          Eigen::MatrixXd(decomposition.matrixZ().transpose().rightCols(unknowns - rank));
   return solution;
 }
 

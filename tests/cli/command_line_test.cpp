@@ -35,10 +35,12 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
        "found the unknown command 'evalute'; expected " + commands +
            " (see 'pkmopt --help'); did you mean 'evaluate'?"},
       {{"--hlp"}, "found the unknown option '--hlp'; expected one of --help, --version; did you mean '--help'?"},
-      {{"pose"}, "pose: MECHANISM|STUDY.toml is required (see 'pkmopt pose --help')"},
+      {{"evaluate"}, "found no design; expected a mechanism, a study in TOML or --from F.h5"},
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
-       "evaluate: found the unknown option '--jsn'; expected one of --help, --set, --masses, --json; did you mean "
+       "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --front, --stage, --set, --masses, "
+       "--json; did "
+       "you mean "
        "'--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
@@ -46,7 +48,8 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
        "list: found the unknown word 'objectiv'; expected one of mechanisms, objectives, constraints, optimisers, or "
        "the name of an entry; did you mean 'objectives'?"},
       {{"list", "optimisers", "g"},
-       "list optimisers: found the unknown name 'g'; expected one of ga, sweep, nlopt, ipopt; did you mean 'ga'?"},
+       "list optimisers: found the unknown name 'g'; expected one of ga, nsga2, sweep, nlopt, ipopt; did you mean "
+       "'ga'?"},
       {{"evaluate", "4ppa-2pra"},
        "found '4ppa-2pra', which is neither a mechanism nor a file; expected a study in TOML, or one of the "
        "mechanisms " +

@@ -175,7 +175,7 @@ TEST_F(SolverProgram, CheckNamesBothSidesOfWhatDoesNotFit) {
               HasSubstr("stage[1].designs: a = 3 m lies outside the variable's bounds 0.15 m to 0.95 m"));
   EXPECT_THAT(message(nlopt + "designs = [{ q = 3.0 }]\n"),
               HasSubstr("stage[1].designs[1].q: found an unknown name; expected one of a, b, l_u, l_d"));
-  EXPECT_THAT(message(nlopt + "start = \"pareto\"\n"), HasSubstr("expected one of best, best-of-basins, none"));
+  EXPECT_THAT(message(nlopt + "start = \"pareto\"\n"), HasSubstr("needs 2 objectives, but the study has one"));
   EXPECT_THAT(message(nlopt + "start = \"none\"\n"), HasSubstr("no start"));
 }
 

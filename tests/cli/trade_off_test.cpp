@@ -138,14 +138,17 @@ TEST_F(TradeOffProgram, RefinedPointsDominateTheirStarts) {
   const StudyContents contents = read("f.h5");
   const StageRecord &evolved = contents.stages[0], &refined = contents.stages[1];
   ASSERT_EQ(refined.starts.size(), 4u);
+  int optimal = 0;
   for (const StartOutcome& start : refined.starts) {
     const auto from = refined.table.objective_row(static_cast<std::size_t>(start.first_row));
     const auto to = refined.table.objective_row(static_cast<std::size_t>(start.end_row));
     EXPECT_GE(to[0], from[0]);
     EXPECT_GE(to[1], from[1]);
     EXPECT_EQ(refined.table.status[static_cast<std::size_t>(start.end_row)], Status::feasible);
-    EXPECT_LT(start.optimality, 1e-2);  // ends may lie on a kink of the conditioning's quadrature
+    optimal += start.optimality < 1e-6;
+    EXPECT_LT(start.optimality, 0.1);
   }
+  EXPECT_GE(optimal, 3);  // of four; an end may lie on a kink of the conditioning's quadrature
   // No evolved design dominates a refined one.
   const auto& objectives = contents.problem.objectives;
   const Scores a = scores_of(objectives, evolved.table, evolved.front->rows);
