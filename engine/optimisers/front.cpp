@@ -13,7 +13,7 @@ namespace {
 
 /// Scores from 0 to 1 over the front; 0 where all are alike.
 Scores normalised(const Scores& front) {
-  const Extent extent = extent_of(front);
+  const Ranges extent = ranges_of(front);
   Scores result = front;
   for (std::size_t i = 0; i < front.size(); ++i)
     for (std::size_t k = 0; k < front.objectives; ++k) {
@@ -46,8 +46,8 @@ Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationT
   return scores;
 }
 
-Extent extent_of(const Scores& front) {
-  Extent e;
+Ranges ranges_of(const Scores& front) {
+  Ranges e;
   for (std::size_t k = 0; front.size() > 0 && k < front.objectives; ++k) {
     e.least.push_back(front[0][k]);
     e.greatest.push_back(front[0][k]);
@@ -85,7 +85,7 @@ std::vector<std::size_t> knees(const Scores& front) {
   constexpr double kRadius = 0.2;
   constexpr double kCheaper = 1e-9;  // than an end, so that rounding makes no knee of a straight front
   const Scores scaled = normalised(front);
-  const Extent extent = extent_of(front);
+  const Ranges extent = ranges_of(front);
   const std::vector<double> price = prices(front);
   std::vector<std::size_t> order(front.size()), found;
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -144,7 +144,7 @@ FrontKeeper::FrontKeeper(const FrontPlan& plan, const Problem& problem, const Ev
   Scores target{objectives.size()};
   for (const NamedNumbers& point : plan.front)
     for (std::size_t k = 0; k < objectives.size(); ++k) target.values.push_back(sign(k) * point.at(objectives[k].name));
-  const Extent extent = extent_of(target);
+  const Ranges extent = ranges_of(target);
   for (std::size_t k = 0; k < extent.least.size(); ++k) per_range_.push_back(extent.range(k) > 0 ? extent.range(k) : 1);
   target_ = std::move(target.values);
 }
@@ -175,7 +175,7 @@ bool FrontKeeper::fix_reference(const Scores& feasible) {
   if (feasible.objectives > 3) return false;  // the hypervolume is for two and three objectives
   seen_.values.insert(seen_.values.end(), feasible.values.begin(), feasible.values.end());
   if (seen_.size() < std::max<std::size_t>(settled_, 2)) return false;
-  const Extent extent = extent_of(seen_);
+  const Ranges extent = ranges_of(seen_);
   for (std::size_t k = 0; k < seen_.objectives; ++k)
     if (!(extent.range(k) > 0)) return false;
   for (std::size_t k = 0; k < seen_.objectives; ++k) {

@@ -17,11 +17,11 @@ Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationT
                  std::span<const std::int64_t> rows);
 
 /// Least and greatest of each score.
-struct Extent {
+struct Ranges {
   std::vector<double> least, greatest;
   double range(std::size_t k) const { return greatest[k] - least[k]; }
 };
-Extent extent_of(const Scores& front);
+Ranges ranges_of(const Scores& front);
 
 /// Of each design the sum of its scores, each from 0 for the front's best to 1 for its worst: what a compromise that
 /// weighs all objectives by their ranges would pay.

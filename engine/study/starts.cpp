@@ -107,7 +107,7 @@ KnownFront known_front(const Study& study, const StudyContents& contents) {
     const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
     scores = scores_of(objectives, stage.table, std::array{contents.best.row});
   }
-  const Extent extent = extent_of(scores);
+  const Ranges extent = ranges_of(scores);
   for (std::size_t k = 0; k < extent.least.size(); ++k) {
     // An objective without a range has at least a size.
     const double size = extent.range(k) > 0 ? extent.range(k) : std::fabs(extent.least[k]);

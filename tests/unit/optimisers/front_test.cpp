@@ -90,7 +90,7 @@ TEST(Front, TheCompromiseWeighsRanges) {
 TEST(Front, TheCompromiseOfABulgingFrontIsInItsMiddle) {
   for (const TradeOff& known : {zdt_problems()[1], zdt_problems()[4], dtlz2()}) {
     const Scores front{known.objectives(), known.front};
-    const Extent extent = extent_of(front);
+    const Ranges extent = ranges_of(front);
     const std::size_t chosen = compromise(front);
     for (std::size_t k = 0; k < front.objectives; ++k)
       EXPECT_LT((front[chosen][k] - extent.least[k]) / extent.range(k), 0.65) << known.name;
