@@ -1,5 +1,6 @@
 #include "engine/mechanisms/hybrid_strips.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,10 +9,12 @@ namespace {
 
 constexpr int kDepth = 16;  // of cuts: what could hide in 2^-16 of a range changes areas by some 1e-15
 
-/// All curves' roots at one height, and their derivatives by z.
+constexpr double kSearches = 1e-13;  // m, of heights found by different searches
+
+/// All curves' roots at one height.
 struct Node {
   double z;
-  std::array<double, kCurves> root, slope;
+  std::array<double, kCurves> root;
 };
 
 Node node_at(const Section<double>& s, double z) {
@@ -19,9 +22,8 @@ Node node_at(const Section<double>& s, double z) {
   n.z = z;
   for (std::size_t k = 0; k < kCurves; ++k) {
     const Curve<double>& c = s.curve[k];
-    const double p = c.a + c.a_z * z, q = c.b + c.b_z * z, square = p * q;
+    const double square = (c.a + c.a_z * z) * (c.b + c.b_z * z);
     n.root[k] = std::sqrt(square > 0 ? square : 0);
-    n.slope[k] = (c.a_z * q + c.b_z * p) / (n.root[k] * 2);
   }
   return n;
 }
@@ -50,11 +52,14 @@ double may_meet(const Section<double>& s, const Edge& above, const Edge& below, 
                gap_q = place(s, above, q) - place(s, below, q);
   if (!high_bends && !low_bends) return kNowhere;
   const auto chord = [&](const Edge& e, double sign) { return sign * (q.root[e.curve] - p.root[e.curve]) / width; };
+  const auto tangent = [&](const Edge& e, double sign, const Node& n) {
+    return sign * s.curve[e.curve].slope(n.z, n.root[e.curve]);
+  };
   double slope_p = 0, slope_q = 0;
   const auto add = [&](const Edge& e, double sign, bool bends, double factor) {
     const double straight = bends ? 0 : chord(e, sign);
-    slope_p += factor * (bends ? sign * p.slope[e.curve] : straight);
-    slope_q += factor * (bends ? sign * q.slope[e.curve] : straight);
+    slope_p += factor * (bends ? tangent(e, sign, p) : straight);
+    slope_q += factor * (bends ? tangent(e, sign, q) : straight);
   };
   add(above, high, high_bends, 1);
   add(below, low, low_bends, -1);
@@ -73,30 +78,88 @@ double may_meet(const Section<double>& s, const Edge& above, const Edge& below, 
   return p.z + std::fmin(std::fmax(along, 0.1 * width), 0.9 * width);
 }
 
+/// Where the chain's edges meet on one side.
+double chain_meeting(const Section<double>& s, const Edge& first, const Edge& second) {
+  const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
+  return (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
+}
+
+/// How far one edge is right of another.
+struct Gap {
+  double value, slope, bend;  ///< the last bounds the second derivative
+  double step() const { return -value / slope; }
+  /// Whether what Newton's method does after this step is below rounding.
+  bool last(double z) const {
+    constexpr double kRelative = 1e-17;
+    return step() * step() * bend <= kRelative * z * std::fabs(slope);
+  }
+};
+Gap gap(const Section<double>& s, const Edge& first, const Edge& second, double z) {
+  const auto at = [&](const Edge& e) {
+    const Curve<double>& c = s.curve[e.curve];
+    const double root = c.root(z), slope = c.slope(z, root), sign = sign_of(s, e);
+    return Gap{(e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]) + root * sign, sign * slope,
+               (std::fabs(c.curvature()) + slope * slope) / root};
+  };
+  const Gap a = at(first), b = at(second);
+  return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
+}
+
+/// Where two edges on circles meet, as near z as there is a place between two heights, but for rounding that counts
+/// where circles touch; z itself if they don't meet or are no circles.
+double circles_meeting(const Section<double>& s, const Edge& first, const Edge& second, double z, double low,
+                       double high) {
+  const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
+  if (!circle(first) || !circle(second)) return z;
+  const auto x = [&](const Edge& e) { return e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]; };  // centres and radii
+  const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
+  const double foot = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
+  const double dx = x(second) - x(first), dz = 0.5 * (d.a - d.b) - foot, apart = 1 / (dx * dx + dz * dz);
+  const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * apart), across2 = r1 * r1 * apart - along * along;
+  if (!(across2 >= 0)) return z;
+  const double across = std::sqrt(across2), start = z;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double h : {across, -across}) {
+    const double at = foot + along * dz + h * dx, from_first = along * dx - h * dz, from_second = from_first - dx;
+    const bool on_both = from_first * sign_of(s, first) >= 0 && from_second * sign_of(s, second) >= 0;
+    if (!on_both || !(at > low && at < high) || std::fabs(at - start) >= least) continue;
+    least = std::fabs(at - start);
+    z = at;
+  }
+  return z;
+}
+
 /// Where two edges that have changed places between p and q meet: Newton's method, kept between them by bisection. The
 /// chain's meet at the same height on either side, to the last bit.
 double meeting(const Section<double>& s, const Edge& first, const Edge& second, double p, double q) {
-  if (of_chain(first, second)) {
-    const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
-    const double z = (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
-    return std::fmin(std::fmax(z, p), q);
-  }
-  const auto gap = [&](double z) { return edge_at(s, first, z) - edge_at(s, second, z); };
-  const auto slope = [&](const Edge& e, double z) {
-    const Curve<double>& c = s.curve[e.curve];
-    return sign_of(s, e) * c.slope(z, c.root(z));
-  };
-  const double at_p = gap(p), at_q = gap(q);
-  double z = p - at_p * (q - p) / (at_q - at_p);
+  if (of_chain(first, second)) return std::fmin(std::fmax(chain_meeting(s, first, second), p), q);
+  const double at_p = gap(s, first, second, p).value, at_q = gap(s, first, second, q).value;
+  double z = circles_meeting(s, first, second, p - at_p * (q - p) / (at_q - at_p), p, q);
   for (int step = 0; step < 80; ++step) {
     if (!(z > p && z < q)) z = 0.5 * (p + q);
-    const double here = gap(z), change = -here / (slope(first, z) - slope(second, z));
-    if (std::fabs(change) <= 2e-16 * z) break;
-    ((here >= 0) == (at_p >= 0) ? p : q) = z;
+    const Gap here = gap(s, first, second, z);
+    ((here.value >= 0) == (at_p >= 0) ? p : q) = z;
     if (!(q - p > 4e-16 * z)) break;
-    z += change;
+    z += here.step();
+    if (here.last(z)) return std::fmin(std::fmax(z, p), q);
   }
   return z;
+}
+
+/// Where two edges meet near z; NaN: not that near.
+double meeting_near(const Section<double>& s, const Edge& first, const Edge& second, double z) {
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  if (of_chain(first, second)) return chain_meeting(s, first, second);
+  z = circles_meeting(s, first, second, z, 0, std::numeric_limits<double>::infinity());
+  double rises = 0;
+  for (int step = 0; step < 8; ++step) {
+    const Gap here = gap(s, first, second, z);
+    if (step == 0) rises = here.slope;
+    if (!(rises * here.slope > 0)) return kNowhere;
+    z += here.step();
+    if (here.last(z)) return z;
+  }
+  return kNowhere;
 }
 
 /// The curves of one side in force over a range of z.
@@ -225,8 +288,7 @@ void find_plain_strips(const Section<double>& s, std::size_t curves, const Strip
 /// Takes the columns of `inner` out of those of `outer`.
 void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, std::vector<Strip>& strips) {
   const auto same = [](const StripEnd& p, const StripEnd& q) {  // but for the rounding of either search
-    constexpr double kRoundoff = 1e-13;                         // m
-    return alike(p, q) && std::fabs(p.z - q.z) < kRoundoff;
+    return alike(p, q) && std::fabs(p.z - q.z) < kSearches;
   };
   strips.clear();
   for (const Strip& o : outer) {
@@ -268,21 +330,77 @@ std::uint64_t signature_of(const Structure& structure) {
 
 }  // namespace
 
+namespace {
+
+/// The ends of z in force, as numbers of the lower and the upper one.
+std::array<std::size_t, 2> ends_in_force(const Section<double>& s) {
+  const auto low = std::max_element(s.lower.begin(), s.lower.end()),
+             high = std::min_element(s.upper.begin(), s.upper.end());
+  return {static_cast<std::size_t>(low - s.lower.begin()), static_cast<std::size_t>(high - s.upper.begin())};
+}
+Structure::Hole hole_of(const Section<double>& s, double low, double high) {
+  return s.hole_end > low ? s.hole_end < high ? Structure::Hole::below : Structure::Hole::all : Structure::Hole::none;
+}
+
+}  // namespace
+
+bool follow_strips(const Section<double>& s, Structure& structure) {
+  const auto [lower, upper] = ends_in_force(s);
+  const double low = s.lower[lower], high = s.upper[upper];
+  if (lower != structure.lower || upper != structure.upper || hole_of(s, low, high) != structure.hole) return false;
+  const auto follow = [&](StripEnd& end) {
+    switch (end.kind) {
+      case StripEnd::Kind::lower:
+        end.z = low;
+        break;
+      case StripEnd::Kind::upper:
+        end.z = high;
+        break;
+      case StripEnd::Kind::hole:
+        end.z = s.hole_end;
+        break;
+      case StripEnd::Kind::meeting:
+        end.z = meeting_near(s, end.first, end.second, end.z);
+    }
+  };
+  StripEnd from, to;  // of the strip before, where it was
+  for (std::size_t i = 0; i < structure.strips.size(); ++i) {
+    Strip& strip = structure.strips[i];
+    const Strip was = strip;
+    const auto same = [](const StripEnd& p, const StripEnd& q) { return alike(p, q) && p.z == q.z; };
+    if (i > 0 && same(was.from, to))
+      strip.from = structure.strips[i - 1].to;
+    else if (i > 0 && same(was.from, from))
+      strip.from = structure.strips[i - 1].from;
+    else
+      follow(strip.from);
+    if (i > 0 && same(was.to, to))
+      strip.to = structure.strips[i - 1].to;
+    else
+      follow(strip.to);
+    const bool above = i == 0 || strip.from.z >= structure.strips[i - 1].from.z - kSearches;
+    if (!(strip.from.z < strip.to.z && strip.from.z >= low && strip.to.z <= high && above)) return false;
+    from = was.from;
+    to = was.to;
+  }
+  return true;
+}
+
 void find_strips(const Section<double>& s, StripScratch& scratch, Structure& structure) {
   structure.strips.clear();
   structure.signature = 0;
-  structure.lower = structure.upper = 0;
-  for (std::size_t i = 1; i < kLowerEnds; ++i)
-    if (s.lower[i] > s.lower[structure.lower]) structure.lower = i;
-  for (std::size_t i = 1; i < kUpperEnds; ++i)
-    if (s.upper[i] < s.upper[structure.upper]) structure.upper = i;
+  const auto [lower, upper] = ends_in_force(s);
+  structure.lower = lower;
+  structure.upper = upper;
   const StripEnd low{
       s.lower[structure.lower], StripEnd::Kind::lower, static_cast<std::uint8_t>(structure.lower), {}, {}};
   const StripEnd high{
       s.upper[structure.upper], StripEnd::Kind::upper, static_cast<std::uint8_t>(structure.upper), {}, {}};
+  structure.hole = hole_of(s, low.z, high.z);
   find_plain_strips(s, kCurveH, low, high, scratch, scratch.outer);
-  if (s.hole_end > low.z) {
-    const StripEnd end = s.hole_end < high.z ? StripEnd{s.hole_end, StripEnd::Kind::hole, 0, {}, {}} : high;
+  if (structure.hole != Structure::Hole::none) {
+    const StripEnd end =
+        structure.hole == Structure::Hole::below ? StripEnd{s.hole_end, StripEnd::Kind::hole, 0, {}, {}} : high;
     find_plain_strips(s, kCurves, low, end, scratch, scratch.inner);
     take_out(scratch.outer, scratch.inner, structure.strips);
   } else {

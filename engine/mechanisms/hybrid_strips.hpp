@@ -49,7 +49,8 @@ inline bool alike(const Strip& p, const Strip& q) {
 struct Structure {
   std::vector<Strip> strips;         ///< from below, not empty; where there is a hole, two over the same heights
   std::size_t lower = 0, upper = 0;  ///< the ends of z in force
-  std::uint64_t signature = 0;       ///< of everything but the numbers; 0: no strip
+  enum class Hole { none, below, all } hole = Hole::none;  ///< at which of the heights between them there is one
+  std::uint64_t signature = 0;                             ///< of everything but the numbers; 0: no strip
 };
 
 /// What finding strips reuses.
@@ -64,6 +65,10 @@ struct StripScratch {
 
 /// @param structure  overwritten
 void find_strips(const Section<double>& s, StripScratch& scratch, Structure& structure);
+
+/// Moves a structure to a section near that of its heights. false: it is not seen there, and its heights have no
+/// meaning. Strips that begin between those of the structure are not seen.
+bool follow_strips(const Section<double>& s, Structure& structure);
 
 /// x of an edge.
 template <class S>

@@ -181,6 +181,28 @@ TEST(HybridVoxels, ConvergeToTheColumns) {
   }
 }
 
+TEST(HybridVoxels, ThePlainTestIsThatOfTheMargins) {
+  Uniform uniform(7);
+  int inside = 0;
+  for (const Case& c : random_cases(60, 8))
+    for (const int branch : {1, -1})
+      for (const bool with_links : {false, true}) {
+        VoxelDesign design{frame_of(c.p, c.mode), branch, {}};
+        if (with_links) design.clearance = 0;
+        const Frame<double>& f = design.frame;
+        for (int i = 0; i < 400; ++i) {
+          const Pose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]), uniform(0.15, 0.3),
+                                  uniform(-0.7, 0.7)};
+          const Margins<double> m = margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), branch);
+          const bool expected = std::all_of(m.begin(), with_links ? m.end() : m.begin() + kCapsules,
+                                            [](double margin) { return margin >= 0; });
+          ASSERT_EQ(feasible(design, pose.x, pose.z, pose.angle), expected);
+          inside += expected;
+        }
+      }
+  EXPECT_GT(inside, 3000);
+}
+
 TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
   std::int64_t total = 0, clear = 0;
   for (const Case& c : random_cases(24, 1))
