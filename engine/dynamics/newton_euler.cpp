@@ -53,7 +53,7 @@ std::array<std::optional<double>, 3> couple_of(const Joint& joint, const LeastNo
     for (std::size_t k = 0; k < joint.couples.size(); ++k) {
       const Index column = first + 3 + static_cast<Index>(k);
       value += joint.couples[k].direction[axis] * solution.x[column];
-      free += joint.couples[k].direction[axis] * solution.null_space.row(column);
+      if (free.size() > 0) free += joint.couples[k].direction[axis] * solution.null_space.row(column);
     }
     if (free.norm() < kUniqueTolerance) couple[axis] = value;
   }
@@ -61,6 +61,7 @@ std::array<std::optional<double>, 3> couple_of(const Joint& joint, const LeastNo
 }
 
 bool forces_are_unique(const NewtonEuler& system, const LeastNorm& solution) {
+  if (solution.null_space.cols() == 0) return true;
   const std::vector<Index> first = first_columns(system);
   for (std::size_t j = 0; j < system.joints.size(); ++j)
     if (solution.null_space.middleRows<3>(first[j]).rowwise().norm().maxCoeff() >= kUniqueTolerance) return false;
