@@ -23,6 +23,13 @@ Scores normalised(const Scores& front) {
   return result;
 }
 
+std::vector<double> sums(const Scores& scores) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    result.push_back(std::accumulate(scores[i], scores[i] + scores.objectives, 0.0));
+  return result;
+}
+
 double distance(const Scores& scores, std::size_t a, std::size_t b) {
   double greatest = 0;
   for (std::size_t k = 0; k < scores.objectives; ++k)
@@ -59,17 +66,22 @@ Ranges ranges_of(const Scores& front) {
   return e;
 }
 
-std::vector<double> prices(const Scores& front) {
-  const Scores scaled = normalised(front);
-  std::vector<double> result;
-  for (std::size_t i = 0; i < scaled.size(); ++i)
-    result.push_back(std::accumulate(scaled[i], scaled[i] + scaled.objectives, 0.0));
-  return result;
+std::vector<double> prices(const Scores& front) { return sums(normalised(front)); }
+
+std::vector<std::size_t> ends_of(const Scores& front) {
+  std::vector<std::size_t> ends;
+  for (std::size_t k = 0; k < front.objectives; ++k) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < front.size(); ++i)
+      if (front[i][k] < front[best][k]) best = i;
+    ends.push_back(best);
+  }
+  return ends;
 }
 
 std::size_t compromise(const Scores& front) {
   const Scores scaled = normalised(front);
-  const std::vector<double> price = prices(front);
+  const std::vector<double> price = sums(scaled);
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < scaled.size(); ++i) {
@@ -86,7 +98,7 @@ std::vector<std::size_t> knees(const Scores& front) {
   constexpr double kCheaper = 1e-9;  // than an end, so that rounding makes no knee of a straight front
   const Scores scaled = normalised(front);
   const Ranges extent = ranges_of(front);
-  const std::vector<double> price = prices(front);
+  const std::vector<double> price = sums(scaled);
   std::vector<std::size_t> order(front.size()), found;
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return price[a] < price[b]; });
@@ -115,12 +127,7 @@ std::vector<std::size_t> spread_choice(const Scores& front, std::size_t count) {
     for (std::size_t j = 0; j < n; ++j) away[j] = std::min(away[j], distance(scaled, i, j));
   };
   choose(compromise(front));
-  for (std::size_t k = 0; k < front.objectives; ++k) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < n; ++i)
-      if (front[i][k] < front[best][k]) best = i;
-    choose(best);
-  }
+  for (const std::size_t end : ends_of(front)) choose(end);
   while (chosen.size() < count) {
     const auto farthest = static_cast<std::size_t>(std::max_element(away.begin(), away.end()) - away.begin());
     if (away[farthest] == 0) break;

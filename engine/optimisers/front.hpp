@@ -27,6 +27,9 @@ Ranges ranges_of(const Scores& front);
 /// weighs all objectives by their ranges would pay.
 std::vector<double> prices(const Scores& front);
 
+/// The best design of each score, the first of several. The front must not be empty.
+std::vector<std::size_t> ends_of(const Scores& front);
+
 /// The design nearest to the ideal: its worst score, each from 0 for the front's best to 1 for its worst, is the least
 /// of all; of several the cheapest, then the first. The front must not be empty.
 std::size_t compromise(const Scores& front);
@@ -60,7 +63,6 @@ class FrontKeeper {
   void set_spread(double spread) { front_.spread = spread; }
   /// Row of the compromise; -1 while nothing is feasible.
   std::int64_t compromise_row() const { return compromise_; }
-  const Scores& scores() const { return archive_.scores(); }
 
  private:
   bool fix_reference(const Scores& feasible);

@@ -66,7 +66,7 @@ class Goal {
   double sign(std::size_t k) const { return problem_.objectives()[k].direction == Direction::maximise ? -1 : 1; }
   double stored(std::size_t row, std::size_t k) const { return sign(k) * table_.objective_row(row)[k]; }
   double smooth(std::size_t row, std::size_t k) const;
-  /// Value and derivatives of (f_k - f_k0) / r_k.
+  /// (f_k - f_k0) / r_k, as solvers see it.
   double gain(std::size_t row, std::size_t k) const { return (smooth(row, k) - from_[k]) / how_.extents[k]; }
   /// t of the slack u, and its range.
   double t_of(double u) const { return least_t() + u * (most_t() - least_t()); }

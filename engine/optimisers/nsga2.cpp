@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -52,9 +51,9 @@ class TradeOff final : public Survivors {
     std::sort(others.begin(), others.end());
     for (const Ranked& other : others)
       if (rows_.size() < most()) rows_.push_back(other.row);
-    if (!others.empty() && (best_infeasible_.row < 0 || others.front() < best_infeasible_))
-      best_infeasible_ = others.front();
-    return progress(gained);
+    const bool less_broken = !others.empty() && (best_infeasible_.row < 0 || others.front() < best_infeasible_);
+    if (less_broken) best_infeasible_ = others.front();
+    return progress(gained, less_broken);
   }
 
   const std::vector<std::int64_t>& population() const override { return rows_; }
@@ -99,14 +98,9 @@ class TradeOff final : public Survivors {
   }
 
   /// A larger hypervolume; while there is none, any change of the front, or, while nothing is feasible, less violation.
-  bool progress(bool gained) {
+  bool progress(bool gained, bool less_broken) {
     const double now = keeper_.front().hypervolume;
-    if (std::isnan(now)) {
-      const bool better =
-          best_infeasible_.row >= 0 && (!(last_violation_.row >= 0) || best_infeasible_ < last_violation_);
-      last_violation_ = best_infeasible_;
-      return gained || (better && keeper_.compromise_row() < 0);
-    }
+    if (std::isnan(now)) return gained || (less_broken && keeper_.compromise_row() < 0);
     if (now - last_hypervolume_ <= plan_.tolerance * std::fabs(last_hypervolume_)) return false;
     last_hypervolume_ = now;
     return true;
@@ -120,7 +114,7 @@ class TradeOff final : public Survivors {
   std::vector<std::int64_t> candidates_;  // feasible rows that compete
   Scores scores_;                         // theirs
   std::vector<std::uint32_t> front_of_;   // theirs
-  Ranked best_infeasible_, last_violation_;
+  Ranked best_infeasible_;
   double last_hypervolume_ = -1;
 };
 

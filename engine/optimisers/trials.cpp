@@ -24,6 +24,7 @@ Trials::Trials(const StageInput& input, EvaluationTable& table, const TrialLimit
   for (std::size_t i = 0; i < space.dimension(); ++i) start_unit_.push_back(space.to_unit(i, start[i]));
   evaluate(start_unit_);
   if (goal_->has_slack()) start_unit_.push_back(unit_.back());
+  if (point_.usable) start_size_ = std::fabs(point_.objective);
 }
 
 const Trials::Point* Trials::at(const double* u) noexcept {
@@ -105,18 +106,16 @@ void Trials::read(std::size_t row, double slack) {
 }
 
 double Trials::optimality(std::size_t row) const {
-  Point at_start, here;
+  Point here;
   goal_->read(row, goal_->slack(row), here);
   if (here.gradient.empty() || !here.usable) return std::numeric_limits<double>::quiet_NaN();
-  goal_->read(first_row_, goal_->slack(first_row_), at_start);
   std::vector<double> u;
   const DesignSpace& space = input_.problem.space();
   const auto design = std::as_const(table_).design(row);
   for (std::size_t i = 0; i < design.size(); ++i) u.push_back(space.to_unit(i, design[i]));
   if (goal_->has_slack()) u.push_back(goal_->slack(row));
   const double left = first_order(u, here.gradient, here.margins, here.margin_gradient).left;
-  const double size =
-      goal_->has_slack() ? 1 : std::max(std::fabs(here.objective), at_start.usable ? std::fabs(at_start.objective) : 0);
+  const double size = goal_->has_slack() ? 1 : std::max(std::fabs(here.objective), start_size_);
   return size > 0 ? left / size : left;
 }
 

@@ -79,6 +79,7 @@ class Trials {
   const std::vector<StartOutcome>& finished_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<double> start_design_, start_unit_, unit_;
+  double start_size_ = 0;        ///< of the objective at the start; 0: not usable
   std::optional<Goal> goal_;     ///< once the start is evaluated
   std::size_t row_ = 0;          ///< of the point evaluated or recalled last
   std::optional<double> worst_;  ///< greatest objective seen

@@ -27,12 +27,8 @@ Scores scores(const ProblemRecord& problem, const StageRecord& stage) {
 /// What is special about each point: "best conditioning", "knee", "compromise".
 std::vector<std::vector<std::string>> marks(const ProblemRecord& problem, const Scores& front) {
   std::vector<std::vector<std::string>> list(front.size());
-  for (std::size_t k = 0; k < front.objectives; ++k) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < front.size(); ++i)
-      if (front[i][k] < front[best][k]) best = i;
-    list[best].push_back("best " + problem.objectives[k].name);
-  }
+  const std::vector<std::size_t> ends = ends_of(front);
+  for (std::size_t k = 0; k < ends.size(); ++k) list[ends[k]].push_back("best " + problem.objectives[k].name);
   for (const std::size_t i : knees(front)) list[i].push_back("knee");
   list[compromise(front)].push_back("compromise");
   return list;
@@ -59,19 +55,6 @@ std::string headline(const ProblemRecord& problem, const StageRecord& stage, con
   if (!record.igd_plus.empty() && !std::isnan(record.igd_plus.back()))
     text += "; IGD+ " + digits(record.igd_plus.back());
   return text + '\n';
-}
-
-Json named(const auto& infos, std::span<const double> values) {
-  Json object = Json::object();
-  for (std::size_t i = 0; i < infos.size(); ++i)
-    object[infos[i].name] = std::isfinite(values[i]) ? Json(values[i]) : Json();
-  return object;
-}
-
-Json list(const std::vector<double>& values) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(std::isfinite(value) ? Json(value) : Json());
-  return array;
 }
 
 }  // namespace
@@ -102,13 +85,11 @@ std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
 Json front_json(const ProblemRecord& problem, const StageRecord& stage) {
   const FrontRecord& record = *stage.front;
   const Scores front = scores(problem, stage);
-  Json json = {{"reference", record.reference.empty() ? Json() : named(problem.objectives, record.reference)},
-               {"hypervolume", Json()},
-               {"points", Json::array()},
-               {"generations",
-                {{"hypervolume", list(record.hypervolume)},
-                 {"spread", list(record.spread)},
-                 {"igd_plus", list(record.igd_plus)}}}};
+  Json json = {
+      {"reference", record.reference.empty() ? Json() : values_by_name(problem.objectives, record.reference)},
+      {"hypervolume", Json()},
+      {"points", Json::array()},
+      {"generations", {{"hypervolume", record.hypervolume}, {"spread", record.spread}, {"igd_plus", record.igd_plus}}}};
   if (front.size() == 0) return json;
   const double volume = hypervolume_of(problem, stage, front);
   if (std::isfinite(volume)) json["hypervolume"] = volume;
@@ -117,10 +98,10 @@ Json front_json(const ProblemRecord& problem, const StageRecord& stage) {
     const auto row = static_cast<std::size_t>(record.rows[i]);
     json["points"].push_back({{"point", i + 1},
                               {"evaluation", row},
-                              {"design", named(problem.variables, stage.table.design(row))},
-                              {"objectives", named(problem.objectives, stage.table.objective_row(row))},
-                              {"constraints", named(problem.margins, stage.table.margin_row(row))},
-                              {"reports", named(problem.reports, stage.table.report_row(row))},
+                              {"design", values_by_name(problem.variables, stage.table.design(row))},
+                              {"objectives", values_by_name(problem.objectives, stage.table.objective_row(row))},
+                              {"constraints", values_by_name(problem.margins, stage.table.margin_row(row))},
+                              {"reports", values_by_name(problem.reports, stage.table.report_row(row))},
                               {"marks", mark[i]}});
   }
   return json;

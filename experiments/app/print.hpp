@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ostream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,7 @@ Json to_json(const OptionValue& value);
 
 /// {name: value, ...} of things with a name and their values, in one order.
 template <class Named>
-Json values_by_name(const Named& named, const std::vector<double>& values) {
+Json values_by_name(const Named& named, std::span<const double> values) {
   Json object = Json::object();
   for (std::size_t i = 0; i < values.size(); ++i) object[named[i].name] = values[i];
   return object;

@@ -141,21 +141,14 @@ std::int64_t generation_of(const StageRecord& stage, std::int64_t row) {
   return generation;
 }
 
-Json named(const auto& infos, const std::vector<double>& values) {
-  Json object = Json::object();
-  for (std::size_t i = 0; i < infos.size(); ++i)
-    object[infos[i].name] = std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr);
-  return object;
-}
-
 Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
   Json design = Json::object();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i)
     if (problem.parameters[i].variable >= 0) design[problem.parameters[i].name] = record.parameters[i];
   Json object = {{"design", design},
-                 {"objectives", named(problem.objectives, record.objectives)},
-                 {"constraints", named(problem.margins, record.margins)},
-                 {"reports", named(problem.reports, record.reports)},
+                 {"objectives", values_by_name(problem.objectives, record.objectives)},
+                 {"constraints", values_by_name(problem.margins, record.margins)},
+                 {"reports", values_by_name(problem.reports, record.reports)},
                  {"status", status_word(record.status)},
                  {"volume", record.volume}};
   if (!record.reason.empty()) object["reason"] = record.reason;
@@ -252,11 +245,10 @@ Json summary_json(const StudyContents& contents) {
     Json design = Json::object();
     for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
       design[contents.problem.variables[i].name] = stage.table.design(row)[i];
-    const auto list = [](std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); };
     object["best"] = {{"design", design},
-                      {"objectives", named(contents.problem.objectives, list(stage.table.objective_row(row)))},
-                      {"constraints", named(contents.problem.margins, list(stage.table.margin_row(row)))},
-                      {"reports", named(contents.problem.reports, list(stage.table.report_row(row)))},
+                      {"objectives", values_by_name(contents.problem.objectives, stage.table.objective_row(row))},
+                      {"constraints", values_by_name(contents.problem.margins, stage.table.margin_row(row))},
+                      {"reports", values_by_name(contents.problem.reports, stage.table.report_row(row))},
                       {"status", status_word(stage.table.status[row])},
                       {"stage", contents.best.stage + 1},
                       {"generation", generation_of(stage, contents.best.row)}};
