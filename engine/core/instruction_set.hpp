@@ -1,68 +1,47 @@
 // Which of the processor's vector instructions kernels use, chosen at run time.
 //
-// A kernel is written once, as plain loops. with_vectors() compiles it for three instruction sets and runs the widest
-// one that the processor has. The bits of results are the same on all: the build forbids contraction, compilers don't
-// change the order of sums, and nothing in a kernel depends on the width of a vector.
+// Files named *_kernel.cpp are compiled once for every instruction set, with the set as PKM_INSTRUCTION_SET. They
+// define function templates over the set and instantiate them for theirs; with_instruction_set() calls the one in use.
+// The bits of results are the same on all: kernels work on kLanes numbers side by side whatever the width of vectors
+// (math/lanes.hpp), and the build forbids contraction.
 #pragma once
 
 #include <array>
-#include <span>
+#include <cstddef>
 #include <string_view>
 
 namespace pkm {
 
-enum class InstructionSet { baseline, avx2, avx512 };  ///< each has what those before it have; baseline is x86-64
+enum class InstructionSet { baseline, avx2, avx512 };  ///< each has what those before it have; baseline: any x86-64
 
 inline constexpr std::array<std::string_view, 3> kInstructionSets = {"baseline", "avx2", "avx512"};
 
 inline std::string_view name_of(InstructionSet set) { return kInstructionSets[static_cast<std::size_t>(set)]; }
 
-/// The widest set that this processor, and the system it runs, has.
+/// The widest set that this processor and its system have.
 InstructionSet widest_instruction_set();
 
 /// The set in use: the widest, unless use_instruction_set() chose another.
 InstructionSet instruction_set();
 
-/// Chooses the set for the whole program; not while a kernel runs. Wider ones than the processor has are refused by
-/// std::invalid_argument.
+/// Chooses the set for the whole program. Throws std::invalid_argument where the processor has less.
 void use_instruction_set(InstructionSet set);
 
-namespace instruction_set_detail {
-
-// Flattened: everything called whose definition is seen becomes part of the function and is compiled for its set.
-// Code that is not seen runs as it was compiled, for the baseline.
+/// kernel.template operator()<set>() for the set in use, as in
+///   with_instruction_set([&]<InstructionSet set> { return tally<set>(columns); })
 template <class Kernel>
-[[gnu::flatten, gnu::noinline]] void run_baseline(const Kernel& kernel) {
-  kernel();
-}
-#if defined(__x86_64__)
-template <class Kernel>
-[[gnu::target("avx2"), gnu::flatten, gnu::noinline]] void run_avx2(const Kernel& kernel) {
-  kernel();
-}
-template <class Kernel>
-[[gnu::target("avx512f,avx512dq,avx512bw,avx512vl,prefer-vector-width=512"), gnu::flatten, gnu::noinline]] void
-run_avx512(const Kernel& kernel) {
-  kernel();
-}
-#endif
-
-}  // namespace instruction_set_detail
-
-/// Runs kernel(), a function object without arguments or result, compiled for the set in use.
-template <class Kernel>
-void with_vectors(const Kernel& kernel) {
+decltype(auto) with_instruction_set(const Kernel& kernel) {
 #if defined(__x86_64__)
   switch (instruction_set()) {
     case InstructionSet::avx512:
-      return instruction_set_detail::run_avx512(kernel);
+      return kernel.template operator()<InstructionSet::avx512>();
     case InstructionSet::avx2:
-      return instruction_set_detail::run_avx2(kernel);
+      return kernel.template operator()<InstructionSet::avx2>();
     case InstructionSet::baseline:
       break;
   }
 #endif
-  instruction_set_detail::run_baseline(kernel);
+  return kernel.template operator()<InstructionSet::baseline>();
 }
 
 }  // namespace pkm

@@ -1,8 +1,11 @@
 // 4PPa-2PaR: voxel surveys from column intervals. Same cells as the plain loop over poses, no loop over z.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
+#include "engine/mechanisms/four_ppa_two_par_cells.hpp"
 #include "engine/mechanisms/four_ppa_two_par_clearance.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 
@@ -16,11 +19,6 @@ bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, doub
 /// The paper's box does not matter to the model; this one holds every feasible pose: x in [0, b],
 /// z in [-(l_u + l_d + d), -d], theta in [-pi/2, pi/2].
 Box default_box(const Geometry<double>& g);
-
-/// What the feasible cells of one row (fixed theta, all x) are: cells [first, end) of z, per x.
-struct Row {
-  std::vector<std::int32_t> first, end;
-};
 
 /// Counts cells of grids with a fixed number of cells.
 class VoxelCounter {
@@ -40,17 +38,19 @@ class VoxelCounter {
   template <class Visit>
   void visit_columns(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
                      const VoxelGrid& grid, const Visit& visit) const {
-    Row row = make_row();
-    for (std::int64_t k = 0; k < cells_[2]; ++k) {
-      fill_row(g, l, y, grid, k, cells_[0], row);
-      for (std::int64_t i = 0; i < cells_[0]; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        if (!(row.first[at] < row.end[at])) continue;
-        if (test)
-          visit_clear_runs(g, *test, grid, i, row.first[at], row.end[at], k, visit);
-        else
-          visit(i, row.first[at], row.end[at], k);
-      }
+    ColumnBlock block;
+    for (std::int64_t k_block = 0; k_block < cells_[2]; k_block += kLanes) {
+      fill_block(g, l, y, grid, k_block, block);
+      for (std::int64_t k = k_block; k < std::min(k_block + kLanes, cells_[2]); ++k)
+        for (std::int64_t i = block.x_begin; i < block.x_end; ++i) {
+          const auto at = static_cast<std::size_t>(i * kLanes + k - k_block);
+          if (!(block.first[at] < block.end[at])) continue;
+          const auto first = static_cast<std::int64_t>(block.first[at]), end = static_cast<std::int64_t>(block.end[at]);
+          if (test)
+            visit_clear_runs(g, *test, grid, i, first, end, k, visit);
+          else
+            visit(i, first, end, k);
+        }
     }
   }
 
@@ -58,7 +58,6 @@ class VoxelCounter {
   double cos_theta(std::int64_t k) const { return cos_[static_cast<std::size_t>(k)]; }
 
  private:
-  Row make_row() const;
   /// The runs of one column's cells [first, end) that pass the test, cell by cell.
   template <class Visit>
   void visit_clear_runs(const Geometry<double>& g, const ClearanceTest& test, const VoxelGrid& grid, std::int64_t i,
@@ -75,13 +74,14 @@ class VoxelCounter {
   }
   std::int64_t count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test, double y,
                            const VoxelGrid& grid, bool& touches) const;
-  /// Fills the first `columns` x of row k.
-  void fill_row(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid, std::int64_t k,
-                std::int64_t columns, Row& row) const;
+  void fill_block(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
+                  std::int64_t k_block, ColumnBlock& block) const;
+  ColumnsAtThetas columns(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
+                          std::int64_t k_block, std::int64_t thetas, std::int64_t xs) const;
 
   std::array<std::int64_t, 3> cells_;
-  std::vector<double> sin_, cos_;
-  bool even_;  ///< the theta grid is symmetric about 0
+  std::vector<double> sin_, cos_;  ///< of every theta, filled up to a whole block
+  bool even_;                      ///< the theta grid is symmetric about 0
 };
 
 }  // namespace pkm::four_ppa_two_par

@@ -6,9 +6,11 @@
 #include <fstream>
 #include <thread>
 
+#include "engine/core/instruction_set.hpp"
+
 namespace pkm {
 
-std::string describe_machine() {
+std::string describe_processor() {
   std::string processor = "unknown processor";
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
@@ -16,10 +18,14 @@ std::string describe_machine() {
       processor = line.substr(line.find(':') + 2);
       break;
     }
+  return processor;
+}
+
+std::string describe_machine() {
   utsname system{};
   uname(&system);
-  return processor + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " + system.sysname + " " +
-         system.release + " " + system.machine;
+  return describe_processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
+         std::string(name_of(instruction_set())) + ", " + system.sysname + " " + system.release + " " + system.machine;
 }
 
 std::string utc_now() {

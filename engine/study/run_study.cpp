@@ -310,6 +310,20 @@ RunOutcome run_study(const Study& study, const std::string& path, bool overwrite
   return Run(study, new_contents(study), path, options, progress).run();
 }
 
+namespace {
+
+/// Results of our own code have the same bits everywhere; those of the libraries that we call may not.
+void note_processor(StudyContents& contents) {
+  const std::string here = describe_processor();
+  if (contents.machine.starts_with(here + ",")) return;
+  const std::string note = "begun on " + contents.machine + ", went on on " + describe_machine() +
+                           ": stages of ipopt and isres and motions given as formulas may differ in their last bits "
+                           "from a run on one processor";
+  if (std::ranges::find(contents.notes, note) == contents.notes.end()) contents.notes.push_back(note);
+}
+
+}  // namespace
+
 RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
                         const RunOptions& options, Progress& progress) {
   const StopRequest listen;
@@ -332,6 +346,7 @@ RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, c
     write_study(path, contents);  // so that the extension survives a stop while the past is replayed
   }
   apply_extensions(study, contents.extensions);
+  note_processor(contents);
   try {
     return Run(study, std::move(contents), path, options, progress).run();
   } catch (const ReplayMismatch& mismatch) {

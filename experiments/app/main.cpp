@@ -2,14 +2,18 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "constraints/all.hpp"
+#include "engine/core/instruction_set.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/version.hpp"
@@ -22,10 +26,38 @@ int complain(const std::string& sentence, int exit_code) {
   return exit_code;
 }
 
+std::string version() {
+  return "pkmopt " + pkm::program_version() + " (" + pkm::program_revision() +
+         ")\ninstruction set: " + std::string(name_of(pkm::instruction_set())) + " of " +
+         pkm::join({pkm::kInstructionSets.begin(), pkm::kInstructionSets.end()});
+}
+
+/// For comparisons: results are the same on all.
+void add_instruction_set(CLI::App& command) {
+  const auto choose = [](const std::string& name) {
+    const std::vector<std::string> known{pkm::kInstructionSets.begin(), pkm::kInstructionSets.end()};
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      throw pkm::ConfigError({"", 0, "--instruction-set"}, "'" + name + "'", "one of " + pkm::join(known),
+                             pkm::nearest_name(name, known));
+    const auto set = static_cast<pkm::InstructionSet>(found - known.begin());
+    if (set > pkm::widest_instruction_set())
+      throw pkm::ConfigError(
+          {"", 0, "--instruction-set"}, "'" + name + "'",
+          "what this processor has: " + std::string(name_of(pkm::widest_instruction_set())) + " or less");
+    pkm::use_instruction_set(set);
+  };
+  command
+      .add_option_function<std::string>("--instruction-set", choose,
+                                        "Vector instructions to use (default: the widest that the processor has); "
+                                        "changes the speed, never a result")
+      ->type_name("SET");
+}
+
 int run(int argc, char** argv) {
   pkm::Session session{{pkm::all_mechanisms(), pkm::all_objectives(), pkm::all_constraints(), pkm::all_optimisers()}};
   CLI::App app("Design-space optimisation of parallel kinematic machines.", "pkmopt");
-  app.set_version_flag("--version", "pkmopt " + pkm::program_version() + " (" + pkm::program_revision() + ")");
+  app.set_version_flag("--version", version());
   app.get_formatter()->column_width(36);
   app.get_formatter()->label("REQUIRED", "(required)");
   app.require_subcommand(1);
@@ -45,6 +77,7 @@ int run(int argc, char** argv) {
   pkm::add_simulate(app, session);
   pkm::add_show(app, session);
   pkm::add_list(app, session);
+  for (const char* name : {"run", "resume", "evaluate", "coupling"}) add_instruction_set(*app.get_subcommand(name));
   if (!pkm::parse_command_line(app, {argv + 1, argv + argc})) return pkm::kDone;
   std::cout.flush();
   if (!std::cout) return complain("the results cannot be written to the standard output", pkm::kFailure);

@@ -113,7 +113,22 @@ TEST(CliHelp, EveryCommandHasHelpWithAnExample) {
 TEST(CliHelp, VersionAndRevision) {
   const auto version = pkmopt({"--version"});
   EXPECT_EQ(version.exit_code, 0);
-  EXPECT_THAT(version.out, MatchesRegex("pkmopt [0-9]+\\.[0-9]+\\.[0-9]+ \\(([0-9a-f]{12}(\\+changes)?|unknown)\\)\n"));
+  EXPECT_THAT(version.out, MatchesRegex("pkmopt [0-9]+\\.[0-9]+\\.[0-9]+ \\(([0-9a-f]{12}(\\+changes)?|unknown)\\)\n"
+                                        "instruction set: (baseline|avx2|avx512) of baseline, avx2, avx512\n"));
+}
+
+TEST(CliHelp, AnInstructionSetIsChosenByName) {
+  const std::vector<std::string> evaluate = {"evaluate", "4ppa-2par", "--instruction-set"};
+  const auto with = [&](const std::string& set) {
+    auto arguments = evaluate;
+    arguments.push_back(set);
+    return pkmopt(arguments);
+  };
+  EXPECT_EQ(with("baseline").exit_code, 0);
+  EXPECT_EQ(with("baseline").out, pkmopt({"evaluate", "4ppa-2par"}).out);
+  const auto wrong = with("avx");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("'avx'; expected one of baseline, avx2, avx512; did you mean 'avx2'?"));
 }
 
 template <class List>

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "constraints/all.hpp"
+#include "engine/core/instruction_set.hpp"
 #include "engine/storage/study_file.hpp"
 #include "objectives/all.hpp"
 
@@ -99,6 +100,23 @@ TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
     EXPECT_EQ(first_difference(straight.contents, read_study(file)), "") << stop;
     EXPECT_LE(first.evaluations + second.evaluations, straight.evaluations);
   }
+}
+
+// As on a machine that has less than the one that goes on.
+TEST_F(RunStudy, GoesOnWithTheSameBitsOnAnotherInstructionSet) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  Progress silent;
+  const auto straight = run_study(study, path("straight.h5"), false, {}, silent);
+  StopAt at(4);
+  use_instruction_set(InstructionSet::baseline);
+  auto begun = run_study(study, path("a.h5"), false, {}, at).contents;
+  use_instruction_set(widest_instruction_set());
+  EXPECT_THAT(begun.machine, HasSubstr(", baseline, "));
+  begun.machine = "a 4004, 1 cores, baseline, none";
+  write_study(path("a.h5"), begun);
+  const auto resumed = resume_study(path("a.h5"), catalogues(), {}, {}, silent).contents;
+  EXPECT_EQ(first_difference(straight.contents, resumed), "");
+  EXPECT_THAT(resumed.notes, ElementsAre(HasSubstr("begun on a 4004, 1 cores, baseline, none, went on on ")));
 }
 
 TEST_F(RunStudy, StoppingWhileItReplaysKeepsTheFile) {

@@ -1,0 +1,95 @@
+// What a mechanism computes has the same bits on every instruction set. A new mechanism is tested without a change
+// here.
+#include <bit>
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include "engine/core/instruction_set.hpp"
+#include "tests/unit/contracts/everything.hpp"
+
+namespace pkm {
+namespace {
+
+using Bits = std::vector<std::uint64_t>;
+
+class InstructionSetContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
+ protected:
+  void SetUp() override { use_instruction_set(InstructionSet::baseline); }
+  void TearDown() override { use_instruction_set(widest_instruction_set()); }
+
+  const Mechanism& mechanism() const { return *GetParam(); }
+  const MechanismInfo& info() const { return mechanism().info(); }
+
+  static void add(Bits& bits, const std::vector<double>& values) {
+    for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
+  }
+  static void add(Bits& bits, const Survey<double>& survey) {
+    bits.push_back(static_cast<std::uint64_t>(survey.feasible_cells) * 2 + survey.touches_box);
+    add(bits, std::vector<double>{survey.volume, survey.error});
+    add(bits, survey.weight);
+    add(bits, survey.conditioning);
+    for (const auto& joint : survey.dci) add(bits, joint);
+    add(bits, survey.inertia_condition);
+  }
+
+  /// Surveys of random designs under random limits, voxels and columns of every sweep.
+  Bits surveys() const {
+    Bits bits;
+    Stream random(7, 0, 0, Stream::Use::start);
+    Demand demand;
+    demand.conditioning = true;
+    demand.dci = demand.inertia_condition = !info().mass_models.empty();
+    for (int i = 0; i < 4; ++i) {
+      const std::vector<double> design = i == 0 ? test::nominal(info()) : test::random_design(info(), random);
+      const LimitSpec limits = i == 0 ? no_limits(info()) : test::random_limits(info(), random);
+      for (const Sweep& sweep : sweeps_of(info()))
+        for (const Method method : {Method::voxels, Method::columns}) {
+          SurveyPlan plan = test::plan(info(), sweep, method, 21);
+          plan.limits = limits;
+          add(bits, test::survey(mechanism(), design, plan, demand));
+          if (method == Method::columns) continue;
+          for (const std::uint8_t cell : mechanism().voxel_map(design, plan).feasible) bits.push_back(cell);
+        }
+    }
+    return bits;
+  }
+
+  /// Slopes of all quantities by all parameters at random designs.
+  Bits slopes() const {
+    Bits bits;
+    Stream random(8, 0, 0, Stream::Use::start);
+    SurveyPlan plan = test::plan(info(), Method::columns);
+    for (int i = 0; i < 2; ++i) {
+      const std::vector<double> design = test::random_design(info(), random);
+      plan.limits = test::random_limits(info(), random);
+      const DesignProblem problem = test::everything(GetParam(), plan);
+      add(bits, problem.slopes(design, problem.parts().varies));
+    }
+    return bits;
+  }
+
+  template <class Compute>
+  void same_on_every_set(const Compute& compute) const {
+    const Bits baseline = compute();
+    ASSERT_GT(baseline.size(), 100u);
+    for (const auto set : {InstructionSet::avx2, InstructionSet::avx512}) {
+      if (set > widest_instruction_set()) continue;
+      use_instruction_set(set);
+      EXPECT_TRUE(compute() == baseline) << name_of(set);
+    }
+  }
+};
+
+TEST_P(InstructionSetContract, SurveysHaveTheSameBits) {
+  same_on_every_set([&] { return surveys(); });
+}
+TEST_P(InstructionSetContract, SlopesHaveTheSameBits) {
+  same_on_every_set([&] { return slopes(); });
+}
+
+INSTANTIATE_TEST_SUITE_P(All, InstructionSetContract, testing::ValuesIn(all_mechanisms()),
+                         [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
+
+}  // namespace
+}  // namespace pkm

@@ -1,0 +1,56 @@
+#include "engine/math/lanes.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace pkm {
+namespace {
+
+using L = Lanes<2>;  // what the baseline takes, as this file is compiled for it
+using Eight = std::array<double, kLanes>;
+
+constexpr Eight kX = {-3.7, -1, -0.25, 0, 0.1, 1, 2.5, 1e15 + 0.5};
+constexpr Eight kY = {1.3, -1, 7, 0.5, -0.1, 3, 1e-3, 2};
+
+template <class F>
+Eight each(const F& f) {
+  Eight r{};
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = f(kX[i], kY[i]);
+  return r;
+}
+Eight values(const L& x) {
+  Eight r{};
+  x.store(r.data());
+  return r;
+}
+
+TEST(Lanes, ComputeWhatDoublesDo) {
+  const L x = L::load(kX.data()), y = L::load(kY.data());
+  EXPECT_EQ(values(x + y * 2.0), each([](double a, double b) { return a + b * 2.0; }));
+  EXPECT_EQ(values(1.0 - x / y), each([](double a, double b) { return 1.0 - a / b; }));
+  EXPECT_EQ(values(-x), each([](double a, double) { return -a; }));
+  EXPECT_EQ(values(sqrt(y * y)), each([](double, double b) { return std::sqrt(b * b); }));
+  EXPECT_EQ(values(root_or_zero(x)), each([](double a, double) { return a > 0 ? std::sqrt(a) : 0; }));
+  EXPECT_EQ(values(floor(x)), each([](double a, double) { return std::floor(a); }));
+  EXPECT_EQ(values(ceil(x)), each([](double a, double) { return std::ceil(a); }));
+}
+
+TEST(Lanes, SelectByMasks) {
+  const L x = L::load(kX.data()), y = L::load(kY.data());
+  EXPECT_EQ(values(select((x < y) & (x > -2.0), x, y)),
+            each([](double a, double b) { return a < b && a > -2.0 ? a : b; }));
+  EXPECT_EQ(values(select((x >= 1.0) | (y <= 0.0), L(1.0), L(0.0))),
+            each([](double a, double b) { return a >= 1.0 || b <= 0.0 ? 1.0 : 0.0; }));
+  EXPECT_EQ(values(lesser(x, y)), each([](double a, double b) { return a < b ? a : b; }));
+  EXPECT_EQ(values(greater(x, y)), each([](double a, double b) { return a > b ? a : b; }));
+}
+
+TEST(Lanes, FindTheLeastAndTheGreatest) {
+  EXPECT_EQ(least(L::load(kX.data())), -3.7);
+  EXPECT_EQ(greatest(L::load(kY.data())), 7);
+}
+
+}  // namespace
+}  // namespace pkm
