@@ -31,7 +31,8 @@ void pose(benchmark::State& state) {
   }
   for (auto _ : state) {
     double sum = 0;
-    for (const Sample& p : samples) sum += conditioning(g, p.sin, p.cos, p.x, p.sigma, p.z_c, 1.0);
+    for (const Sample& p : samples)
+      sum += conditioning<double, double>({g.l_u, 1.0, p.sin, p.cos, p.x, p.sigma}, p.z_c);
     benchmark::DoNotOptimize(sum);
   }
   const auto poses = static_cast<double>(samples.size());

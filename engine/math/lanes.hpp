@@ -71,6 +71,7 @@ PKM_LANES Lanes<W> operator-(const Lanes<W>& x) {
   PKM_EACH_PART r.part[i] = -x.part[i];
   return r;
 }
+PKM_LANES const Lanes<W>& value_of(const Lanes<W>& x) { return x; }
 PKM_LANES Lanes<W>& operator+=(Lanes<W>& x, const Lanes<W>& y) { return x = x + y; }
 
 PKM_LANES LaneMask<W> operator&(const LaneMask<W>& x, const LaneMask<W>& y) {

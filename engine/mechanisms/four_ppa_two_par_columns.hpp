@@ -20,6 +20,7 @@ struct ColumnScratch {
   std::vector<Integral<S>> integrals;
   std::vector<Piece<S>> ranges, parts;
   std::vector<Interval> clear;
+  ColumnConditioning<S> poses;
 };
 
 /// Rounding of a section's area [m^2]: it is a difference of terms of this size times some 2^-53.
@@ -196,10 +197,8 @@ struct Node {
 
 template <class S>
 void add_samples(const Frame<S>& f, const SampleContents<S>& contents, const Images& images, const S& weight,
-                 const Node<S>& n, Survey<S>& survey) {
+                 const Node<S>& n, const S& index, Survey<S>& survey) {
   const Geometry<S>& g = f.g;
-  const S index =
-      contents.conditioning ? conditioning(g, n.sin_theta, n.cos_theta, n.x, n.sigma, n.z_c, contents.gamma) : S(0.0);
   if (!contents.inertia() && !contents.poses) {
     add_sample(contents, S(weight * images.count()), {}, index, {}, survey);
     return;
@@ -251,14 +250,21 @@ void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes,
             const auto [delta, delta_jacobian] = map_node(range, inner_rule.node[k]);
             const Column<S> col = column(f, t, h, leaning, delta);
             feasible_parts(f, t, col, test, scratch);
-            for (const Piece<S>& part : scratch.parts)
-              for (std::size_t n = 0; n < inner_rule.node.size(); ++n) {
-                const auto [rise, rise_jacobian] = map_node(part, inner_rule.node[n]);
-                const S each =
-                    outer * col.slope * delta_jacobian * rise_jacobian * (inner_rule.weight[k] * inner_rule.weight[n]);
-                const Node<S> node{theta, s, c, col.x, col.sigma, {col.z_c(f, rise, 0), col.z_c(f, rise, 1)}};
-                add_samples(f, contents, images, each, node, survey);
+            for (const Piece<S>& part : scratch.parts) {
+              ColumnConditioning<S>& poses = scratch.poses;
+              poses.clear();
+              for (const double node : inner_rule.node) {
+                const S rise = map_node(part, node).point;
+                poses.add(col.z_c(f, rise, 0), col.z_c(f, rise, 1));
               }
+              if (contents.conditioning) poses.compute({f.g.l_u, contents.gamma, s, c, col.x, col.sigma});
+              for (std::size_t n = 0; n < inner_rule.node.size(); ++n) {
+                const S each = outer * col.slope * delta_jacobian * map_node(part, inner_rule.node[n]).jacobian *
+                               (inner_rule.weight[k] * inner_rule.weight[n]);
+                const Node<S> node{theta, s, c, col.x, col.sigma, {poses.z_c[0][n], poses.z_c[1][n]}};
+                add_samples(f, contents, images, each, node, contents.conditioning ? poses.index[n] : S(0.0), survey);
+              }
+            }
           }
       }
     }

@@ -5,29 +5,72 @@
 // L_c).
 #pragma once
 
-#include "engine/mechanisms/four_ppa_two_par.hpp"
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "engine/core/instruction_set.hpp"
+#include "engine/math/lanes.hpp"
 #include "engine/model/conditioning.hpp"
 
 namespace pkm::four_ppa_two_par {
 
-/// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length.
-/// @param x, sigma, z_c  of the two limbs [m], lower branch
-/// @param gamma          a / (2 L_c)
+/// What the poses of one column have in common.
 template <class S>
-S conditioning(const Geometry<S>& g, const S& sin_theta, const S& cos_theta, const std::array<S, 2>& x,
-               const std::array<S, 2>& sigma, const std::array<S, 2>& z_c, const S& gamma) {
+struct ColumnPoses {
+  S l_u, gamma;  ///< gamma = a / (2 L_c)
+  S sin_theta, cos_theta;
+  std::array<S, 2> x, sigma;  ///< of the two limbs [m], lower branch
+};
+
+/// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length, 0 where J_q or G
+/// is singular. S may be lanes.
+template <class S, class T>
+S conditioning(const ColumnPoses<T>& column, const std::array<S, 2>& z_c) {
   constexpr double kRoot2 = 1.41421356237309504880;
   Rows3<S> m;  // columns x, z, theta
-  m[0] = {S(0.0), S(0.0), gamma * cos_theta * 2.0};
+  m[0] = {S(0.0), S(0.0), S(column.gamma * column.cos_theta * 2.0)};
   for (std::size_t j = 0; j < 2; ++j) {
-    const S h = root_or_zero(S((g.l_u - z_c[j]) * (g.l_u + z_c[j])));
-    const S below = h * sigma[j];  // k_j = h sigma / (-z_c l_d)
-    if (!(value_of(below) > 0) || !(value_of(z_c[j]) < 0)) return S(0.0);
-    const S scale = z_c[j] * -kRoot2 / below;  // (sqrt2 / k_j) / l_d
+    const S h = root_or_zero(S((column.l_u - z_c[j]) * (column.l_u + z_c[j])));
+    const S below = h * column.sigma[j];  // k_j = h sigma / (-z_c l_d)
+    const auto hangs = (value_of(below) > 0.0) & (value_of(z_c[j]) < 0.0);
+    const S scale = select(hangs, S(z_c[j] * -kRoot2 / below), S(0.0));  // (sqrt2 / k_j) / l_d
     const double sign = j == 0 ? 1 : -1;
-    m[j + 1] = {scale * x[j], scale * sigma[j] * -sign, scale * x[j] * gamma * sin_theta * sign};
+    m[j + 1] = {S(scale * column.x[j]), S(scale * column.sigma[j] * -sign),
+                S(scale * column.x[j] * column.gamma * column.sin_theta * sign)};
   }
   return inverse_condition(m, S(4.0));  // the whole matrix is diag(2) and this 3 x 3
+}
+
+/// The same for `count` poses, kLanes at a time; arrays have room for a multiple of kLanes.
+template <InstructionSet set>
+void conditioning_of_poses(const ColumnPoses<double>& column, const double* z_c1, const double* z_c2, std::size_t count,
+                           double* result);
+
+/// Heights of poses of one column, and their conditioning.
+template <class S>
+struct ColumnConditioning {
+  std::array<std::vector<S>, 2> z_c;
+  std::vector<S> index;
+
+  void clear() { z_c[0].clear(), z_c[1].clear(); }
+  void add(const S& z_c1, const S& z_c2) { z_c[0].push_back(z_c1), z_c[1].push_back(z_c2); }
+  std::size_t size() const { return z_c[0].size(); }
+  void compute(const ColumnPoses<S>& column) {
+    const std::size_t count = size();
+    index.resize(count);
+    for (std::size_t i = 0; i < count; ++i) index[i] = conditioning<S>(column, {z_c[0][i], z_c[1][i]});
+  }
+};
+template <>
+inline void ColumnConditioning<double>::compute(const ColumnPoses<double>& column) {
+  const std::size_t count = size(), room = (count + kLanes - 1) / kLanes * kLanes;
+  index.resize(room);
+  for (auto& list : z_c) list.resize(room, list.empty() ? 0 : list.back());
+  with_instruction_set([&]<InstructionSet set>() {
+    conditioning_of_poses<set>(column, z_c[0].data(), z_c[1].data(), count, index.data());
+  });
+  for (auto& list : z_c) list.resize(count);
 }
 
 }  // namespace pkm::four_ppa_two_par

@@ -171,23 +171,36 @@ class VoxelSurveyor final : public Surveyor {
 
   void sample(const Geometry<double>& g, const Limits<double>& l, const SampleContents<double>& wanted,
               const ClearanceTest* test, double y, const VoxelGrid& grid, Survey<double>& survey) const {
-    counter_.visit_columns(
-        g, l, test, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-          const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
-          const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
-          const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
-                                               root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
-          for (std::int64_t j = first; j < end; ++j) {
-            const double z = grid.centre(1, j) + g.d;
-            const std::array<double, 2> z_c = {z + sigma[0], z + sigma[1]};
-            const double index = wanted.conditioning ? conditioning(g, s, c, x_j, sigma, z_c, wanted.gamma) : 0;
-            Coupling<double> inertia{};
-            if (wanted.inertia())
-              inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma, z_c), wanted.inertia_condition);
-            add_sample(wanted, survey.cell_volume, {x, y, grid.centre(1, j), grid.centre(2, k)}, index, inertia,
-                       survey);
-          }
-        });
+    // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
+    const bool together = !wanted.inertia() && !wanted.poses && !test;
+    const Halves halves = together ? counter_.halves(g, y, grid) : Halves{grid.cells[0], grid.cells[2], false, false};
+    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part) {
+      thread_local ColumnConditioning<double> poses;
+      counter_.visit_block(g, l, test, y, grid, block, halves,
+                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+                             const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
+                             const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
+                             const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
+                                                                  root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
+                             poses.clear();
+                             for (std::int64_t j = first; j < end; ++j) {
+                               const double z = grid.centre(1, j) + g.d;
+                               poses.add(z + sigma[0], z + sigma[1]);
+                             }
+                             if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
+                             const double weight = survey.cell_volume * halves.images(i, k);
+                             for (std::int64_t j = first; j < end; ++j) {
+                               const auto at = static_cast<std::size_t>(j - first);
+                               Coupling<double> inertia{};
+                               if (wanted.inertia())
+                                 inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma,
+                                                                  {poses.z_c[0][at], poses.z_c[1][at]}),
+                                                    wanted.inertia_condition);
+                               add_sample(wanted, weight, {x, y, grid.centre(1, j), grid.centre(2, k)},
+                                          wanted.conditioning ? poses.index[at] : 0, inertia, part);
+                             }
+                           });
+    });
   }
 
   SurveyPlan plan_;

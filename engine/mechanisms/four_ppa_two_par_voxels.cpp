@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/team.hpp"
+
 namespace pkm::four_ppa_two_par {
 
 bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, double y, double z, double sin_theta,
@@ -40,9 +42,19 @@ VoxelCounter::VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::
   }
 }
 
+Halves VoxelCounter::halves(const Geometry<double>& g, double y, const VoxelGrid& grid) const {
+  const bool middle = y == g.L0 / 2, theta = middle && even_;
+  const bool x = middle && grid.lower[0] == 0 && grid.upper[0] == g.b;
+  return {x ? (cells_[0] + 1) / 2 : cells_[0],
+          theta ? (cells_[2] + 1) / 2 : cells_[2],
+          x,
+          theta,
+          cells_[0] % 2 == 1,
+          cells_[2] % 2 == 1};
+}
+
 ColumnsAtThetas VoxelCounter::columns(const Geometry<double>& g, const Limits<double>& l, double y,
-                                      const VoxelGrid& grid, std::int64_t k_block, std::int64_t thetas,
-                                      std::int64_t xs) const {
+                                      const VoxelGrid& grid, std::int64_t k_block, const Halves& part) const {
   const auto k = static_cast<std::size_t>(k_block);
   return {g.a,
           g.b,
@@ -64,40 +76,41 @@ ColumnsAtThetas VoxelCounter::columns(const Geometry<double>& g, const Limits<do
           static_cast<double>(grid.cells[1]),
           &sin_[k],
           &cos_[k],
-          thetas - k_block,
-          xs};
+          part.thetas - k_block,
+          part.xs};
 }
 
 void VoxelCounter::fill_block(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                              std::int64_t k_block, ColumnBlock& block) const {
+                              std::int64_t k_block, const Halves& part, ColumnBlock& block) const {
   block.first.resize(static_cast<std::size_t>(cells_[0] * kLanes));
   block.end.resize(static_cast<std::size_t>(cells_[0] * kLanes));
-  const ColumnsAtThetas at = columns(g, l, y, grid, k_block, cells_[2], cells_[0]);
+  const ColumnsAtThetas at = columns(g, l, y, grid, k_block, part);
   with_instruction_set([&]<InstructionSet set>() { fill<set>(at, block); });
 }
 
 std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test,
                                  double y, const VoxelGrid& grid, bool& touches) const {
   if (test) return count_clear(g, l, *test, y, grid, touches);
-  // On the middle plane both limbs have the same stroke: the count is even in theta, and symmetric in x if the box is.
-  const bool middle = y == g.L0 / 2;
-  const bool half_theta = middle && even_;
-  const bool half_x = middle && grid.lower[0] == 0 && grid.upper[0] == g.b;
-  const std::int64_t thetas = half_theta ? (cells_[2] + 1) / 2 : cells_[2];
-  const std::int64_t xs = half_x ? (cells_[0] + 1) / 2 : cells_[0];
-  const bool centre_x = half_x && cells_[0] % 2 == 1, centre_theta = half_theta && cells_[2] % 2 == 1;
+  const Halves part = halves(g, y, grid);
+  thread_local std::vector<CellTally> tallies;
+  std::vector<CellTally>& found = tallies;  // this thread's, also for the others of the team
+  found.resize(blocks(part));
+  const auto work = [&](std::size_t block) {
+    const ColumnsAtThetas at = columns(g, l, y, grid, static_cast<std::int64_t>(block) * kLanes, part);
+    found[block] = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at); });
+  };
+  share_pieces(found.size(), work);
   double total = 0;  // whole numbers
   touches = false;
-  for (std::int64_t k_block = 0; k_block < thetas; k_block += kLanes) {
-    const ColumnsAtThetas at = columns(g, l, y, grid, k_block, thetas, xs);
-    const CellTally t = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at); });
-    for (std::int64_t k = k_block; k < std::min(k_block + kLanes, thetas); ++k) {
+  for (std::size_t block = 0; block < found.size(); ++block) {
+    const CellTally& t = found[block];
+    const auto k_block = static_cast<std::int64_t>(block) * kLanes;
+    for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k) {
       const std::int64_t lane = k - k_block;
-      double sum = t.cells[lane];
-      if (sum == 0) continue;
-      touches = touches || k == 0 || k == cells_[2] - 1 || t.in_first[lane] > 0 || (!half_x && t.in_last[lane] > 0);
-      if (half_x) sum = 2 * sum - (centre_x ? t.in_last[lane] : 0);
-      total += half_theta && !(centre_theta && k == thetas - 1) ? 2 * sum : sum;
+      if (t.cells[lane] == 0) continue;
+      const double last = t.in_last[lane];
+      touches = touches || k == 0 || k == cells_[2] - 1 || t.in_first[lane] > 0 || (!part.mirrored_x && last > 0);
+      total += (t.cells[lane] - last) * part.images(0, k) + last * part.images(part.xs - 1, k);
     }
     touches = touches || t.lowest || t.highest;
   }

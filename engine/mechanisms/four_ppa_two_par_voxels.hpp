@@ -20,6 +20,20 @@ bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, doub
 /// z in [-(l_u + l_d + d), -d], theta in [-pi/2, pi/2].
 Box default_box(const Geometry<double>& g);
 
+/// The part of a grid that has all: on the middle plane both limbs have the same stroke, so that what is feasible is
+/// even in theta where the grid is, and symmetric in x where the box is.
+struct Halves {
+  std::int64_t xs, thetas;  ///< from the first
+  bool mirrored_x, mirrored_theta;
+  bool centre_x = false, centre_theta = false;  ///< the last one is its own image
+
+  /// How many columns the one at x index i and theta index k stands for.
+  double images(std::int64_t i, std::int64_t k) const {
+    return (mirrored_x && !(centre_x && i == xs - 1) ? 2 : 1) *
+           (mirrored_theta && !(centre_theta && k == thetas - 1) ? 2 : 1);
+  }
+};
+
 /// Counts cells of grids with a fixed number of cells.
 class VoxelCounter {
  public:
@@ -33,25 +47,36 @@ class VoxelCounter {
   std::int64_t count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
                      const VoxelGrid& grid, bool& touches) const;
 
+  Halves halves(const Geometry<double>& g, double y, const VoxelGrid& grid) const;
+  /// How many blocks of neighbouring thetas there are.
+  std::size_t blocks(const Halves& part) const { return static_cast<std::size_t>((part.thetas + kLanes - 1) / kLanes); }
+
   /// Calls visit(i, j_first, j_end, k) for every run [j_first, j_end) of feasible z cells at x index i and theta index
-  /// k. There is one run at most, unless `test` cuts it.
+  /// k of one block. There is one run at most, unless `test` cuts it.
+  template <class Visit>
+  void visit_block(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
+                   const VoxelGrid& grid, std::size_t block, const Halves& part, const Visit& visit) const {
+    thread_local ColumnBlock columns;
+    const auto k_block = static_cast<std::int64_t>(block) * kLanes;
+    fill_block(g, l, y, grid, k_block, part, columns);
+    for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k)
+      for (std::int64_t i = columns.x_begin; i < columns.x_end; ++i) {
+        const auto at = static_cast<std::size_t>(i * kLanes + k - k_block);
+        const auto first = static_cast<std::int64_t>(columns.first[at]),
+                   end = static_cast<std::int64_t>(columns.end[at]);
+        if (!(first < end)) continue;
+        if (test)
+          visit_clear_runs(g, *test, grid, i, first, end, k, visit);
+        else
+          visit(i, first, end, k);
+      }
+  }
+  /// The same for the whole grid.
   template <class Visit>
   void visit_columns(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
                      const VoxelGrid& grid, const Visit& visit) const {
-    ColumnBlock block;
-    for (std::int64_t k_block = 0; k_block < cells_[2]; k_block += kLanes) {
-      fill_block(g, l, y, grid, k_block, block);
-      for (std::int64_t k = k_block; k < std::min(k_block + kLanes, cells_[2]); ++k)
-        for (std::int64_t i = block.x_begin; i < block.x_end; ++i) {
-          const auto at = static_cast<std::size_t>(i * kLanes + k - k_block);
-          if (!(block.first[at] < block.end[at])) continue;
-          const auto first = static_cast<std::int64_t>(block.first[at]), end = static_cast<std::int64_t>(block.end[at]);
-          if (test)
-            visit_clear_runs(g, *test, grid, i, first, end, k, visit);
-          else
-            visit(i, first, end, k);
-        }
-    }
+    const Halves all{cells_[0], cells_[2], false, false};
+    for (std::size_t block = 0; block < blocks(all); ++block) visit_block(g, l, test, y, grid, block, all, visit);
   }
 
   double sin_theta(std::int64_t k) const { return sin_[static_cast<std::size_t>(k)]; }
@@ -75,9 +100,9 @@ class VoxelCounter {
   std::int64_t count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test, double y,
                            const VoxelGrid& grid, bool& touches) const;
   void fill_block(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                  std::int64_t k_block, ColumnBlock& block) const;
+                  std::int64_t k_block, const Halves& part, ColumnBlock& block) const;
   ColumnsAtThetas columns(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                          std::int64_t k_block, std::int64_t thetas, std::int64_t xs) const;
+                          std::int64_t k_block, const Halves& part) const;
 
   std::array<std::int64_t, 3> cells_;
   std::vector<double> sin_, cos_;  ///< of every theta, filled up to a whole block

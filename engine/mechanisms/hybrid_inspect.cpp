@@ -38,7 +38,7 @@ void add_velocity(const Geometry<double>& g, const Pose<double>& pose, const Joi
   report.J = as_eigen(influence(g, pose, j).G);
   const Rows3<double> J = homogeneous_jacobian(pose.z, j, g.e);  // L_c = e
   report.conditioning = inverse_condition(J);
-  const ExtremeSingularValues s = extreme_singular_values(J);
+  const ExtremeSingularValues<double> s = extreme_singular_values(J);
   const bool has_pair = s.pair_2 > 0;  // else J has rank 1, and sigma_2 = 0
   report.indices = {{"sigma_1", std::sqrt(s.greatest_2)},
                     {"sigma_2", has_pair ? std::sqrt(s.pair_2 / s.greatest_2) : 0},

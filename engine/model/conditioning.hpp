@@ -95,8 +95,8 @@ S cos_of_a_third(const S& t) {
   return r;
 }
 
-/// Largest eigenvalue of a positive semidefinite matrix, to a few ulp, also where two eigenvalues (nearly) meet; NaN
-/// for the zero matrix.
+/// Largest eigenvalue of a positive semidefinite matrix of doubles or lanes, to a few ulp, also where two eigenvalues
+/// (nearly) meet; NaN for the zero matrix.
 ///
 /// With m the mean of the eigenvalues and p the root of a sixth of the sum of their squared distances to it, it is
 /// m + 2 p cos(phi), where p^3 (cos 3 phi, sin 3 phi) = (det(A - m) / 2, sqrt(D / 108)) and D is the discriminant.
@@ -127,10 +127,10 @@ S largest_eigenvalue(const Symmetric3<S>& matrix) {
   const S cosine = (x * (y * z - gg) - f * (f * z - g * h) + h * (f * g - y * h)) * 0.5;  // p^3 cos(3 phi)
   const S sine_2 = discriminant * (1.0 / 108);                                            // p^6 sin(3 phi)^2
   const S cube = root_or_zero(S(cosine * cosine + sine_2));                               // p^3
-  if (!(value_of(cube) > 0)) return trace * (p * 2.0 + third);                            // all three are equal
-  const S more = value_of(cosine) >= 0 ? S(cube + cosine) : S(sine_2 / (cube - cosine));  // p^3 (1 + cos(3 phi))
+  const S more = select(cosine >= 0.0, S(cube + cosine), S(sine_2 / (cube - cosine)));    // p^3 (1 + cos(3 phi))
   const S r = cos_of_a_third(root_or_zero(S(more / (cube * 2.0))));
-  return trace * (p * 2.0 * (r * r * 2.0 - 1.0) + third);
+  const S factor = select(cube > 0.0, S(r * r * 2.0 - 1.0), S(1.0));  // 1: all three are equal
+  return trace * (p * 2.0 * factor + third);
 }
 
 /// The eigenvector of length 1 to the largest eigenvalue of a positive semidefinite matrix: the adjugate of
@@ -149,19 +149,21 @@ inline std::array<double, 3> eigenvector_of_largest(const Symmetric3<double>& ma
   return v;
 }
 
-/// What leads to the extreme singular values of a 3 x 3 matrix in closed form.
+/// What leads to the extreme singular values of a 3 x 3 matrix of doubles or lanes, in closed form.
+template <class S>
 struct ExtremeSingularValues {
-  Rows3<double> cofactors;
-  double determinant;
-  Symmetric3<double> square, square_of_cofactors;  ///< M M^T, C C^T
-  double greatest_2, pair_2;                       ///< sigma_1^2, (sigma_1 sigma_2)^2
-  double least_2() const { return determinant * determinant / pair_2; }
+  Rows3<S> cofactors;
+  S determinant;
+  Symmetric3<S> square, square_of_cofactors;  ///< M M^T, C C^T
+  S greatest_2, pair_2;                       ///< sigma_1^2, (sigma_1 sigma_2)^2
+  S least_2() const { return determinant * determinant / pair_2; }
 };
-inline ExtremeSingularValues extreme_singular_values(const Rows3<double>& m) {
-  const auto cross = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
-    return std::array<double, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+template <class S>
+ExtremeSingularValues<S> extreme_singular_values(const Rows3<S>& m) {
+  const auto cross = [](const std::array<S, 3>& a, const std::array<S, 3>& b) {
+    return std::array<S, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
-  ExtremeSingularValues s;
+  ExtremeSingularValues<S> s;
   s.cofactors = {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])};
   s.determinant = m[0][0] * s.cofactors[0][0] + m[0][1] * s.cofactors[0][1] + m[0][2] * s.cofactors[0][2];
   s.square_of_cofactors = gram(s.cofactors);
@@ -172,18 +174,21 @@ inline ExtremeSingularValues extreme_singular_values(const Rows3<double>& m) {
 }
 
 /// Inverse condition number from the squares of the extreme singular values.
-inline double inverse_condition_of(double least_2, double greatest_2) {
-  const bool usable = least_2 > 0 && greatest_2 < 1e300;
-  return usable ? std::sqrt(least_2 / greatest_2) : 0.0;
+template <class S>
+S inverse_condition_of(const S& least_2, const S& greatest_2) {
+  return select((least_2 > 0.0) & (greatest_2 < 1e300), S(sqrt(S(least_2 / greatest_2))), S(0.0));
 }
 
-/// The same as inverse_condition for 3 x 3, in closed form. Relative error a few ulp where the determinant and the
-/// cofactors, computed as written here, have no cancellation; a few ulp of sigma_1 / sigma_2 otherwise.
+/// The same as inverse_condition for 3 x 3 matrices of doubles or lanes, in closed form. Relative error a few ulp where
+/// the determinant and the cofactors, computed as written here, have no cancellation; a few ulp of sigma_1 / sigma_2
+/// otherwise.
 /// @param extra  square of one more singular value, of a block that is diagonal already; < 0: none
-inline double inverse_condition(const Rows3<double>& m, double extra = -1) {
-  const ExtremeSingularValues s = extreme_singular_values(m);
-  if (!(extra >= 0)) return inverse_condition_of(s.least_2(), s.greatest_2);
-  return inverse_condition_of(min(s.least_2(), extra), max(s.greatest_2, extra));
+template <class S>
+S inverse_condition(const Rows3<S>& m, const S& extra = S(-1.0)) {
+  const ExtremeSingularValues<S> s = extreme_singular_values(m);
+  const S least_2 = s.least_2(), greatest_2 = s.greatest_2;
+  return inverse_condition_of(select((extra >= 0.0) & (extra < least_2), extra, least_2),
+                              select((extra >= 0.0) & (extra > greatest_2), extra, greatest_2));
 }
 
 /// The same with derivatives. Where two singular values meet and the extreme one so has a kink, they are those of one
@@ -193,7 +198,7 @@ Dual<N> inverse_condition(const Rows3<Dual<N>>& m, const Dual<N>& extra = Dual<N
   Rows3<double> plain;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) plain[i][j] = m[i][j].a;
-  const ExtremeSingularValues s = extreme_singular_values(plain);
+  const ExtremeSingularValues<double> s = extreme_singular_values(plain);
   const bool extra_is_least = extra.a >= 0 && extra.a<s.least_2(), extra_is_greatest = extra.a> s.greatest_2;
   Dual<N> result(
       inverse_condition_of(extra_is_least ? extra.a : s.least_2(), extra_is_greatest ? extra.a : s.greatest_2));

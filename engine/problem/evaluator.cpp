@@ -1,7 +1,5 @@
 #include "engine/problem/evaluator.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -45,16 +43,13 @@ void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t f
   }
 }
 
-// What the batch from `first` on will take on one thread, from the designs evaluated just before it; unknown: infinite.
-double expected_seconds(const EvaluationTable& table, std::size_t first) {
-  if (first == 0) return std::numeric_limits<double>::infinity();
+// What a design takes on one thread, from those evaluated last; unknown: 0.
+double seconds_each(const EvaluationTable& table, std::size_t first) {
   const std::size_t sample = std::min<std::size_t>(first, 100);
   double sum = 0;
   for (std::size_t row = first - sample; row < first; ++row) sum += static_cast<double>(table.seconds[row]);
-  return sum / static_cast<double>(sample) * static_cast<double>(table.size() - first);
+  return sample > 0 ? sum / static_cast<double>(sample) : 0;
 }
-
-constexpr double kWakeSeconds = 20e-6;  // a batch shorter than this is not worth waking a team for
 
 }  // namespace
 
@@ -62,20 +57,25 @@ void SerialEvaluator::evaluate(const Problem& problem, EvaluationTable& table, s
   evaluate_rows(problem, table, first, table.size());
 }
 
-ParallelEvaluator::ParallelEvaluator(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {}
-
 void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
-  const std::size_t end = table.size(), count = end - first;
-  const auto team = std::min<std::size_t>(static_cast<std::size_t>(threads_), count);
-  if (team <= 1 || expected_seconds(table, first) < kWakeSeconds) {
-    evaluate_rows(problem, table, first, end);
-    return;
+  constexpr double kWorthSharing = 5e-6, kLong = 200e-6;  // s
+  const std::size_t end = table.size(), count = end - first, team = static_cast<std::size_t>(threads());
+  const double each = seconds_each(table, first);
+  const std::size_t rounds = (count + team - 1) / team;
+  const bool uneven = 4 * count < 3 * rounds * team;  // shared out, a quarter of the threads' time would be waiting
+  if (team == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing))
+    return evaluate_rows(problem, table, first, end);
+  if (count == 1 || (uneven && each > kLong)) {
+    const LentTeam within(team_);
+    return evaluate_rows(problem, table, first, end);
   }
-  // Handed out on demand, because designs differ in cost, and in pieces, so that threads seldom write one cache line.
+  // In pieces, because designs differ in cost, and of several, so that threads seldom write one cache line.
   const std::size_t piece = std::clamp<std::size_t>(count / (team * 16), 1, 64);
-#pragma omp parallel for num_threads(static_cast <int>(team)) schedule(dynamic)
-  for (std::size_t begin = first; begin < end; begin += piece)
+  const auto work = [&](std::size_t number) {
+    const std::size_t begin = first + number * piece;
     evaluate_rows(problem, table, begin, std::min(begin + piece, end));
+  };
+  team_.share((count + piece - 1) / piece, work);
 }
 
 }  // namespace pkm

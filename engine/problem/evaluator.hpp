@@ -1,6 +1,7 @@
 // Batch evaluation: an optimiser hands over a list of designs and gets a list of evaluations.
 #pragma once
 
+#include "engine/core/team.hpp"
 #include "engine/problem/problem.hpp"
 
 namespace pkm {
@@ -23,15 +24,17 @@ class SerialEvaluator final : public Evaluator {
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
 };
 
-/// On `threads` OpenMP threads (0: as many as the machine has cores).
+/// By a team of threads: it shares out the designs, or, where they are few and take long, what surveys have to share
+/// out within each.
 class ParallelEvaluator final : public Evaluator {
  public:
-  explicit ParallelEvaluator(int threads = 0);
+  /// @param threads  0: as many as the machine has cores
+  explicit ParallelEvaluator(int threads = 0) : team_(threads) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
-  int threads() const { return threads_; }
+  int threads() const { return team_.threads(); }
 
  private:
-  int threads_;
+  Team team_;
 };
 
 }  // namespace pkm

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/core/team.hpp"
 #include "engine/math/scalar.hpp"
 #include "engine/model/pose.hpp"
 
@@ -42,6 +43,33 @@ struct Survey {
     inertia_condition.clear();
   }
 };
+
+/// Appends the samples of another survey.
+template <class S>
+void append_samples(const Survey<S>& from, Survey<S>& to) {
+  const auto append = [](const auto& source, auto& target) {
+    target.insert(target.end(), source.begin(), source.end());
+  };
+  append(from.weight, to.weight);
+  append(from.conditioning, to.conditioning);
+  append(from.pose, to.pose);
+  for (std::size_t i = 0; i < to.dci.size(); ++i) append(from.dci[i], to.dci[i]);
+  append(from.inertia_condition, to.inertia_condition);
+}
+
+/// Calls fill(piece, survey) for every piece in [0, pieces), which is to add the piece's samples: in order, or, where a
+/// team is lent to this thread, shared out among it. The samples are the same, in the same order.
+template <class S, class Fill>
+void share_samples(std::size_t pieces, Survey<S>& survey, const Fill& fill) {
+  if (!has_team()) {
+    for (std::size_t piece = 0; piece < pieces; ++piece) fill(piece, survey);
+    return;
+  }
+  std::vector<Survey<S>> parts(pieces);
+  const auto work = [&](std::size_t piece) { fill(piece, parts[piece]); };
+  share_pieces(pieces, work);
+  for (const Survey<S>& part : parts) append_samples(part, survey);
+}
 
 /// The values of a survey with derivatives.
 template <class S>

@@ -5,11 +5,6 @@
 namespace pkm {
 namespace {
 
-template <class S>
-void append(const std::vector<S>& from, std::vector<S>& to) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
 class SurveySet final : public Surveyor {
  public:
   SurveySet(const Mechanism& mechanism, const SurveyPlan& plan, const Demand& demand) {
@@ -40,11 +35,8 @@ class SurveySet final : public Surveyor {
       survey.touches_box = survey.touches_box || one.touches_box;
       survey.columns += one.columns;
       survey.error = std::max(survey.error, one.error);
-      for (const S& weight : one.weight) survey.weight.push_back(weight * share);
-      append(one.conditioning, survey.conditioning);
-      append(one.pose, survey.pose);
-      for (std::size_t i = 0; i < survey.dci.size(); ++i) append(one.dci[i], survey.dci[i]);
-      append(one.inertia_condition, survey.inertia_condition);
+      for (S& weight : one.weight) weight *= share;
+      append_samples(one, survey);
     }
   }
 

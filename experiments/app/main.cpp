@@ -1,9 +1,6 @@
 // pkmopt: the command-line program.
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -84,18 +81,9 @@ int run(int argc, char** argv) {
   return session.exit_code;
 }
 
-/// libgomp's threads spin while they wait, which stalls a run by orders of magnitude where other programs use the
-/// cores. It reads its settings before main, so the program starts itself once more with waiting threads put to sleep.
-void start_with_sleeping_threads(char** argv) {
-  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
-  setenv("OMP_WAIT_POLICY", "passive", 0);
-  execv("/proc/self/exe", argv);  // returns only where there is no /proc; the run is then merely slower
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  start_with_sleeping_threads(argv);
   try {
     return run(argc, argv);
   } catch (const pkm::ConfigError& error) {

@@ -25,7 +25,6 @@ const std::vector<Library> kLibraries = {
     {"Random123/", {"engine/math"}},
     {"toml++/", {"engine/setup"}},
     {"muParser", {"engine/math"}},
-    {"omp.h", {"engine/problem"}},
     {"mpi.h", {"engine/problem"}},
     {"nlopt", {"engine/optimisers"}},
     {"coin", {"engine/optimisers"}},

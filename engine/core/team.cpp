@@ -1,0 +1,101 @@
+#include "engine/core/team.hpp"
+
+#include <chrono>
+
+namespace pkm {
+namespace {
+
+constexpr std::uint64_t kNoPiece = 0xffffffff;  // in the lower half of next_: none can be taken
+constexpr auto kSpin = std::chrono::microseconds(100);
+
+thread_local Team* lent = nullptr;
+
+void pause() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#endif
+}
+
+/// Waits until the value is another one: awake for a moment, then asleep.
+void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
+  constexpr int kLooks = 64;  // between two looks at the clock
+  const auto end = std::chrono::steady_clock::now() + kSpin;
+  do {
+    for (int i = 0; i < kLooks; ++i) {
+      if (value.load(std::memory_order_acquire) != old) return;
+      pause();
+    }
+  } while (std::chrono::steady_clock::now() < end);
+  value.wait(old, std::memory_order_acquire);
+}
+
+}  // namespace
+
+Team::Team(int threads) : next_(kNoPiece) {
+  if (threads <= 0) threads = static_cast<int>(std::thread::hardware_concurrency());
+  for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+}
+
+Team::~Team() {
+  ends_.store(true, std::memory_order_relaxed);
+  jobs_.fetch_add(1, std::memory_order_release);
+  jobs_.notify_all();
+  for (std::thread& helper : helpers_) helper.join();
+}
+
+void Team::share(std::size_t pieces, PieceRef work) {
+  if (pieces == 0) return;
+  const std::uint64_t job = (next_.load(std::memory_order_relaxed) >> 32) + 1;
+  object_.store(work.object_, std::memory_order_release);
+  call_.store(work.call_, std::memory_order_release);
+  pieces_.store(static_cast<std::uint32_t>(pieces), std::memory_order_release);
+  done_.store(0, std::memory_order_release);
+  next_.store(job << 32, std::memory_order_release);
+  if (!helpers_.empty()) {
+    jobs_.fetch_add(1, std::memory_order_release);
+    jobs_.notify_all();
+  }
+  Team* const mine = lent;
+  lent = nullptr;
+  take_pieces();
+  lent = mine;
+  for (std::uint32_t done = done_.load(std::memory_order_acquire); done != pieces;
+       done = done_.load(std::memory_order_acquire))
+    await_change(done_, done);
+  next_.store((job << 32) | kNoPiece, std::memory_order_relaxed);
+}
+
+/// Works on pieces until none is left.
+void Team::take_pieces() {
+  for (std::uint64_t next = next_.load(std::memory_order_acquire);;) {
+    const PieceRef work(object_.load(std::memory_order_acquire), call_.load(std::memory_order_acquire));
+    const std::uint32_t pieces = pieces_.load(std::memory_order_acquire);
+    const auto piece = static_cast<std::uint32_t>(next);
+    if (piece == kNoPiece || piece >= pieces) return;
+    if (!next_.compare_exchange_weak(next, next + 1, std::memory_order_acquire, std::memory_order_acquire)) continue;
+    work(piece);
+    if (done_.fetch_add(1, std::memory_order_release) + 1 == pieces) done_.notify_one();
+    next = next_.load(std::memory_order_acquire);
+  }
+}
+
+void Team::help() {
+  for (std::uint32_t seen = 0;;) {
+    await_change(jobs_, seen);
+    seen = jobs_.load(std::memory_order_acquire);
+    if (ends_.load(std::memory_order_relaxed)) return;
+    take_pieces();
+  }
+}
+
+LentTeam::LentTeam(Team& team) : before_(lent) { lent = &team; }
+LentTeam::~LentTeam() { lent = before_; }
+
+bool has_team() { return lent && lent->threads() > 1; }
+
+void share_pieces(std::size_t pieces, PieceRef work) {
+  if (lent) return lent->share(pieces, work);
+  for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
+}
+
+}  // namespace pkm

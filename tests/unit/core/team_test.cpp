@@ -1,0 +1,69 @@
+#include "engine/core/team.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace pkm {
+namespace {
+
+TEST(Team, DoesEveryPieceOnce) {
+  for (const int threads : {1, 2, 5}) {
+    Team team(threads);
+    EXPECT_EQ(team.threads(), threads);
+    for (const std::size_t pieces : {0, 1, 2, 3, 1000}) {
+      for (int job = 0; job < 200; ++job) {
+        std::vector<int> times(pieces);
+        const auto work = [&](std::size_t piece) { ++times[piece]; };
+        team.share(pieces, work);
+        ASSERT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(pieces));
+      }
+    }
+  }
+}
+
+TEST(Team, WakesThreadsThatSleep) {
+  Team team(2);
+  for (int job = 0; job < 3; ++job) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // longer than they spin
+    std::atomic<int> arrived = 0;
+    const auto meet = [&](std::size_t) {  // ends only if each piece is on a thread of its own
+      ++arrived;
+      while (arrived < 2) std::this_thread::yield();
+    };
+    team.share(2, meet);
+    EXPECT_EQ(arrived, 2);
+  }
+}
+
+TEST(Team, IsLentToOneThreadAndNotToItsPieces) {
+  Team team(3);
+  EXPECT_FALSE(has_team());
+  std::vector<std::size_t> order;
+  const auto note = [&](std::size_t piece) { order.push_back(piece); };
+  share_pieces(4, note);
+  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3}));
+  {
+    const LentTeam lent(team);
+    EXPECT_TRUE(has_team());
+    std::atomic<int> sum = 0, with_team = 0;
+    const auto outer = [&](std::size_t) {
+      if (has_team()) ++with_team;
+      const auto inner = [&](std::size_t piece) { sum += static_cast<int>(piece); };
+      share_pieces(10, inner);
+    };
+    share_pieces(50, outer);
+    EXPECT_EQ(sum, 50 * 45);
+    EXPECT_EQ(with_team, 0);
+    EXPECT_TRUE(has_team());
+  }
+  EXPECT_FALSE(has_team());
+}
+
+}  // namespace
+}  // namespace pkm
