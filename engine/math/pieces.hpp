@@ -75,7 +75,7 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
           (signature(middle) == now ? same : other) = middle;
         }
         add({moving(other), true, true}, now);
-        at = std::fmin(other, next);
+        at = other;
         now = signature(at);
       }
       at = next;

@@ -119,16 +119,20 @@ class VoxelSurveyor final : public Surveyor {
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
     if (!(stroke > 0)) return;
-    VoxelColumns columns(d, grid);
+    thread_local VoxelScratch scratch;
+    VoxelColumns columns(d, grid, scratch);
     const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
-    columns.visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
-      survey.feasible_cells += end - i;
-      survey.touches_box =
-          survey.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
-      if (demand_.conditioning)
-        add_conditioning(d.frame, demand_, grid.centre(1, j), grid.centre(2, k),
-                         static_cast<double>(end - i) * survey.cell_volume, survey);
-    });
+    if (d.clearance || demand_.conditioning)
+      columns.visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
+        survey.feasible_cells += end - i;
+        survey.touches_box =
+            survey.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
+        if (demand_.conditioning)
+          add_conditioning(d.frame, demand_, grid.centre(1, j), grid.centre(2, k),
+                           static_cast<double>(end - i) * survey.cell_volume, survey);
+      });
+    else
+      for (std::int64_t k = 0; k < grid.cells[2]; ++k) survey.feasible_cells += columns.count(k, survey.touches_box);
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
@@ -137,7 +141,8 @@ class VoxelSurveyor final : public Surveyor {
     const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
     VoxelMap m = grid.map();
     if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
-    VoxelColumns(d, grid).visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
+    VoxelScratch scratch;
+    VoxelColumns(d, grid, scratch).visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
       for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
     });
     return m;
