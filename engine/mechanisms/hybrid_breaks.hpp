@@ -66,6 +66,13 @@ S edge_at_end(const Section<S>& s, const Edge& edge, const StripEnd& end) {
   return edge.curve == tip(end) ? S(0.0) : edge_at(s, edge, height(s, end));
 }
 
+/// Whether areas behave like a power 3/2 beside an event: edges touch, or an end of z passes where a root begins.
+inline bool has_root(const Event& event) {
+  const auto is_tip = [](const StripEnd& end) { return tip(end) != kCurves; };
+  return event.kind == Event::Kind::touch || is_tip(event.first) ||
+         (event.kind == Event::Kind::heights && is_tip(event.second));
+}
+
 /// How far the two are apart: 0 at the break.
 template <class S>
 S distance(const Section<S>& s, const Event& event) {

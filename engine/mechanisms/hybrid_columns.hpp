@@ -62,7 +62,9 @@ void find_outer_pieces(const Frame<S>& f, const Frame<double>& plain, const Fram
                     : s.lower_known ? moving_break(f, still, s.lower, s.at_lower)
                                     : S(s.lower);
     const S upper = last ? f.l.beta_max : s.upper_known ? moving_break(f, still, s.upper, s.at_upper) : S(s.upper);
-    scratch.pieces.push_back({lower, upper, !first, !last});
+    const bool root_lower = !first && (!s.lower_known || has_root(s.at_lower)),
+               root_upper = !last && (!s.upper_known || has_root(s.at_upper));
+    scratch.pieces.push_back({lower, upper, root_lower, root_upper});
   }
 }
 
