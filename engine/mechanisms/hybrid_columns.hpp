@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "engine/math/quadrature.hpp"
+#include "engine/math/nested_quadrature.hpp"
 #include "engine/mechanisms/hybrid_breaks.hpp"
 
 namespace pkm::hybrid {
@@ -13,7 +13,7 @@ template <class S>
 struct ColumnScratch {
   BreakScratch breaks;
   std::vector<Piece<S>> pieces;  ///< one for each of the stretches
-  std::vector<Integral<S>> integrals;
+  std::vector<NestedPart<S>> parts;
   StripScratch strips;
   Structure structure;
 };
@@ -82,6 +82,15 @@ double roundoff(const Frame<S>& f, const std::vector<Piece<S>>& pieces) {
   double size = value_of(max(f.g.L1, max(f.g.L2, f.g.L3)));  // of the terms that the area is a difference of
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(value_of(f.lo[i])) + std::fabs(value_of(f.hi[i]));
   return 4e-16 * size * value_of(f.z_high) * (value_of(pieces.back().upper) - value_of(pieces.front().lower));
+}
+
+/// The integral of the sections' areas over the pieces [m^2 rad].
+template <class S>
+Integral<S> volume(const Frame<S>& f, double tolerance, ColumnScratch<S>& scratch) {
+  const auto areas = [&](std::size_t, std::span<const S> beta, S* area) {
+    for (const S& at : beta) *area++ = area_at(f, at, scratch);
+  };
+  return integrate_nested<S>(areas, scratch.pieces, tolerance, roundoff(f, scratch.pieces), scratch.parts);
 }
 
 /// Calls visit(z, length, weight) at the nodes of `rule` over z on every strip of the section: the exact length of the

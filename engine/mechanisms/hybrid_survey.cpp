@@ -63,8 +63,7 @@ class ColumnSurveyor final : public Surveyor {
     if (!(value_of(stroke) > 0)) return;
     find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     if (!fixed_) {
-      const Integral<S> volume = integrate<S>([&](const S& beta) { return area_at(f, beta, scratch); }, scratch.pieces,
-                                              plan_.tolerance, roundoff(f, scratch.pieces), scratch.integrals);
+      const Integral<S> volume = hybrid::volume(f, plan_.tolerance, scratch);
       survey.volume = volume.value * stroke;
       survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
       survey.columns = volume.evaluations;
