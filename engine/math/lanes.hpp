@@ -84,6 +84,9 @@ PKM_LANES LaneMask<W> operator|(const LaneMask<W>& x, const LaneMask<W>& y) {
   return r;
 }
 
+/// Lanes have no derivatives.
+PKM_LANES const Lanes<W>& value_of(const Lanes<W>& x) { return x; }
+
 /// x where the mask is set, y elsewhere.
 PKM_LANES Lanes<W> select(const LaneMask<W>& mask, const Lanes<W>& x, const Lanes<W>& y) {
   Lanes<W> r;

@@ -30,6 +30,12 @@ inline double acos(double x) { return portable::acos(x); }
 inline double exp(double x) { return portable::exp(x); }
 inline double log(double x) { return portable::log(x); }
 
+/// x if the condition holds, else y; both exist.
+template <class S>
+[[gnu::always_inline]] inline S select(bool condition, const S& x, const S& y) {
+  return condition ? x : y;
+}
+
 /// The smaller and the larger of two numbers, chosen by value.
 template <class S>
 S min(const S& a, const S& b) {
