@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kDepth = 16;  // of cuts: what could hide in 2^-16 of a range changes areas by some 1e-15
 
+constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+
 constexpr double kSearches = 1e-13;  // m, of heights found by different searches
 
 /// All curves' roots at one height.
@@ -44,7 +46,6 @@ bool of_chain(const Edge& first, const Edge& second) {
 /// Where `above` may come down to `below` between two heights at which it is not below it: at that height its least
 /// bound is negative; NaN: it stays above. A convex function lies above its tangents, a concave one above its chord.
 double may_meet(const Section<double>& s, const Edge& above, const Edge& below, const Node& p, const Node& q) {
-  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
   if (of_chain(above, below)) return kNowhere;
   const double high = sign_of(s, above), low = sign_of(s, below);
   const bool high_bends = high<0, low_bends = low> 0;  // convex, and the other concave
@@ -105,36 +106,38 @@ Gap gap(const Section<double>& s, const Edge& first, const Edge& second, double 
   return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
 }
 
-/// Where two edges on circles meet, as near z as there is a place between two heights, but for rounding that counts
-/// where circles touch; z itself if they don't meet or are no circles.
+/// Where two edges on circles meet, as near z as there is a place between two heights; NaN: nowhere, they are no circles,
+/// or so near to touching that rounding counts.
 double circles_meeting(const Section<double>& s, const Edge& first, const Edge& second, double z, double low,
                        double high) {
   const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
-  if (!circle(first) || !circle(second)) return z;
+  if (!circle(first) || !circle(second)) return kNowhere;
   const auto x = [&](const Edge& e) { return e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]; };  // centres and radii
   const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
   const double foot = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
   const double dx = x(second) - x(first), dz = 0.5 * (d.a - d.b) - foot, apart = 1 / (dx * dx + dz * dz);
   const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * apart), across2 = r1 * r1 * apart - along * along;
-  if (!(across2 >= 0)) return z;
-  const double across = std::sqrt(across2), start = z;
-  double least = std::numeric_limits<double>::infinity();
+  constexpr double kTouch = 1e-4;
+  if (!(across2 >= kTouch * along * along)) return kNowhere;
+  const double across = std::sqrt(across2);
+  double least = std::numeric_limits<double>::infinity(), nearest = kNowhere;
   for (const double h : {across, -across}) {
     const double at = foot + along * dz + h * dx, from_first = along * dx - h * dz, from_second = from_first - dx;
     const bool on_both = from_first * sign_of(s, first) >= 0 && from_second * sign_of(s, second) >= 0;
-    if (!on_both || !(at > low && at < high) || std::fabs(at - start) >= least) continue;
-    least = std::fabs(at - start);
-    z = at;
+    if (!on_both || !(at > low && at < high) || std::fabs(at - z) >= least) continue;
+    least = std::fabs(at - z);
+    nearest = at;
   }
-  return z;
+  return nearest;
 }
 
-/// Where two edges that have changed places between p and q meet: Newton's method, kept between them by bisection. The
-/// chain's meet at the same height on either side, to the last bit.
+/// Where two edges that have changed places between p and q meet: in closed form, or by Newton's method, kept between
+/// them by bisection. The chain's meet at the same height on either side, to the last bit.
 double meeting(const Section<double>& s, const Edge& first, const Edge& second, double p, double q) {
   if (of_chain(first, second)) return std::fmin(std::fmax(chain_meeting(s, first, second), p), q);
+  if (const double z = circles_meeting(s, first, second, 0.5 * (p + q), p, q); z == z) return z;
   const double at_p = gap(s, first, second, p).value, at_q = gap(s, first, second, q).value;
-  double z = circles_meeting(s, first, second, p - at_p * (q - p) / (at_q - at_p), p, q);
+  double z = p - at_p * (q - p) / (at_q - at_p);
   for (int step = 0; step < 80; ++step) {
     if (!(z > p && z < q)) z = 0.5 * (p + q);
     const Gap here = gap(s, first, second, z);
@@ -148,9 +151,9 @@ double meeting(const Section<double>& s, const Edge& first, const Edge& second, 
 
 /// Where two edges meet near z; NaN: not that near.
 double meeting_near(const Section<double>& s, const Edge& first, const Edge& second, double z) {
-  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
   if (of_chain(first, second)) return chain_meeting(s, first, second);
-  z = circles_meeting(s, first, second, z, 0, std::numeric_limits<double>::infinity());
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  if (const double at = circles_meeting(s, first, second, z, 0, kAnywhere); at == at) return at;
   double rises = 0;
   for (int step = 0; step < 8; ++step) {
     const Gap here = gap(s, first, second, z);
