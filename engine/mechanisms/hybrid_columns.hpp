@@ -1,6 +1,7 @@
 // Hybrid robot: exact volume, and weighted samples, by quadrature over beta of closed-form x-z sections.
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 
 #include "engine/math/nested_quadrature.hpp"
@@ -15,35 +16,35 @@ struct ColumnScratch {
   std::vector<Piece<S>> pieces;  ///< one for each of the stretches
   std::vector<NestedPart<S>> parts;
   StripScratch strips;
-  Structure structure;
+  Structure structure;  ///< of a beta outside of the pieces
 };
 
-/// Fills scratch.structure: that of the stretch around beta, followed from where it was asked for last.
+/// The structure of a section: that of the stretch around beta, followed from where it was asked for last.
 template <class S>
-void find_structure(const Section<double>& s, double beta, ColumnScratch<S>& scratch) {
-  for (std::size_t i = 0; i < scratch.pieces.size(); ++i) {
-    if (!(value_of(scratch.pieces[i].lower) < beta && beta < value_of(scratch.pieces[i].upper))) continue;
-    Structure& known = scratch.breaks.stretches[i].structure;
-    if (follow_strips(s, known)) {
-      scratch.structure = known;
-      return;
-    }
-    find_strips(s, scratch.strips, known);
-    scratch.structure = known;
-    return;
-  }
-  find_strips(s, scratch.strips, scratch.structure);
+const Structure& structure_of(const Section<double>& s, double beta, ColumnScratch<S>& scratch) {
+  const auto around = [&](const Piece<S>& p) { return value_of(p.lower) < beta && beta < value_of(p.upper); };
+  const auto piece = std::ranges::find_if(scratch.pieces, around);
+  const bool known = piece != scratch.pieces.end();
+  Structure& structure =
+      known ? scratch.breaks.stretches[static_cast<std::size_t>(piece - scratch.pieces.begin())].structure
+            : scratch.structure;
+  if (!known || !follow_strips(s, structure)) find_strips(s, scratch.strips, structure);
+  return structure;
 }
 
-/// The section at a beta, its strips in scratch.structure.
+/// A section with its structure.
 template <class S>
-Section<S> section_of(const Frame<S>& f, const S& beta, ColumnScratch<S>& scratch) {
-  Section<S> s = section(f, beta);
+struct Cut {
+  Section<S> section;
+  const Structure& structure;
+};
+template <class S>
+Cut<S> cut(const Frame<S>& f, const S& beta, ColumnScratch<S>& scratch) {
+  const Section<S> s = section(f, beta);
   if constexpr (std::is_same_v<S, double>)
-    find_structure(s, beta, scratch);
+    return {s, structure_of(s, beta, scratch)};
   else
-    find_structure(values(s), value_of(beta), scratch);
-  return s;
+    return {s, structure_of(values(s), value_of(beta), scratch)};
 }
 
 /// Fills scratch.pieces. Every decision depends on values only.
@@ -71,8 +72,8 @@ void find_outer_pieces(const Frame<S>& f, const Frame<double>& plain, const Fram
 /// Area of the section at a beta [m^2].
 template <class S>
 S area_at(const Frame<S>& f, const S& beta, ColumnScratch<S>& scratch) {
-  const Section<S> s = section_of(f, beta, scratch);
-  return area(s, scratch.structure);
+  const Cut<S> c = cut(f, beta, scratch);
+  return area(c.section, c.structure);
 }
 
 /// What rounding leaves of the integral of area_at over the pieces [m^2 rad].
@@ -98,8 +99,8 @@ Integral<S> volume(const Frame<S>& f, double tolerance, ColumnScratch<S>& scratc
 template <class S, class Visit>
 void visit_columns(const Frame<S>& f, const S& beta, const GaussRule& rule, ColumnScratch<S>& scratch,
                    const Visit& visit) {
-  const Section<S> s = section_of(f, beta, scratch);
-  for (const Strip& strip : scratch.structure.strips) {
+  const auto& [s, structure] = cut(f, beta, scratch);
+  for (const Strip& strip : structure.strips) {
     const Piece<S> piece{height(s, strip.from), height(s, strip.to), true, true};
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const auto [z, jacobian] = map_node(piece, rule.node[i]);

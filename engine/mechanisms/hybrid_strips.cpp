@@ -106,8 +106,8 @@ Gap gap(const Section<double>& s, const Edge& first, const Edge& second, double 
   return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
 }
 
-/// Where two edges on circles meet, as near z as there is a place between two heights; NaN: nowhere, they are no circles,
-/// or so near to touching that rounding counts.
+/// Where two edges on circles meet, as near z as there is a place between two heights; NaN: nowhere, they are no
+/// circles, or so near to touching that rounding counts.
 double circles_meeting(const Section<double>& s, const Edge& first, const Edge& second, double z, double low,
                        double high) {
   const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
