@@ -76,19 +76,26 @@ bool find_event(const Sample& lower, const Sample& upper, Event& event) {
     return take(covers);
   for (const StripEnd& at : {low, high, hole})
     if (at.z >= low.z && at.z <= high.z && find_crossing(lower, upper, at, event)) return true;
+  // the shortest strip that is not there on the other side, preferably one between two edges that no strip is between
+  // there; others may just end elsewhere
   bool closes = false;
   double least = std::numeric_limits<double>::infinity();
-  const auto closes_from = [&](const Structure& here, const Structure& there) {
+  const auto closes_from = [&](const Structure& here, const Structure& there, const auto& same) {
     for (const Strip& strip : here.strips) {
-      const bool stays = std::ranges::any_of(there.strips, [&](const Strip& of) { return alike(of, strip); });
+      const bool stays = std::ranges::any_of(there.strips, [&](const Strip& of) { return same(of, strip); });
       if (stays || strip.to.z - strip.from.z >= least) continue;
       least = strip.to.z - strip.from.z;
       event = closing(strip);
       closes = true;
     }
   };
-  closes_from(below, above);
-  closes_from(above, below);
+  const auto same_edges = [](const Strip& p, const Strip& q) { return p.left == q.left && p.right == q.right; };
+  const auto same_ends = [](const Strip& p, const Strip& q) { return alike(p, q); };
+  closes_from(below, above, same_edges);
+  closes_from(above, below, same_edges);
+  if (closes) return true;
+  closes_from(below, above, same_ends);
+  closes_from(above, below, same_ends);
   return closes;
 }
 
