@@ -186,7 +186,7 @@ class Search {
   }
 
  private:
-  static constexpr int kDepth = 40;
+  static constexpr int kDepth = 60;
 
   Sample& slot(std::size_t i) {
     while (scratch_.samples.size() <= i) scratch_.samples.emplace_back();
@@ -226,7 +226,7 @@ class Search {
   void explore(const Sample& low, const Sample& high, int depth) {
     if (low.structure.signature == high.structure.signature) return;
     const double length = high.beta - low.beta;
-    if (!(length > 3 * beside_) || depth == 0) {
+    if (!(length > 1e-13 * whole_) || depth == 0) {
       const double at = 0.5 * (low.beta + high.beta);
       end(at, nullptr);
       begin(at, nullptr, high);
@@ -242,8 +242,9 @@ class Search {
       used_ = used;
       return;
     }
-    const Sample& below = at - beside_ > low.beta ? sample(at - beside_) : low;
-    const Sample& above = at + beside_ < high.beta ? sample(at + beside_) : high;
+    const double beside = std::fmin(beside_, 0.1 * length);
+    const Sample& below = at - beside > low.beta ? sample(at - beside) : low;
+    const Sample& above = at + beside < high.beta ? sample(at + beside) : high;
     explore(low, below, depth - 1);
     if (below.structure.signature != above.structure.signature) {
       end(at, &event);
