@@ -168,7 +168,7 @@ class Search {
  public:
   Search(const Frame<double>& plain, const Frame<Dual<1>>& still, BreakScratch& scratch)
       : plain_(plain), still_(still), scratch_(scratch) {
-    constexpr std::size_t kSamples = 16;
+    constexpr std::size_t kSamples = 24;
     const double low = plain.l.beta_min, high = plain.l.beta_max;
     scratch_.count = 0;
     whole_ = high - low;
