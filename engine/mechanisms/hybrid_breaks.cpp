@@ -14,43 +14,6 @@ Event closing(const Strip& strip) {
   return {touch ? Event::Kind::touch : Event::Kind::heights, p, q, p.first, p.second};
 }
 
-/// Edges that change places at an end of z between two sections and matter there: those in force on one side of x,
-/// those of either side, or one of them and an end of the hole. false: there are none.
-bool find_crossing(const Sample& lower, const Sample& upper, const StripEnd& at, Event& event) {
-  const auto x_in = [&](const Sample& sample, const Edge& edge) { return edge_at_end(sample.section, edge, at); };
-  const auto in_force = [&](const Sample& sample, std::uint8_t side) {
-    Edge best{0, side};
-    double x = x_in(sample, best);
-    for (std::uint8_t k = 1; k < kCurveH; ++k) {
-      const double other = x_in(sample, {k, side});
-      if (side == 0 ? other <= x : other >= x) continue;
-      best.curve = k;
-      x = other;
-    }
-    return best;
-  };
-  const auto take = [&](const Edge& left, const Edge& right) {
-    event = {Event::Kind::edges, at, {}, left, right};
-    return true;
-  };
-  const Edge left = in_force(lower, 0), right = in_force(lower, 1);
-  if (const Edge other = in_force(upper, 0); other != left) return take(left, other);
-  if (const Edge other = in_force(upper, 1); other != right) return take(right, other);
-  const auto crosses = [&](const Edge& p, const Edge& q) {
-    return (x_in(lower, p) >= x_in(lower, q)) != (x_in(upper, p) >= x_in(upper, q));
-  };
-  const bool of_chain = left.curve >= kCurveQ && right.curve >= kCurveQ;  // -x and x meet at a tip only
-  if (!of_chain && crosses(left, right)) return take(left, right);
-  using Hole = Structure::Hole;
-  const Hole below = lower.structure.hole, above = upper.structure.hole;
-  const bool hole = at.kind == StripEnd::Kind::upper ? below == Hole::all && above == Hole::all
-                                                     : below != Hole::none && above != Hole::none;
-  for (const Edge& edge : {left, right})
-    for (const std::uint8_t side : {std::uint8_t{0}, std::uint8_t{1}})
-      if (hole && edge.curve < kCurveQ && crosses({kCurveH, side}, edge)) return take({kCurveH, side}, edge);
-  return false;
-}
-
 /// The event between two sections that have different structures; false: nothing is seen to meet.
 bool find_event(const Sample& lower, const Sample& upper, Event& event) {
   using Kind = StripEnd::Kind;
@@ -74,8 +37,23 @@ bool find_event(const Sample& lower, const Sample& upper, Event& event) {
     if (const Event closes{Event::Kind::heights, low, other, {}, {}}; changes(closes)) return take(closes);
   if (const Event covers{Event::Kind::heights, hole, high, {}, {}}; hole.z > low.z && changes(covers))
     return take(covers);
-  for (const StripEnd& at : {low, high, hole})
-    if (at.z >= low.z && at.z <= high.z && find_crossing(lower, upper, at, event)) return true;
+  for (const StripEnd& at : {low, high, hole}) {
+    if (at.z < low.z || at.z > high.z) continue;
+    std::array<Edge, 2 * kCurves> edge;
+    std::array<double, 2 * kCurves> in_s, in_t;
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+      edge[k] = {static_cast<std::uint8_t>(k / 2), static_cast<std::uint8_t>(k % 2)};
+      in_s[k] = edge_at_end(s, edge[k], at);
+      in_t[k] = edge_at_end(t, edge[k], at);
+    }
+    for (std::size_t i = 0; i < edge.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
+        const bool apart = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
+        if (!apart)
+          return take({Event::Kind::edges, at, {}, edge[j], edge[i]});  // the chain's -x and x never meet but at a tip
+      }
+  }
   // the shortest strip that is not there on the other side, preferably one between two edges that no strip is between
   // there; others may just end elsewhere
   bool closes = false;
