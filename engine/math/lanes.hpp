@@ -71,7 +71,6 @@ PKM_LANES Lanes<W> operator-(const Lanes<W>& x) {
   PKM_EACH_PART r.part[i] = -x.part[i];
   return r;
 }
-PKM_LANES const Lanes<W>& value_of(const Lanes<W>& x) { return x; }
 PKM_LANES Lanes<W>& operator+=(Lanes<W>& x, const Lanes<W>& y) { return x = x + y; }
 
 PKM_LANES LaneMask<W> operator&(const LaneMask<W>& x, const LaneMask<W>& y) {
@@ -84,6 +83,9 @@ PKM_LANES LaneMask<W> operator|(const LaneMask<W>& x, const LaneMask<W>& y) {
   PKM_EACH_PART r.part[i] = x.part[i] | y.part[i];
   return r;
 }
+
+/// Lanes have no derivatives.
+PKM_LANES const Lanes<W>& value_of(const Lanes<W>& x) { return x; }
 
 /// x where the mask is set, y elsewhere.
 PKM_LANES Lanes<W> select(const LaneMask<W>& mask, const Lanes<W>& x, const Lanes<W>& y) {

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "engine/math/quadrature.hpp"
@@ -28,15 +27,11 @@ struct Break {
 /// Fills `pieces` with those parts between the first and the last break on which the section is not empty.
 /// @param breaks     both ends of the outer coordinate and known breaks, in any order; sorted
 /// @param signature  of the section at a value of the outer coordinate, 0: empty
-/// @param moving     gives a break that was found its derivatives, from the ends of the range to which it was followed
-/// @param guess      where a change between two values of the outer coordinate may be; NaN or outside: anywhere
+/// @param moving     gives a break that was found its derivatives
 /// @param samples    of the signature over the whole range
-/// @param width      to which a change of the signature is followed, relative to the range; 0: to the last bits.
-/// Further
-///                   changes within 100 widths count as the same: what rounding makes of the structure near a break
-template <class S, class Signature, class Moving, class Guess>
-void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, const Moving& moving, const Guess& guess,
-                 int samples, std::vector<Piece<S>>& pieces, double width) {
+template <class S, class Signature, class Moving>
+void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, const Moving& moving, int samples,
+                 std::vector<Piece<S>>& pieces) {
   pieces.clear();
   if (breaks.empty()) return;
   std::sort(breaks.begin(), breaks.end(),
@@ -75,18 +70,12 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
       const std::uint64_t then = signature(next);
       for (int more = 0; more < 8 && now != then; ++more) {  // several breaks may lie between two samples
         double same = at, other = next;
-        for (int step = 0;; ++step) {
-          const double enough = std::fmax(width * whole, 1e-15 * (whole + std::fabs(other)));
-          if (!(other - same > enough)) break;
-          double middle = 0.5 * (same + other);
-          if (step % 5 < 4) {  // a good guess leaves less than `enough` on one side
-            const double here = guess(same, other);
-            if (here >= same && here <= other) middle = std::clamp(here, same + 0.5 * enough, other - 0.5 * enough);
-          }
+        while (other - same > 1e-15 * (whole + std::fabs(other))) {
+          const double middle = 0.5 * (same + other);
           (signature(middle) == now ? same : other) = middle;
         }
-        add({moving(same, other), true, true}, now);
-        at = std::fmin(other + 100 * width * whole, next);
+        add({moving(other), true, true}, now);
+        at = other;
         now = signature(at);
       }
       at = next;
@@ -94,16 +83,6 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
     }
     add(to, now);
   }
-}
-
-/// The same without guesses, changes followed by bisection.
-/// @param moving  takes the upper end of the range
-template <class S, class Signature, class Moving>
-void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, const Moving& moving, int samples,
-                 std::vector<Piece<S>>& pieces, double width = 0) {
-  const auto nowhere = [](double, double) { return std::numeric_limits<double>::quiet_NaN(); };
-  const auto moving_at = [&](double, double at) { return moving(at); };
-  find_pieces(breaks, signature, moving_at, nowhere, samples, pieces, width);
 }
 
 }  // namespace pkm

@@ -66,6 +66,13 @@ struct Integral {
 /// What is known of an integrand between the ends of its pieces.
 enum class Between { smooth, kinks };
 
+/// QUADPACK's estimate of the error of a smooth integrand: the difference of two rules, sharpened where it is small.
+/// @param spread  integral of the distance to the mean
+inline double sharpened_error(double difference, double spread) {
+  const double ratio = spread > 0 ? 200 * difference / spread : 0;
+  return ratio > 0 ? spread * std::fmin(1.0, ratio * std::sqrt(ratio)) : 0;
+}
+
 /// One application of the 15-point rule to a piece. The error estimate of a smooth integrand is that of QUADPACK: the
 /// difference to the 7-point rule, sharpened where it is small. That errs by a factor of 100 and more on the safe side
 /// where there are kinks; then it is the difference itself.
@@ -86,9 +93,7 @@ Integral<S> integrate_piece(const F& f, const Piece<S>& piece, Between between =
   double spread = 0;
   for (std::size_t i = 0; i < KronrodRule::kNodes; ++i) spread += rule.weight[i] * std::fabs(values[i] - mean);
   const double difference = std::fabs(mean - gauss);
-  const double ratio = spread > 0 ? 200 * difference / spread : 0;
-  result.error = ratio > 0 ? spread * std::fmin(1.0, ratio * std::sqrt(ratio)) : 0;
-  if (between == Between::kinks) result.error = difference;
+  result.error = between == Between::kinks ? difference : sharpened_error(difference, spread);
   result.evaluations = KronrodRule::kNodes;
   return result;
 }

@@ -30,9 +30,9 @@ inline double acos(double x) { return portable::acos(x); }
 inline double exp(double x) { return portable::exp(x); }
 inline double log(double x) { return portable::log(x); }
 
-/// x where the condition holds, else y; both are computed. With lanes (lanes.hpp) the condition is a mask.
+/// x if the condition holds, else y; both exist.
 template <class S>
-S select(bool condition, const S& x, const S& y) {
+[[gnu::always_inline]] inline S select(bool condition, const S& x, const S& y) {
   return condition ? x : y;
 }
 

@@ -26,7 +26,7 @@ struct ColumnPoses {
 /// Inverse condition number of J = J_q^-1 G with the theta column divided by a characteristic length, 0 where J_q or G
 /// is singular. S may be lanes.
 template <class S, class T>
-S conditioning(const ColumnPoses<T>& column, const std::array<S, 2>& z_c) {
+[[gnu::always_inline]] inline S conditioning(const ColumnPoses<T>& column, const std::array<S, 2>& z_c) {
   constexpr double kRoot2 = 1.41421356237309504880;
   Rows3<S> m;  // columns x, z, theta
   m[0] = {S(0.0), S(0.0), S(column.gamma * column.cos_theta * 2.0)};

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "engine/mechanisms/hybrid_meetings.hpp"
 
 namespace pkm::hybrid {
 namespace {
@@ -28,23 +29,13 @@ Node node_at(const Section<double>& s, double z) {
   return n;
 }
 
-double sign_of(const Section<double>& s, const Edge& e) {
-  return e.side == 0 ? s.sign_lo[e.curve] : s.sign_hi[e.curve];
-}
 double place(const Section<double>& s, const Edge& e, const Node& n) {
   return (e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]) + n.root[e.curve] * sign_of(s, e);
-}
-
-/// Both belong to the chain, on one side: they differ as Q, P, lw_max cos(phi_max), lw_min cos(phi_max) do, which are
-/// linear in z.
-bool of_chain(const Edge& first, const Edge& second) {
-  return first.curve >= kCurveQ && second.curve >= kCurveQ && first.side == second.side;
 }
 
 /// Where `above` may come down to `below` between two heights at which it is not below it: at that height its least
 /// bound is negative; NaN: it stays above. A convex function lies above its tangents, a concave one above its chord.
 double may_meet(const Section<double>& s, const Edge& above, const Edge& below, const Node& p, const Node& q) {
-  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
   if (of_chain(above, below)) return kNowhere;
   const double high = sign_of(s, above), low = sign_of(s, below);
   const bool high_bends = high<0, low_bends = low> 0;  // convex, and the other concave
@@ -76,90 +67,6 @@ double may_meet(const Section<double>& s, const Edge& above, const Edge& below, 
   }
   if (least >= 0) return kNowhere;
   return p.z + std::fmin(std::fmax(along, 0.1 * width), 0.9 * width);
-}
-
-/// Where the chain's edges meet on one side.
-double chain_meeting(const Section<double>& s, const Edge& first, const Edge& second) {
-  const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
-  return (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
-}
-
-/// How far one edge is right of another.
-struct Gap {
-  double value, slope, bend;  ///< the last bounds the second derivative
-  double step() const { return -value / slope; }
-  /// Whether what Newton's method does after this step is below rounding.
-  bool last(double z) const {
-    constexpr double kRelative = 1e-17;
-    return step() * step() * bend <= kRelative * z * std::fabs(slope);
-  }
-};
-Gap gap(const Section<double>& s, const Edge& first, const Edge& second, double z) {
-  const auto at = [&](const Edge& e) {
-    const Curve<double>& c = s.curve[e.curve];
-    const double root = c.root(z), slope = c.slope(z, root), sign = sign_of(s, e);
-    return Gap{(e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]) + root * sign, sign * slope,
-               (std::fabs(c.curvature()) + slope * slope) / root};
-  };
-  const Gap a = at(first), b = at(second);
-  return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
-}
-
-/// Where two edges on circles meet, as near z as there is a place between two heights, but for rounding that counts
-/// where circles touch; z itself if they don't meet or are no circles.
-double circles_meeting(const Section<double>& s, const Edge& first, const Edge& second, double z, double low,
-                       double high) {
-  const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
-  if (!circle(first) || !circle(second)) return z;
-  const auto x = [&](const Edge& e) { return e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]; };  // centres and radii
-  const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
-  const double foot = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
-  const double dx = x(second) - x(first), dz = 0.5 * (d.a - d.b) - foot, apart = 1 / (dx * dx + dz * dz);
-  const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * apart), across2 = r1 * r1 * apart - along * along;
-  if (!(across2 >= 0)) return z;
-  const double across = std::sqrt(across2), start = z;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double h : {across, -across}) {
-    const double at = foot + along * dz + h * dx, from_first = along * dx - h * dz, from_second = from_first - dx;
-    const bool on_both = from_first * sign_of(s, first) >= 0 && from_second * sign_of(s, second) >= 0;
-    if (!on_both || !(at > low && at < high) || std::fabs(at - start) >= least) continue;
-    least = std::fabs(at - start);
-    z = at;
-  }
-  return z;
-}
-
-/// Where two edges that have changed places between p and q meet: Newton's method, kept between them by bisection. The
-/// chain's meet at the same height on either side, to the last bit.
-double meeting(const Section<double>& s, const Edge& first, const Edge& second, double p, double q) {
-  if (of_chain(first, second)) return std::fmin(std::fmax(chain_meeting(s, first, second), p), q);
-  const double at_p = gap(s, first, second, p).value, at_q = gap(s, first, second, q).value;
-  double z = circles_meeting(s, first, second, p - at_p * (q - p) / (at_q - at_p), p, q);
-  for (int step = 0; step < 80; ++step) {
-    if (!(z > p && z < q)) z = 0.5 * (p + q);
-    const Gap here = gap(s, first, second, z);
-    ((here.value >= 0) == (at_p >= 0) ? p : q) = z;
-    if (!(q - p > 4e-16 * z)) break;
-    z += here.step();
-    if (here.last(z)) return std::fmin(std::fmax(z, p), q);
-  }
-  return z;
-}
-
-/// Where two edges meet near z; NaN: not that near.
-double meeting_near(const Section<double>& s, const Edge& first, const Edge& second, double z) {
-  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-  if (of_chain(first, second)) return chain_meeting(s, first, second);
-  z = circles_meeting(s, first, second, z, 0, std::numeric_limits<double>::infinity());
-  double rises = 0;
-  for (int step = 0; step < 8; ++step) {
-    const Gap here = gap(s, first, second, z);
-    if (step == 0) rises = here.slope;
-    if (!(rises * here.slope > 0)) return kNowhere;
-    z += here.step();
-    if (here.last(z)) return z;
-  }
-  return kNowhere;
 }
 
 /// The curves of one side in force over a range of z.

@@ -105,16 +105,24 @@ S height(const Section<S>& s, const StripEnd& end) {
   return by_z != 0 ? S(z - (apart - value_of(apart)) / by_z) : z;
 }
 
-/// Area of a section in closed form [m^2]. Ends where edges meet are taken as they are: there, lengths do not jump, and
-/// what two strips gain and lose is the same.
+/// Area of a section in closed form [m^2], from the integrals along the edges of its strips; an edge that goes on in
+/// the next strip has one for both. Ends where edges meet are taken as they are: there, lengths do not jump, and what
+/// two strips gain and lose is the same.
 template <class S>
 S area(const Section<S>& s, const Structure& structure) {
   S sum(0.0);
-  for (const Strip& strip : structure.strips) {
-    const auto end = [&](const StripEnd& e) { return e.kind == StripEnd::Kind::meeting ? S(e.z) : height(s, e); };
-    const S from = end(strip.from), to = end(strip.to);
-    sum += edge_integral(s, strip.right, from, to) - edge_integral(s, strip.left, from, to);
-  }
+  const std::vector<Strip>& strips = structure.strips;
+  const auto end = [&](const StripEnd& e) { return e.kind == StripEnd::Kind::meeting ? S(e.z) : height(s, e); };
+  const auto add = [&](Edge Strip::*side, double sign) {
+    for (std::size_t i = 0, next; i < strips.size(); i = next) {
+      const Edge& edge = strips[i].*side;
+      next = i + 1;
+      while (next < strips.size() && strips[next].*side == edge && strips[next].from.z == strips[next - 1].to.z) ++next;
+      sum += edge_integral(s, edge, end(strips[i].from), end(strips[next - 1].to)) * sign;
+    }
+  };
+  add(&Strip::right, 1);
+  add(&Strip::left, -1);
   return sum;
 }
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "engine/mechanisms/hybrid_columns.hpp"
+#include "engine/mechanisms/hybrid_conditioning.hpp"
 #include "engine/mechanisms/hybrid_influence.hpp"
 #include "engine/mechanisms/hybrid_voxels.hpp"
 
@@ -24,17 +25,61 @@ S carriage(const Limits<S>& l, const HeldCoordinate& held) {
   return S(held.value >= value_of(l.s_min[1]) && held.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
 }
 
-/// Adds a column of x: conditioning does not depend on x.
+/// The conditioning of columns along x, on which it does not depend. Without derivatives it is computed last, for
+/// many of them side by side.
 template <class S>
-void add_conditioning(const Frame<S>& f, const Demand& demand, const S& z, const S& beta, const S& weight,
-                      Survey<S>& survey) {
-  if (!(value_of(weight) > 0)) return;
-  const S length = demand.characteristic_length ? S(*demand.characteristic_length) : f.g.e;
-  const Joints<S> j = inverse(f.g, Pose<S>{S(0.0), S(0.0), z, beta}, f.signs);
-  survey.weight.push_back(weight);
-  survey.conditioning.push_back(j.assembles() && !j.serial ? inverse_condition(homogeneous_jacobian(z, j, length))
-                                                           : S(0.0));
-}
+class Conditioning {
+ public:
+  /// @param poses   reused storage
+  /// @param survey  to which columns are added
+  Conditioning(const Frame<S>& f, const Demand& demand, PoseList& poses, Survey<S>& survey)
+      : frame_(f),
+        length_(demand.characteristic_length ? S(*demand.characteristic_length) : f.g.e),
+        poses_(poses),
+        survey_(survey) {
+    poses_.clear();
+  }
+
+  void add(const S& z, const S& beta, const S& weight) {
+    if (!(value_of(weight) > 0)) return;
+    survey_.weight.push_back(weight);
+    if constexpr (std::is_same_v<S, double>) {
+      if (beta != beta_) sincos_ = sincos(beta_ = beta);
+      poses_.z.push_back(z);
+      poses_.sine.push_back(sincos_.sin);
+      poses_.cosine.push_back(sincos_.cos);
+    } else {
+      const Joints<S> j = inverse(frame_.g, Pose<S>{S(0.0), S(0.0), z, beta}, frame_.signs);
+      const bool regular = j.assembles() && !j.serial;
+      survey_.conditioning.push_back(regular ? inverse_condition(homogeneous_jacobian(z, j, length_)) : S(0.0));
+    }
+  }
+
+  /// Call it after the last one.
+  void finish() {
+    if constexpr (std::is_same_v<S, double>) {
+      const std::size_t count = poses_.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
+      for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine, &survey_.conditioning}) list->resize(whole);
+      const Geometry<double>& g = frame_.g;
+      const ConditioningDesign design{
+          g.L1,      g.L2,   g.L3, g.d, g.e, {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
+          kRoundoff, length_};
+      with_instruction_set([&]<InstructionSet set>() {
+        inverse_conditions<set>(design, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), whole,
+                                survey_.conditioning.data());
+      });
+      survey_.conditioning.resize(count);
+    }
+  }
+
+ private:
+  const Frame<S>& frame_;
+  S length_;
+  PoseList& poses_;
+  Survey<S>& survey_;
+  double beta_ = 0;  ///< the last one
+  SinCosOf<double> sincos_{0, 1};
+};
 
 class ColumnSurveyor final : public Surveyor {
  public:
@@ -63,25 +108,27 @@ class ColumnSurveyor final : public Surveyor {
     if (!(value_of(stroke) > 0)) return;
     find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     if (!fixed_) {
-      const Integral<S> volume = integrate<S>([&](const S& beta) { return area_at(f, beta, scratch); }, scratch.pieces,
-                                              plan_.tolerance, roundoff(f, scratch.pieces), scratch.integrals);
+      const Integral<S> volume = hybrid::volume(f, plan_.tolerance, scratch);
       survey.volume = volume.value * stroke;
       survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
       survey.columns = volume.evaluations;
       if (!demand_.conditioning) return;
     }
+    thread_local PoseList poses;
+    Conditioning<S> conditioning(f, demand_, poses, survey);
     for (const Piece<S>& piece : scratch.pieces)
       for (std::size_t i = 0; i < beta_rule_.node.size(); ++i) {
         const MappedNode<S> at = map_node(piece, beta_rule_.node[i]);
         const S &beta = at.point, outer = at.jacobian * beta_rule_.weight[i] * stroke;
         visit_columns(f, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
           const S weight = outer * inner * length;
-          if (demand_.conditioning) add_conditioning(f, demand_, z, beta, weight, survey);
+          if (demand_.conditioning) conditioning.add(z, beta, weight);
           if (!fixed_) return;
           survey.volume += weight;
           ++survey.columns;
         });
       }
+    conditioning.finish();
   }
 
   template <class S>
@@ -119,16 +166,22 @@ class VoxelSurveyor final : public Surveyor {
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
     if (!(stroke > 0)) return;
-    VoxelColumns columns(d, grid);
+    thread_local VoxelScratch scratch;
+    VoxelColumns columns(d, grid, scratch);
+    thread_local PoseList poses;
+    Conditioning<double> conditioning(d.frame, demand_, poses, survey);
     const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
-    columns.visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
-      survey.feasible_cells += end - i;
-      survey.touches_box =
-          survey.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
-      if (demand_.conditioning)
-        add_conditioning(d.frame, demand_, grid.centre(1, j), grid.centre(2, k),
-                         static_cast<double>(end - i) * survey.cell_volume, survey);
-    });
+    if (d.clearance || demand_.conditioning)
+      columns.visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
+        survey.feasible_cells += end - i;
+        survey.touches_box =
+            survey.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
+        if (demand_.conditioning)
+          conditioning.add(grid.centre(1, j), grid.centre(2, k), static_cast<double>(end - i) * survey.cell_volume);
+      });
+    else
+      for (std::int64_t k = 0; k < grid.cells[2]; ++k) survey.feasible_cells += columns.count(k, survey.touches_box);
+    conditioning.finish();
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
@@ -137,7 +190,8 @@ class VoxelSurveyor final : public Surveyor {
     const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
     VoxelMap m = grid.map();
     if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
-    VoxelColumns(d, grid).visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
+    VoxelScratch scratch;
+    VoxelColumns(d, grid, scratch).visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
       for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
     });
     return m;

@@ -87,65 +87,69 @@ Box default_box(const VoxelDesign& design) {
   return box;
 }
 
-VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid) : design_(design), grid_(grid) {
-  const auto n = static_cast<std::size_t>(grid.cells[1]);
-  for (auto* runs : {&first_, &hole_, &after_, &end_}) runs->resize(n);
-  for (auto* list : {&z_, &left_, &right_}) list->resize(n);
+VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelScratch& scratch)
+    : design_(design), grid_(grid), found_(scratch) {
+  const auto n = static_cast<std::size_t>(grid.cells[1] + kLanes);  // so that the last lanes may lie beyond the end
+  CellRuns& runs = found_.runs;
+  for (auto* list : {&found_.z, &found_.left, &found_.right, &runs.first, &runs.hole, &runs.after, &runs.end})
+    list->resize(n);
   const Frame<double>& f = design.frame;
   for (std::size_t j = 0; j < n; ++j) {
     const double z = grid.centre(1, static_cast<std::int64_t>(j));
     const double n1 = f.signs[0] * root_or_zero((f.g.L1 - z) * (f.g.L1 + z));
     const double n2 = f.signs[1] * root_or_zero((f.g.L2 - z) * (f.g.L2 + z));
-    z_[j] = z;
-    left_[j] = max(f.lo[0] + n1, f.lo[1] + n2);
-    right_[j] = min(f.hi[0] + n1, f.hi[1] + n2);
+    found_.z[j] = z;
+    found_.left[j] = max(f.lo[0] + n1, f.lo[1] + n2);
+    found_.right[j] = min(f.hi[0] + n1, f.hi[1] + n2);
   }
 }
 
-void VoxelColumns::fill(std::int64_t k) {
+CellTally VoxelColumns::find_runs(std::int64_t k) {
   const Frame<double>& f = design_.frame;
   const double beta = grid_.centre(2, k);
   first_z_ = end_z_ = 0;
-  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return;
+  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {0, false};
   const Section<double> s = section(f, beta);
   const double low = *std::ranges::max_element(s.lower), high = *std::ranges::min_element(s.upper);
-  first_z_ = std::ranges::lower_bound(z_, low) - z_.begin();
-  end_z_ = std::max<std::int64_t>(first_z_, std::ranges::upper_bound(z_, high) - z_.begin());
-  const Curve<double> C = s.curve[kCurveC], Q = s.curve[kCurveQ], P = s.curve[kCurveP], L = s.curve[kCurveL],
-                      H = s.curve[kCurveH];
-  const double sign = s.sign_hi[kCurveC], lo_C = s.lo[kCurveC], hi_C = s.hi[kCurveC];
-  const double per_cell = 1 / grid_.step[0], cells = static_cast<double>(grid_.cells[0]);
-  const double offset = -grid_.lower[0] * per_cell - 0.5;  // x = 0 in units of cells from the first centre
-  const auto square = [](const Curve<double>& c, double z) { return (c.a + c.a_z * z) * (c.b + c.b_z * z); };
-  const double hole_end = s.hole_end;
-  for (auto j = static_cast<std::size_t>(first_z_); j < static_cast<std::size_t>(end_z_); ++j) {
-    const double z = z_[j], C2 = square(C, z), Q2 = square(Q, z), P2 = square(P, z), L2 = square(L, z),
-                 H2 = square(H, z);
-    const double n3 = sign * std::sqrt(C2 > 0 ? C2 : 0);
-    const double QP2 = Q2 < P2 ? Q2 : P2, X2 = QP2 < L2 ? QP2 : L2;
-    const double x = std::sqrt(X2 > 0 ? X2 : 0), inside = std::sqrt(((H2 > 0) & (z < hole_end)) ? H2 : 0);
-    const double left_C = lo_C + n3, right_C = hi_C + n3;
-    double left = left_[j] > left_C ? left_[j] : left_C, right = right_[j] < right_C ? right_[j] : right_C;
-    left = left > -x ? left : -x;
-    right = right < x ? right : x;
-    // in cells: ends as the first centre at or above and the one after the last at or below; the hole is open
-    double from = std::ceil(left * per_cell + offset), to = std::floor(right * per_cell + offset) + 1;
-    double out = std::floor(-inside * per_cell + offset) + 1, in = std::ceil(inside * per_cell + offset);
-    from = from > 0 ? from : 0;
-    to = to < cells ? to : cells;
-    to = to > from ? to : from;
-    from = from < to ? from : to;
-    out = out < in ? out : to;  // no hole
-    in = out < in ? in : to;
-    out = out > from ? out : from;
-    out = out < to ? out : to;
-    in = in > out ? in : out;
-    in = in < to ? in : to;
-    first_[j] = static_cast<std::int32_t>(from);
-    hole_[j] = static_cast<std::int32_t>(out);
-    after_[j] = static_cast<std::int32_t>(in);
-    end_[j] = static_cast<std::int32_t>(to);
-  }
+  const auto begin = found_.z.begin(), end = begin + grid_.cells[1];
+  first_z_ = static_cast<std::size_t>(std::lower_bound(begin, end, low) - begin);
+  end_z_ = std::max(first_z_, static_cast<std::size_t>(std::upper_bound(begin, end, high) - begin));
+  const auto end_of_x = [&](CurveIndex index) {
+    const Curve<double>& c = s.curve[index];
+    return EndOfX{c.a, c.a_z, c.b, c.b_z};
+  };
+  const ColumnsAtBeta columns{end_of_x(kCurveC),
+                              end_of_x(kCurveQ),
+                              end_of_x(kCurveP),
+                              end_of_x(kCurveL),
+                              end_of_x(kCurveH),
+                              s.sign_hi[kCurveC],
+                              s.lo[kCurveC],
+                              s.hi[kCurveC],
+                              high,
+                              s.hole_end,
+                              grid_.lower[0],
+                              grid_.step[0],
+                              static_cast<double>(grid_.cells[0]),
+                              found_.z.data(),
+                              found_.left.data(),
+                              found_.right.data(),
+                              first_z_,
+                              end_z_};
+  return with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, found_.runs); });
+}
+
+std::int64_t VoxelColumns::count(std::int64_t k, bool& touches) {
+  const CellTally tally = find_runs(k);
+  const CellRuns& r = found_.runs;
+  const auto some_at = [&](std::size_t j) {
+    return first_z_ <= j && j < end_z_ && r.hole[j] - r.first[j] + (r.end[j] - r.after[j]) > 0;
+  };
+  const bool last_beta = k == 0 || k == grid_.cells[2] - 1;
+  if (tally.cells > 0)
+    touches =
+        touches || tally.touches || last_beta || some_at(0) || some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
+  return static_cast<std::int64_t>(tally.cells);
 }
 
 bool VoxelColumns::clear(double x, double z, double beta, bool along_x) const {

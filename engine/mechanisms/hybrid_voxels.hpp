@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/mechanisms/hybrid_cells.hpp"
 #include "engine/mechanisms/hybrid_section.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 
@@ -24,47 +25,44 @@ bool feasible(const VoxelDesign& design, double x, double z, double beta);
 /// A box that contains every feasible pose, as x, z, beta; where there is none, a box of some size.
 Box default_box(const VoxelDesign& design);
 
-/// Cells of x: [first, hole) and [after, end).
-struct CellRuns {
-  std::int32_t first, hole, after, end;
-  std::int64_t count() const { return std::int64_t{hole} - first + end - after; }
+/// Storage that surveys reuse.
+struct VoxelScratch {
+  std::vector<double> z, left, right;  ///< heights, and what limbs A and B leave of x there [m]
+  CellRuns runs;
 };
 
 /// The feasible cells of a grid, column by column along x.
 class VoxelColumns {
  public:
-  /// @param design, grid  stay alive
-  VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid);
+  /// @param design, grid, scratch  stay alive
+  VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelScratch& scratch);
 
-  /// Finds the columns at beta number k.
-  void fill(std::int64_t k);
-  /// Those at z number j of first_z() to end_z(), as limits other than a clearance leave them.
-  CellRuns runs(std::int64_t j) const {
-    const auto at = static_cast<std::size_t>(j);
-    return {first_[at], hole_[at], after_[at], end_[at]};
-  }
-  std::int64_t first_z() const { return first_z_; }
-  std::int64_t end_z() const { return end_z_; }
+  /// Cells at beta number k, whatever the clearance.
+  /// @param touches  set if some of them are at a side of the box
+  std::int64_t count(std::int64_t k, bool& touches);
 
   /// Calls visit(i, i_end, j, k) for every run [i, i_end) of feasible cells along x.
   template <class Visit>
   void visit(const Visit& visit) {
     for (std::int64_t k = 0; k < grid_.cells[2]; ++k) {
-      fill(k);
-      for (std::int64_t j = first_z_; j < end_z_; ++j) {
-        const CellRuns r = runs(j);
-        for (const auto& [from, to] : {std::array{r.first, r.hole}, std::array{r.after, r.end}}) {
+      find_runs(k);
+      const CellRuns& r = found_.runs;
+      for (std::size_t j = first_z_; j < end_z_; ++j)
+        for (const auto& [first, end] : {std::array{r.first[j], r.hole[j]}, std::array{r.after[j], r.end[j]}}) {
+          const auto from = static_cast<std::int64_t>(first), to = static_cast<std::int64_t>(end),
+                     height = static_cast<std::int64_t>(j);
           if (!(from < to)) continue;
           if (design_.clearance)
-            visit_clear(from, to, j, k, visit);
+            visit_clear(from, to, height, k, visit);
           else
-            visit(std::int64_t{from}, std::int64_t{to}, j, k);
+            visit(from, to, height, k);
         }
-      }
     }
   }
 
  private:
+  /// Finds the columns at beta number k.
+  CellTally find_runs(std::int64_t k);
   /// The links' pairs whose distance changes along x, or those where it doesn't, keep clear.
   bool clear(double x, double z, double beta, bool along_x) const;
 
@@ -83,9 +81,8 @@ class VoxelColumns {
 
   const VoxelDesign& design_;
   const VoxelGrid& grid_;
-  std::vector<double> z_, left_, right_;  ///< heights, and what limbs A and B leave of x there
-  std::vector<std::int32_t> first_, hole_, after_, end_;
-  std::int64_t first_z_ = 0, end_z_ = 0;
+  VoxelScratch& found_;
+  std::size_t first_z_ = 0, end_z_ = 0;
 };
 
 }  // namespace pkm::hybrid

@@ -75,7 +75,7 @@ using Rows3 = std::array<std::array<S, 3>, 3>;
 
 /// M M^T.
 template <class S>
-Symmetric3<S> gram(const Rows3<S>& m) {
+[[gnu::always_inline]] inline Symmetric3<S> gram(const Rows3<S>& m) {
   const auto dot = [&](std::size_t i, std::size_t j) {
     return S(m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2]);
   };
@@ -85,7 +85,7 @@ Symmetric3<S> gram(const Rows3<S>& m) {
 /// cos(phi / 2) for 0 <= phi <= pi/3, given t = cos(3 phi / 2): the root r of 4 r^3 - 3 r = t in [sqrt(3/4), 1], where
 /// the slope is at least 6. Two Halley steps from a start within 0.01 end at rounding.
 template <class S>
-S cos_of_a_third(const S& t) {
+[[gnu::always_inline]] inline S cos_of_a_third(const S& t) {
   constexpr double kAtZero = 0.86602540378443864676;
   S r = t * (1 - kAtZero) + kAtZero;
   for (int step = 0; step < 2; ++step) {
@@ -104,7 +104,7 @@ S cos_of_a_third(const S& t) {
 /// I, A, A^2, and by Cauchy and Binet a sum of squares of the minors of these three, taken as vectors of their
 /// elements.
 template <class S>
-S largest_eigenvalue(const Symmetric3<S>& matrix) {
+[[gnu::always_inline]] inline S largest_eigenvalue(const Symmetric3<S>& matrix) {
   const S trace = matrix.xx + matrix.yy + matrix.zz, scale = S(1.0) / trace;  // to trace 1: nothing overflows
   const S third(1.0 / 3);
   const S x = matrix.xx * scale - third, y = matrix.yy * scale - third, z = matrix.zz * scale - third;
@@ -127,10 +127,11 @@ S largest_eigenvalue(const Symmetric3<S>& matrix) {
   const S cosine = (x * (y * z - gg) - f * (f * z - g * h) + h * (f * g - y * h)) * 0.5;  // p^3 cos(3 phi)
   const S sine_2 = discriminant * (1.0 / 108);                                            // p^6 sin(3 phi)^2
   const S cube = root_or_zero(S(cosine * cosine + sine_2));                               // p^3
-  const S more = select(cosine >= 0.0, S(cube + cosine), S(sine_2 / (cube - cosine)));    // p^3 (1 + cos(3 phi))
+  // p^3 (1 + cos(3 phi))
+  const S more = select(value_of(cosine) >= 0.0, S(cube + cosine), S(sine_2 / (cube - cosine)));
   const S r = cos_of_a_third(root_or_zero(S(more / (cube * 2.0))));
-  const S factor = select(cube > 0.0, S(r * r * 2.0 - 1.0), S(1.0));  // 1: all three are equal
-  return trace * (p * 2.0 * factor + third);
+  // where p is 0 all three are equal
+  return trace * (p * 2.0 * select(value_of(cube) > 0.0, S(r * r * 2.0 - 1.0), S(1.0)) + third);
 }
 
 /// The eigenvector of length 1 to the largest eigenvalue of a positive semidefinite matrix: the adjugate of
@@ -149,17 +150,17 @@ inline std::array<double, 3> eigenvector_of_largest(const Symmetric3<double>& ma
   return v;
 }
 
-/// What leads to the extreme singular values of a 3 x 3 matrix of doubles or lanes, in closed form.
+/// What leads to the extreme singular values of a 3 x 3 matrix in closed form. S is double or several side by side.
 template <class S>
 struct ExtremeSingularValues {
   Rows3<S> cofactors;
   S determinant;
   Symmetric3<S> square, square_of_cofactors;  ///< M M^T, C C^T
   S greatest_2, pair_2;                       ///< sigma_1^2, (sigma_1 sigma_2)^2
-  S least_2() const { return determinant * determinant / pair_2; }
+  [[gnu::always_inline]] S least_2() const { return determinant * determinant / pair_2; }
 };
 template <class S>
-ExtremeSingularValues<S> extreme_singular_values(const Rows3<S>& m) {
+[[gnu::always_inline]] inline ExtremeSingularValues<S> extreme_singular_values(const Rows3<S>& m) {
   const auto cross = [](const std::array<S, 3>& a, const std::array<S, 3>& b) {
     return std::array<S, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
@@ -175,7 +176,7 @@ ExtremeSingularValues<S> extreme_singular_values(const Rows3<S>& m) {
 
 /// Inverse condition number from the squares of the extreme singular values.
 template <class S>
-S inverse_condition_of(const S& least_2, const S& greatest_2) {
+[[gnu::always_inline]] inline S inverse_condition_of(const S& least_2, const S& greatest_2) {
   return select((least_2 > 0.0) & (greatest_2 < 1e300), S(sqrt(S(least_2 / greatest_2))), S(0.0));
 }
 
@@ -184,7 +185,7 @@ S inverse_condition_of(const S& least_2, const S& greatest_2) {
 /// otherwise.
 /// @param extra  square of one more singular value, of a block that is diagonal already; < 0: none
 template <class S>
-S inverse_condition(const Rows3<S>& m, const S& extra = S(-1.0)) {
+[[gnu::always_inline]] inline S inverse_condition(const Rows3<S>& m, const S& extra = S(-1.0)) {
   const ExtremeSingularValues<S> s = extreme_singular_values(m);
   const S least_2 = s.least_2(), greatest_2 = s.greatest_2;
   return inverse_condition_of(select((extra >= 0.0) & (extra < least_2), extra, least_2),
