@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
+#include "benchmarks/peers/voxel_loop.hpp"
 #include "benchmarks/timing.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/four_ppa_two_par_voxels.hpp"
@@ -13,32 +14,6 @@ namespace {
 
 using namespace four_ppa_two_par;
 using Design = std::vector<double> (*)();
-
-// The first thing one would write: three loops over the paper's grid and the inverse kinematics (eq 13) of each cell's
-// centre. What does not depend on z stays out of the inner loop; no limits.
-std::int64_t count_plainly(const Geometry<double>& g) {
-  constexpr int kX = 32, kZ = 34, kTheta = 60;
-  const double y = g.L0 / 2;
-  std::int64_t feasible_cells = 0;
-  for (int k = 0; k < kTheta; ++k) {
-    const double theta = -kPi / 2 + (k + 0.5) * kPi / kTheta;
-    const double half = g.a / 2 * std::cos(theta), shift = g.a / 2 * std::sin(theta);
-    for (int i = 0; i < kX; ++i) {
-      const double x = (i + 0.5) * g.b / kX, x_1 = x - half, x_2 = g.b - x - half;
-      if (x_1 < 0 || x_1 > g.l_d || x_2 < 0 || x_2 > g.l_d) continue;
-      const double sigma_1 = std::sqrt(g.l_d * g.l_d - x_1 * x_1), sigma_2 = std::sqrt(g.l_d * g.l_d - x_2 * x_2);
-      for (int j = 0; j < kZ; ++j) {
-        const double z = -(g.l_u + g.l_d + g.d) + (j + 0.5) * (g.l_u + g.l_d) / kZ;
-        const double z_1 = z + g.d + sigma_1, z_2 = z + g.d + sigma_2;
-        if (z_1 > 0 || z_1 < -g.l_u || z_2 > 0 || z_2 < -g.l_u) continue;
-        const double h_1 = std::sqrt(g.l_u * g.l_u - z_1 * z_1), h_2 = std::sqrt(g.l_u * g.l_u - z_2 * z_2);
-        const double q_1 = y - shift - h_1, q_2 = y - shift + h_1, q_3 = y + shift - h_2, q_4 = y + shift + h_2;
-        if (q_1 >= 0 && q_2 <= g.L0 && q_3 >= 0 && q_4 <= g.L0) ++feasible_cells;
-      }
-    }
-  }
-  return feasible_cells;
-}
 
 void pose_test(benchmark::State& state) {
   const auto all = original_design();
@@ -93,11 +68,13 @@ void plain_loop_against_survey(benchmark::State& state, Design design) {
   const auto all = design();
   const auto g = geometry(std::span<const double>(all));
   const auto surveyor = four_ppa().prepare(voxel_plan(without_limits()), {});
+  const peers::Voxels voxels{g.d, g.L0, {32, 34, 60}, 0, 0, kPi / 2, 0, 0, 0};  // the paper's grid, no limits
+  const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
   std::int64_t plain = 0;
   Survey<double> result;
   const Duel duel = take_turns(
-      state, "plain_loop_s", [&] { benchmark::DoNotOptimize(plain = count_plainly(g)); }, "survey_s",
-      [&] { surveyor->survey(all, result); });
+      state, "plain_loop_s", [&] { benchmark::DoNotOptimize(plain = peers::feasible_cells(voxels, lengths)); },
+      "survey_s", [&] { surveyor->survey(all, result); });
   state.counters["speedup"] = duel.ratio();
   if (plain != result.feasible_cells) state.SkipWithError("the plain loop and the survey count different cells");
 }

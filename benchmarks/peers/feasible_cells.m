@@ -1,0 +1,31 @@
+% Number of feasible cells of 4PPa-2PaR's workspace: first all columns (x, theta), then the cells of those that are
+% left. Formulas as in voxel_loop.cpp.
+function count = feasible_cells(p, design)
+  a = design(1); b = design(2); l_u = design(3); l_d = design(4);
+  y = p.L0 / 2;
+  theta = -pi / 2 + ((1:p.cells(3)) - 0.5) * pi / p.cells(3);
+  theta = theta(cos(theta) >= p.cos_theta_min);
+  x = ((1:p.cells(1))' - 0.5) * b / p.cells(1);
+  x_1 = x - a / 2 * cos(theta);
+  x_2 = b - x - a / 2 * cos(theta);
+  shift = repmat(a / 2 * sin(theta), rows(x), 1);
+  x_least = l_d * sin(p.beta_min);
+  x_most = l_d * sin(p.beta_max);
+  within = x_1 >= x_least & x_1 <= x_most & x_2 >= x_least & x_2 <= x_most;
+  x_1 = x_1(within)'; x_2 = x_2(within)'; shift = shift(within)';
+  sigma_1 = sqrt(l_d^2 - x_1.^2);
+  sigma_2 = sqrt(l_d^2 - x_2.^2);
+  apart = x_1 .* sigma_2 + sigma_1 .* x_2 >= p.sin_par_min * l_d^2;
+  sigma_1 = sigma_1(apart); sigma_2 = sigma_2(apart); shift = shift(apart);
+
+  depth = -(l_u + l_d) + ((1:p.cells(2))' - 0.5) * (l_u + l_d) / p.cells(2);  % z + d
+  z_1 = depth + sigma_1;
+  z_2 = depth + sigma_2;
+  z_most = -l_u * sin(p.alpha_min);
+  h_1 = sqrt(max(l_u^2 - z_1.^2, 0));
+  h_2 = sqrt(max(l_u^2 - z_2.^2, 0));
+  h_1_most = min(y - shift, p.L0 - y + shift);  % from which on a slider leaves its rail
+  h_2_most = min(y + shift, p.L0 - y - shift);
+  count = nnz(z_1 >= -l_u & z_1 <= z_most & z_2 >= -l_u & z_2 <= z_most ...
+              & h_1 >= p.h_min & h_2 >= p.h_min & h_1 <= h_1_most & h_2 <= h_2_most);
+end

@@ -1,0 +1,40 @@
+"""The program's own rows: its genetic algorithm with the defaults, from the start of the process to the study file."""
+
+import json
+
+import h5py
+import numpy as np
+
+from measure import run
+
+
+class Program:
+    """`pkmopt run` of a study whose stages are replaced by one `ga` without options."""
+
+    def __init__(self, pkmopt, study, folder):
+        self._pkmopt, self._folder = pkmopt, folder
+        with open(study) as text:
+            self._problem = text.read().partition("[[stage]]")[0]
+
+    def generations(self, seed):
+        """100 generations of 20, the defaults: seconds of the search, candidates, and what the process cost."""
+        cost, study_file = self._run(seed, "")
+        shown = json.loads(run(self._pkmopt, "show", study_file, "--json").output)
+        return {"candidates": shown["evaluations"], "seconds": shown["seconds"]}, cost
+
+    def search(self, seed, target):
+        """The same, ended by the generation in which the target is reached. As the peers' `search`."""
+        cost, study_file = self._run(seed, f"target = {target!r}\n")
+        with h5py.File(study_file) as file:
+            evaluations = file["stages/1/evaluations"]
+            ratio, status = evaluations["objective"][:, 0], evaluations["status"][:]
+        ratio = np.where(status == 0, ratio, 0.0)  # 0: feasible
+        reached = ratio >= target
+        return {"reached": bool(reached.any()), "tried": int(reached.argmax()) + 1 if reached.any() else len(ratio),
+                "best": float(ratio.max()), "cpu": cost.cpu}
+
+    def _run(self, seed, option):
+        study, study_file = self._folder / "study.toml", self._folder / "study.h5"
+        study.write_text(f'{self._problem}[[stage]]\noptimiser = "ga"\n{option}')
+        return run(self._pkmopt, "run", str(study), "--seed", str(seed), "--force", "--quiet", "--output",
+                   str(study_file)), str(study_file)
