@@ -17,7 +17,7 @@ namespace pkm {
 
 /// Version of the behaviour of optimisers and surveys: a study is continued only by a program of the same one. Raise it
 /// with every change that changes the evaluations that a seed leads to.
-inline constexpr std::int64_t kAlgorithms = 2;
+inline constexpr std::int64_t kAlgorithms = 3;
 
 struct ProgramVersion {
   std::string version, revision;
