@@ -17,6 +17,14 @@ double seconds_of(const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+/// The work ten times in a row, as generations follow one another: threads of a team stay awake in between.
+template <class Work>
+auto ten_times(const Work& work) {
+  return [&work] {
+    for (int i = 0; i < 10; ++i) work();
+  };
+}
+
 /// Total times [s] of two ways that took turns.
 struct Duel {
   double first = 0, second = 0;

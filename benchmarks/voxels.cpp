@@ -6,6 +6,7 @@
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/peers/voxel_loop.hpp"
 #include "benchmarks/timing.hpp"
+#include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/four_ppa_two_par_voxels.hpp"
 
@@ -63,6 +64,63 @@ BENCHMARK_CAPTURE(survey, optimal, optimal_design, without_limits)
 BENCHMARK_CAPTURE(survey, limits, original_design, with_limits)
     ->Name("voxel_survey/original_with_limits")
     ->Unit(benchmark::kMicrosecond);
+
+// Off the middle plane nothing is symmetric: every column counts.
+void off_plane(benchmark::State& state) {
+  const auto all = optimal_design();
+  SurveyPlan plan = voxel_plan(without_limits());
+  plan.held = {HeldCoordinate::Kind::value, 1.2};
+  const auto surveyor = four_ppa().prepare(plan, {});
+  Survey<double> result;
+  for (auto _ : state) {
+    surveyor->survey(all, result);
+    benchmark::DoNotOptimize(result.feasible_cells);
+  }
+}
+BENCHMARK(off_plane)->Name("voxel_survey/off_plane")->Unit(benchmark::kMicrosecond);
+
+// Grids of n^3 cells: the cost follows the n^2 columns.
+void grid(benchmark::State& state) {
+  const auto all = optimal_design();
+  SurveyPlan plan = voxel_plan(without_limits());
+  plan.cells = {state.range(0), state.range(0), state.range(0)};
+  const auto surveyor = four_ppa().prepare(plan, {});
+  Survey<double> result;
+  for (auto _ : state) {
+    surveyor->survey(all, result);
+    benchmark::DoNotOptimize(result.feasible_cells);
+  }
+  const auto n = static_cast<double>(state.range(0));
+  state.counters["columns"] = benchmark::Counter(n * n, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["cells"] = benchmark::Counter(n * n * n, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(grid)->Name("voxel_survey/grid")->RangeMultiplier(2)->Range(16, 1024)->Unit(benchmark::kMicrosecond);
+
+// One design on a fine grid, by one thread and by two.
+void fine_grid(benchmark::State& state, bool conditioning) {
+  const auto all = optimal_design();
+  SurveyPlan plan = voxel_plan(without_limits());
+  const std::int64_t n = conditioning ? 128 : 512;
+  plan.cells = {n, n, n};
+  Demand demand;
+  demand.conditioning = conditioning;
+  const auto surveyor = four_ppa().prepare(plan, demand);
+  Survey<double> result;
+  Team team(2);
+  const auto by_one = [&] { surveyor->survey(all, result); };
+  const auto by_two = [&] {
+    const LentTeam lent(team);
+    surveyor->survey(all, result);
+  };
+  const Duel duel =
+      take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+  state.counters["efficiency_percent"] = 100 * duel.ratio() / 2;
+}
+BENCHMARK_CAPTURE(fine_grid, volume, false)->Name("fine_grid/512_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK_CAPTURE(fine_grid, conditioning, true)
+    ->Name("fine_grid/conditioning_128_cubed")
+    ->Unit(benchmark::kMicrosecond)
+    ->UseRealTime();
 
 void plain_loop_against_survey(benchmark::State& state, Design design) {
   const auto all = design();

@@ -1,5 +1,6 @@
 #include "engine/core/team.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace pkm {
@@ -43,7 +44,7 @@ Team::~Team() {
   for (std::thread& helper : helpers_) helper.join();
 }
 
-void Team::share(std::size_t pieces, PieceRef work) {
+void Team::share(std::size_t pieces, WorkRef work) {
   if (pieces == 0) return;
   const std::uint64_t job = (next_.load(std::memory_order_relaxed) >> 32) + 1;
   object_.store(work.object_, std::memory_order_release);
@@ -68,13 +69,15 @@ void Team::share(std::size_t pieces, PieceRef work) {
 /// Works on pieces until none is left.
 void Team::take_pieces() {
   for (std::uint64_t next = next_.load(std::memory_order_acquire);;) {
-    const PieceRef work(object_.load(std::memory_order_acquire), call_.load(std::memory_order_acquire));
+    const WorkRef work(object_.load(std::memory_order_acquire), call_.load(std::memory_order_acquire));
     const std::uint32_t pieces = pieces_.load(std::memory_order_acquire);
-    const auto piece = static_cast<std::uint32_t>(next);
-    if (piece == kNoPiece || piece >= pieces) return;
-    if (!next_.compare_exchange_weak(next, next + 1, std::memory_order_acquire, std::memory_order_acquire)) continue;
-    work(piece);
-    if (done_.fetch_add(1, std::memory_order_release) + 1 == pieces) done_.notify_one();
+    const auto begin = static_cast<std::uint32_t>(next);
+    if (begin == kNoPiece || begin >= pieces) return;
+    const std::uint32_t count = std::max(1u, (pieces - begin) / (2 * static_cast<std::uint32_t>(threads())));
+    if (!next_.compare_exchange_weak(next, next + count, std::memory_order_acquire, std::memory_order_acquire))
+      continue;
+    work(begin, begin + count);
+    if (done_.fetch_add(count, std::memory_order_release) + count == pieces) done_.notify_one();
     next = next_.load(std::memory_order_acquire);
   }
 }
@@ -93,9 +96,11 @@ LentTeam::~LentTeam() { lent = before_; }
 
 bool has_team() { return lent && lent->threads() > 1; }
 
-void share_pieces(std::size_t pieces, PieceRef work) {
-  if (lent) return lent->share(pieces, work);
-  for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
+void share_pieces(std::size_t pieces, WorkRef work) {
+  if (lent)
+    lent->share(pieces, work);
+  else if (pieces > 0)
+    work(0, pieces);
 }
 
 }  // namespace pkm

@@ -9,25 +9,26 @@
 #include <cstddef>
 #include <cstdint>
 #include <thread>
-#include <type_traits>
 #include <vector>
 
 namespace pkm {
 
-/// A reference to a function object, called with the number of a piece. It must not throw.
-class PieceRef {
+/// A reference to a function object that works on the pieces [begin, end). It must not throw.
+class WorkRef {
  public:
   template <class F>
-  PieceRef(F& f)
-      : object_(const_cast<void*>(static_cast<const void*>(&f))),
-        call_([](void* object, std::size_t piece) { (*static_cast<F*>(object))(piece); }) {}
-  void operator()(std::size_t piece) const { call_(object_, piece); }
+  WorkRef(const F& f)
+      : object_(&f), call_([](const void* object, std::size_t begin, std::size_t end) {
+          (*static_cast<const F*>(object))(begin, end);
+        }) {}
+  void operator()(std::size_t begin, std::size_t end) const { call_(object_, begin, end); }
 
  private:
   friend class Team;
-  PieceRef(void* object, void (*call)(void*, std::size_t)) : object_(object), call_(call) {}
-  void* object_;
-  void (*call_)(void*, std::size_t);
+  using Call = void (*)(const void*, std::size_t, std::size_t);
+  WorkRef(const void* object, Call call) : object_(object), call_(call) {}
+  const void* object_;
+  Call call_;
 };
 
 class Team {
@@ -40,20 +41,21 @@ class Team {
 
   int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
-  /// Calls work(piece) for every piece in [0, pieces), each once, in any order and on any thread; returns when all are
-  /// done. From one thread at a time, and not from within a piece.
-  void share(std::size_t pieces, PieceRef work);
+  /// Has work(begin, end) done for all of [0, pieces), each piece once, in any order and on any thread; returns when
+  /// all are done. Whoever is free takes a share of what is left, so shares get smaller towards the end. From one
+  /// thread at a time, and not from within a piece.
+  void share(std::size_t pieces, WorkRef work);
 
  private:
   void help();
   void take_pieces();
 
-  // The number of the job in the upper half, the next piece in the lower; a piece is taken by counting up, which fails
+  // The number of the job in the upper half, the next piece in the lower; pieces are taken by counting up, which fails
   // when the job has changed meanwhile. What belongs to a job is written while no piece can be taken; whoever sees a
   // new part of it also sees that, and so takes no piece of the old job with it.
   std::atomic<std::uint64_t> next_;
-  std::atomic<void*> object_ = nullptr;
-  std::atomic<void (*)(void*, std::size_t)> call_ = nullptr;
+  std::atomic<const void*> object_ = nullptr;
+  std::atomic<WorkRef::Call> call_ = nullptr;
   std::atomic<std::uint32_t> pieces_ = 0;
   alignas(64) std::atomic<std::uint32_t> done_ = 0;  ///< pieces of the job
   alignas(64) std::atomic<std::uint32_t> jobs_ = 0;  ///< what sleepers wait for
@@ -76,8 +78,8 @@ class LentTeam {
 /// Whether a team of more than one thread is lent to the calling thread.
 bool has_team();
 
-/// Calls work(piece) for every piece in [0, pieces): by the team lent to this thread, if there is one, else in order.
-/// What a piece computes must not depend on which thread does. Within a piece no team is lent.
-void share_pieces(std::size_t pieces, PieceRef work);
+/// The same by the team lent to this thread, if there is one; else at once. What a piece computes must not depend on
+/// which thread does it. Within a piece no team is lent.
+void share_pieces(std::size_t pieces, WorkRef work);
 
 }  // namespace pkm

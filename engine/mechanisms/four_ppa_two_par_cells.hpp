@@ -27,8 +27,9 @@ struct CellTally {
   double cells[kLanes], in_first[kLanes], in_last[kLanes];  ///< of all columns, of the first, of the last one
   bool lowest, highest;                                     ///< a column reaches the lowest, the highest cell of z
 };
+/// @param from, to  the x indices to count
 template <InstructionSet set>
-CellTally tally(const ColumnsAtThetas& columns);
+CellTally tally(const ColumnsAtThetas& columns, std::int64_t from, std::int64_t to);
 
 /// Cells [first, end) of z, at [x index * kLanes + theta]; there are none outside of the x indices [x_begin, x_end).
 struct ColumnBlock {

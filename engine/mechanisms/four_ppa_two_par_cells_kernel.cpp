@@ -75,11 +75,12 @@ struct Slab {
 }  // namespace
 
 template <InstructionSet set>
-CellTally tally(const ColumnsAtThetas& at) {
+CellTally tally(const ColumnsAtThetas& at, std::int64_t from, std::int64_t to) {
   using L = LanesOf<set>;
   const Slab<L> slab(at);
   L sum = 0.0, in_first = 0.0, in_last = 0.0, lowest = kInfinity, highest = 0.0;
-  for (std::int64_t i = slab.x_begin; i < slab.x_end; ++i) {
+  const std::int64_t begin = slab.x_begin > from ? slab.x_begin : from, end = slab.x_end < to ? slab.x_end : to;
+  for (std::int64_t i = begin; i < end; ++i) {
     const auto column = slab[i];
     const L found = select(column.some, column.end - column.first, L(0.0));
     sum += found;
@@ -110,7 +111,7 @@ void fill(const ColumnsAtThetas& at, ColumnBlock& block) {
   }
 }
 
-template CellTally tally<PKM_INSTRUCTION_SET>(const ColumnsAtThetas&);
+template CellTally tally<PKM_INSTRUCTION_SET>(const ColumnsAtThetas&, std::int64_t, std::int64_t);
 template void fill<PKM_INSTRUCTION_SET>(const ColumnsAtThetas&, ColumnBlock&);
 
 }  // namespace pkm::four_ppa_two_par

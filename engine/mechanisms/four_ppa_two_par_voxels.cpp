@@ -91,20 +91,25 @@ void VoxelCounter::fill_block(const Geometry<double>& g, const Limits<double>& l
 std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test,
                                  double y, const VoxelGrid& grid, bool& touches) const {
   if (test) return count_clear(g, l, *test, y, grid, touches);
+  constexpr std::int64_t kColumns = 64;  // of eight thetas: a microsecond's work, to be shared out
   const Halves part = halves(g, y, grid);
   thread_local std::vector<CellTally> tallies;
-  std::vector<CellTally>& found = tallies;  // this thread's, also for the others of the team
-  found.resize(blocks(part));
-  const auto work = [&](std::size_t block) {
-    const ColumnsAtThetas at = columns(g, l, y, grid, static_cast<std::int64_t>(block) * kLanes, part);
-    found[block] = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at); });
-  };
-  share_pieces(found.size(), work);
+  std::vector<CellTally>& found = tallies;                         // this thread's, also for the others of the team
+  const std::int64_t parts = (part.xs + kColumns - 1) / kColumns;  // of each block
+  found.resize(blocks(part) * static_cast<std::size_t>(parts));
+  const auto block_of = [&](std::size_t piece) { return static_cast<std::int64_t>(piece) / parts * kLanes; };
+  share_pieces(found.size(), [&](std::size_t piece, std::size_t end) {
+    for (; piece < end; ++piece) {
+      const ColumnsAtThetas at = columns(g, l, y, grid, block_of(piece), part);
+      const std::int64_t from = static_cast<std::int64_t>(piece) % parts * kColumns;
+      found[piece] = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });
+    }
+  });
   double total = 0;  // whole numbers
   touches = false;
-  for (std::size_t block = 0; block < found.size(); ++block) {
-    const CellTally& t = found[block];
-    const auto k_block = static_cast<std::int64_t>(block) * kLanes;
+  for (std::size_t piece = 0; piece < found.size(); ++piece) {
+    const CellTally& t = found[piece];
+    const std::int64_t k_block = block_of(piece);
     for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k) {
       const std::int64_t lane = k - k_block;
       if (t.cells[lane] == 0) continue;

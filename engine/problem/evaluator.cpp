@@ -69,13 +69,8 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
     const LentTeam within(team_);
     return evaluate_rows(problem, table, first, end);
   }
-  // In pieces, because designs differ in cost, and of several, so that threads seldom write one cache line.
-  const std::size_t piece = std::clamp<std::size_t>(count / (team * 16), 1, 64);
-  const auto work = [&](std::size_t number) {
-    const std::size_t begin = first + number * piece;
-    evaluate_rows(problem, table, begin, std::min(begin + piece, end));
-  };
-  team_.share((count + piece - 1) / piece, work);
+  team_.share(count,
+              [&](std::size_t begin, std::size_t stop) { evaluate_rows(problem, table, first + begin, first + stop); });
 }
 
 }  // namespace pkm

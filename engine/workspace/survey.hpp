@@ -66,8 +66,9 @@ void share_samples(std::size_t pieces, Survey<S>& survey, const Fill& fill) {
     return;
   }
   std::vector<Survey<S>> parts(pieces);
-  const auto work = [&](std::size_t piece) { fill(piece, parts[piece]); };
-  share_pieces(pieces, work);
+  share_pieces(pieces, [&](std::size_t piece, std::size_t end) {
+    for (; piece < end; ++piece) fill(piece, parts[piece]);
+  });
   for (const Survey<S>& part : parts) append_samples(part, survey);
 }
 

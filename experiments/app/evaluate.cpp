@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/core/team.hpp"
 #include "experiments/app/catalogue_json.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
@@ -136,9 +137,11 @@ void print_report(const Target& target, const DesignProblem& problem, const Desi
   print_section(std::cout, "facts", facts);
 }
 
-int evaluate(const Catalogues& catalogues, const DesignArguments& arguments) {
+int evaluate(const Catalogues& catalogues, const DesignArguments& arguments, int threads) {
   const Target target = find_target(catalogues, arguments);
   const auto problem = target.study ? target.study->problem : default_problem(target, catalogues);
+  Team team(threads);
+  const LentTeam lent(team);
   const DesignReport report = problem->report(target.parameters);
   if (arguments.json)
     print_json(std::cout, report_json(*problem, report));
@@ -158,7 +161,12 @@ void add_evaluate(CLI::App& app, Session& session) {
       "A study is evaluated as it says, at its baseline, else at its parameters. A bare mechanism is surveyed by\n"
       "exact columns without limits, for every objective that serves it. An infeasible design is no error.\n"
       "Example: pkmopt evaluate experiments/4ppa-2par/paper-problem.toml --set a=0.3,b=1 --json");
-  command->callback([&session, arguments] { session.exit_code = evaluate(session.catalogues, *arguments); });
+  const auto threads = std::make_shared<int>(0);
+  command->add_option("--threads", *threads, "Number of threads (default: one per core)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->callback(
+      [&session, arguments, threads] { session.exit_code = evaluate(session.catalogues, *arguments, *threads); });
 }
 
 }  // namespace pkm

@@ -19,8 +19,9 @@ TEST(Team, DoesEveryPieceOnce) {
     for (const std::size_t pieces : {0, 1, 2, 3, 1000}) {
       for (int job = 0; job < 200; ++job) {
         std::vector<int> times(pieces);
-        const auto work = [&](std::size_t piece) { ++times[piece]; };
-        team.share(pieces, work);
+        team.share(pieces, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t piece = begin; piece < end; ++piece) ++times[piece];
+        });
         ASSERT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(pieces));
       }
     }
@@ -32,11 +33,10 @@ TEST(Team, WakesThreadsThatSleep) {
   for (int job = 0; job < 3; ++job) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));  // longer than they spin
     std::atomic<int> arrived = 0;
-    const auto meet = [&](std::size_t) {  // ends only if each piece is on a thread of its own
+    team.share(2, [&](std::size_t, std::size_t) {  // ends only if each piece is on a thread of its own
       ++arrived;
       while (arrived < 2) std::this_thread::yield();
-    };
-    team.share(2, meet);
+    });
     EXPECT_EQ(arrived, 2);
   }
 }
@@ -45,20 +45,18 @@ TEST(Team, IsLentToOneThreadAndNotToItsPieces) {
   Team team(3);
   EXPECT_FALSE(has_team());
   std::vector<std::size_t> order;
-  const auto note = [&](std::size_t piece) { order.push_back(piece); };
-  share_pieces(4, note);
-  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3}));
+  share_pieces(4, [&](std::size_t begin, std::size_t end) { order = {begin, end}; });
+  EXPECT_EQ(order, (std::vector<std::size_t>{0, 4}));
   {
     const LentTeam lent(team);
     EXPECT_TRUE(has_team());
     std::atomic<int> sum = 0, with_team = 0;
-    const auto outer = [&](std::size_t) {
+    share_pieces(50, [&](std::size_t begin, std::size_t end) {
       if (has_team()) ++with_team;
-      const auto inner = [&](std::size_t piece) { sum += static_cast<int>(piece); };
-      share_pieces(10, inner);
-    };
-    share_pieces(50, outer);
-    EXPECT_EQ(sum, 50 * 45);
+      for (; begin < end; ++begin)
+        share_pieces(10, [&](std::size_t from, std::size_t to) { sum += static_cast<int>(to - from); });
+    });
+    EXPECT_EQ(sum, 500);
     EXPECT_EQ(with_team, 0);
     EXPECT_TRUE(has_team());
   }

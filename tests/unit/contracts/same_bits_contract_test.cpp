@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/instruction_set.hpp"
+#include "engine/core/team.hpp"
 #include "tests/unit/contracts/everything.hpp"
 
 namespace pkm {
@@ -13,7 +14,7 @@ namespace {
 
 using Bits = std::vector<std::uint64_t>;
 
-class InstructionSetContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
+class SameBitsContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
  protected:
   void SetUp() override { use_instruction_set(InstructionSet::baseline); }
   void TearDown() override { use_instruction_set(widest_instruction_set()); }
@@ -81,14 +82,22 @@ class InstructionSetContract : public testing::TestWithParam<std::shared_ptr<con
   }
 };
 
-TEST_P(InstructionSetContract, SurveysHaveTheSameBits) {
+TEST_P(SameBitsContract, SurveysOnEveryInstructionSet) {
   same_on_every_set([&] { return surveys(); });
 }
-TEST_P(InstructionSetContract, SlopesHaveTheSameBits) {
+TEST_P(SameBitsContract, SlopesOnEveryInstructionSet) {
   same_on_every_set([&] { return slopes(); });
 }
 
-INSTANTIATE_TEST_SUITE_P(All, InstructionSetContract, testing::ValuesIn(all_mechanisms()),
+TEST_P(SameBitsContract, SurveysAndSlopesByATeam) {
+  const Bits alone = surveys(), slopes_alone = slopes();
+  Team team(3);
+  const LentTeam lent(team);
+  EXPECT_TRUE(surveys() == alone);
+  EXPECT_TRUE(slopes() == slopes_alone);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SameBitsContract, testing::ValuesIn(all_mechanisms()),
                          [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
 
 }  // namespace
