@@ -33,8 +33,8 @@ template <class S, class T>
   for (std::size_t j = 0; j < 2; ++j) {
     const S h = root_or_zero(S((column.l_u - z_c[j]) * (column.l_u + z_c[j])));
     const S below = h * column.sigma[j];  // k_j = h sigma / (-z_c l_d)
-    const auto hangs = (value_of(below) > 0.0) & (value_of(z_c[j]) < 0.0);
-    const S scale = select(hangs, S(z_c[j] * -kRoot2 / below), S(0.0));  // (sqrt2 / k_j) / l_d
+    const S hanging = select(value_of(z_c[j]) < 0.0, S(z_c[j] * -kRoot2 / below), S(0.0));  // (sqrt2 / k_j) / l_d
+    const S scale = select(value_of(below) > 0.0, hanging, S(0.0));
     const double sign = j == 0 ? 1 : -1;
     m[j + 1] = {S(scale * column.x[j]), S(scale * column.sigma[j] * -sign),
                 S(scale * column.x[j] * column.gamma * column.sin_theta * sign)};

@@ -177,7 +177,8 @@ template <class S>
 /// Inverse condition number from the squares of the extreme singular values.
 template <class S>
 [[gnu::always_inline]] inline S inverse_condition_of(const S& least_2, const S& greatest_2) {
-  return select((least_2 > 0.0) & (greatest_2 < 1e300), S(sqrt(S(least_2 / greatest_2))), S(0.0));
+  const S index = select(greatest_2 < 1e300, S(sqrt(S(least_2 / greatest_2))), S(0.0));
+  return select(least_2 > 0.0, index, S(0.0));
 }
 
 /// The same as inverse_condition for 3 x 3 matrices of doubles or lanes, in closed form. Relative error a few ulp where
@@ -188,8 +189,8 @@ template <class S>
 [[gnu::always_inline]] inline S inverse_condition(const Rows3<S>& m, const S& extra = S(-1.0)) {
   const ExtremeSingularValues<S> s = extreme_singular_values(m);
   const S least_2 = s.least_2(), greatest_2 = s.greatest_2;
-  return inverse_condition_of(select((extra >= 0.0) & (extra < least_2), extra, least_2),
-                              select((extra >= 0.0) & (extra > greatest_2), extra, greatest_2));
+  const S lesser_2 = select(extra < least_2, extra, least_2), greater_2 = select(extra > greatest_2, extra, greatest_2);
+  return inverse_condition_of(select(extra >= 0.0, lesser_2, least_2), select(extra >= 0.0, greater_2, greatest_2));
 }
 
 /// The same with derivatives. Where two singular values meet and the extreme one so has a kink, they are those of one
