@@ -1,7 +1,6 @@
 #include "engine/mechanisms/crr_cru_voxels.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pkm::crr_cru {
 namespace {
@@ -65,63 +64,67 @@ void VoxelRows::prepare(const VoxelGrid& grid, const GridAxes& axes) {
   coupled_.resize(u_.center.size() * words_);
 }
 
-/// Clears the cells outside a ring on a line `away` from its centre. Rounding is monotonic, so the cells that pass
-/// distance2 <= out2 are neighbours, and so are those that pass distance2 < in2; the ends of the chords say where to
-/// look for their first and last.
-void VoxelRows::cut_ring(const Axis& axis, double center, double away, double in2, double out2, std::uint64_t* bits) {
-  const auto cells = static_cast<std::int64_t>(axis.center.size());
-  const double away2 = away * away;
-  const auto distance2 = [&](std::int64_t k) {
-    const double b = axis.center[static_cast<std::size_t>(k)] - center;
-    return away2 + b * b;
-  };
-  const auto cell_of = [&](double at) {
-    const double cell = std::floor((at - axis.lower) / axis.step);
-    return static_cast<std::int64_t>(std::clamp(cell, 0.0, static_cast<double>(cells - 1)));
-  };
-  std::int64_t nearest = cell_of(center);
-  for (const std::int64_t k : {nearest - 1, nearest + 1})
-    if (k >= 0 && k < cells && distance2(k) < distance2(nearest)) nearest = k;
-  const auto neighbours = [&](double limit2, const auto& passes) {  // [first, end) around the nearest cell
-    if (!passes(distance2(nearest))) return std::array<std::int64_t, 2>{0, 0};
-    const double half = std::sqrt(std::fmax(0.0, limit2 - away2));
-    std::int64_t first = std::min(cell_of(center - half), nearest), last = std::max(cell_of(center + half), nearest);
-    while (!passes(distance2(first))) ++first;
-    while (first > 0 && passes(distance2(first - 1))) --first;
-    while (!passes(distance2(last))) --last;
-    while (last < cells - 1 && passes(distance2(last + 1))) ++last;
-    return std::array<std::int64_t, 2>{first, last + 1};
-  };
-  const auto within = neighbours(out2, [&](double distance) { return distance <= out2; });
-  clear_bits(bits, 0, within[0]);
-  clear_bits(bits, within[1], cells);
-  const auto hole = neighbours(in2, [&](double distance) { return distance < in2; });
-  clear_bits(bits, hole[0], hole[1]);
+RingLines VoxelRows::lines_along(const Axis& axis) {
+  RingLines lines{axis.lower, axis.step, static_cast<double>(axis.center.size()), {}, {}, {}, {}};
+  return lines;
+}
+
+/// Clears what lies outside of the ring of one line.
+void VoxelRows::cut(const RingCells& cells, std::size_t line, std::size_t size, std::uint64_t* bits) {
+  const auto whole = [](double number) { return static_cast<std::int64_t>(number); };
+  const std::int64_t first = whole(cells.first[line]), end = whole(cells.end[line]),
+                     last = static_cast<std::int64_t>(size);
+  if (first >= end) {
+    clear_bits(bits, 0, last);
+    return;
+  }
+  clear_bits(bits, 0, first);
+  clear_bits(bits, end, last);
+  clear_bits(bits, whole(cells.hole_first[line]), whole(cells.hole_end[line]));
 }
 
 bool VoxelRows::fill_plane(const Design<double>& d, const Frame<double>& f, const Cuts& c, double at) {
   if (at < f.range[c.normal].lower || at > f.range[c.normal].upper) return false;
   const auto fill = [&](std::size_t coordinate, std::size_t other, const Axis& axis, Bits& bits) {
-    set_bits(bits.data(), bits.size(), axis.center.size());
+    const std::size_t size = axis.center.size();
+    set_bits(bits.data(), bits.size(), size);
     const auto& range = f.range[coordinate];
     const auto begin = axis.center.begin(), end = axis.center.end();
     clear_bits(bits.data(), 0, std::lower_bound(begin, end, range.lower) - begin);
     clear_bits(bits.data(), std::upper_bound(begin, end, range.upper) - begin, end - begin);
-    for (std::size_t i = 0; i < 4; ++i)
-      if (kPlane[i][0] != other && kPlane[i][1] != other)
-        cut_ring(axis, f.center[i][coordinate], at - f.center[i][c.normal], d.in2[i], d.out2[i], bits.data());
+    RingLines lines = lines_along(axis);
+    std::size_t rings = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (kPlane[i][0] == other || kPlane[i][1] == other) continue;
+      lines.center[rings] = f.center[i][coordinate];
+      lines.away[rings] = at - f.center[i][c.normal];
+      lines.in2[rings] = d.in2[i];
+      lines.out2[rings++] = d.out2[i];
+    }
+    if (rings > 0) {
+      const RingCells cells = with_instruction_set([&]<InstructionSet set>() { return cells_in_rings<set>(lines); });
+      for (std::size_t ring = 0; ring < rings; ++ring) cut(cells, ring, size, bits.data());
+    }
     return std::any_of(bits.begin(), bits.end(), [](std::uint64_t word) { return word != 0; });
   };
   return fill(c.u, c.v, u_, plane_u_) && fill(c.v, c.u, v_, plane_v_);
 }
 
 void VoxelRows::fill_coupled(const Design<double>& d, const Frame<double>& f, const Cuts& c) {
-  for (std::size_t j = 0; j < u_.center.size(); ++j) {
-    std::uint64_t* const bits = coupled_.data() + j * words_;
-    set_bits(bits, words_, v_.center.size());
-    for (std::size_t i = 0; i < 4; ++i)
-      if (kPlane[i][0] != c.normal && kPlane[i][1] != c.normal)
-        cut_ring(v_, f.center[i][c.v], u_.center[j] - f.center[i][c.u], d.in2[i], d.out2[i], bits);
+  const std::size_t size = v_.center.size(), columns = u_.center.size();
+  for (std::size_t j = 0; j < columns; ++j) set_bits(coupled_.data() + j * words_, words_, size);
+  RingLines lines = lines_along(v_);
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (kPlane[i][0] == c.normal || kPlane[i][1] == c.normal) continue;
+    std::fill_n(lines.center, kLanes, f.center[i][c.v]);
+    std::fill_n(lines.in2, kLanes, d.in2[i]);
+    std::fill_n(lines.out2, kLanes, d.out2[i]);
+    for (std::size_t j = 0; j < columns; j += kLanes) {
+      const std::size_t count = std::min<std::size_t>(kLanes, columns - j);
+      for (std::size_t k = 0; k < count; ++k) lines.away[k] = u_.center[j + k] - f.center[i][c.u];
+      const RingCells cells = with_instruction_set([&]<InstructionSet set>() { return cells_in_rings<set>(lines); });
+      for (std::size_t k = 0; k < count; ++k) cut(cells, k, size, coupled_.data() + (j + k) * words_);
+    }
   }
 }
 

@@ -2,8 +2,8 @@
 //
 // A limb's ring couples two coordinates only. So of a plane of cells (outer coordinate fixed) what the rings and
 // slides leave of u, of v, and of v over each u are three kinds of bit rows, and a column's feasible cells are the
-// bits that two rows share. Rows come from the ends of chords; the plain test of a cell decides the cells next to an
-// end, so that rounding cannot tell the two ways apart.
+// bits that two rows share. Rows come from the ends of chords (crr_cru_rings.hpp); the plain test of a cell decides the
+// cells next to an end, so that rounding cannot tell the two ways apart.
 #pragma once
 
 #include <bit>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/mechanisms/crr_cru_frame.hpp"
+#include "engine/mechanisms/crr_cru_rings.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 
 namespace pkm::crr_cru {
@@ -70,7 +71,8 @@ class VoxelRows {
   bool fill_plane(const Design<double>& d, const Frame<double>& f, const Cuts& c, double at);
   /// What the rings that couple u and v leave of v over each u.
   void fill_coupled(const Design<double>& d, const Frame<double>& f, const Cuts& c);
-  static void cut_ring(const Axis& axis, double center, double away, double in2, double out2, std::uint64_t* bits);
+  static RingLines lines_along(const Axis& axis);
+  static void cut(const RingCells& cells, std::size_t line, std::size_t size, std::uint64_t* bits);
 
   Axis u_, v_;
   std::size_t words_ = 0;
