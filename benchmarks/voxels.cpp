@@ -6,6 +6,7 @@
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/peers/voxel_loop.hpp"
 #include "benchmarks/timing.hpp"
+#include "engine/core/instruction_set.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/four_ppa_two_par_voxels.hpp"
@@ -78,6 +79,32 @@ void off_plane(benchmark::State& state) {
   }
 }
 BENCHMARK(off_plane)->Name("voxel_survey/off_plane")->Unit(benchmark::kMicrosecond);
+
+// What wider vectors bring; `set` is 0 for the baseline, 1 for AVX2, 2 for AVX-512.
+void on_set(benchmark::State& state, bool conditioning) {
+  const auto all = optimal_design();
+  Demand demand;
+  demand.conditioning = conditioning;
+  const auto surveyor = four_ppa().prepare(voxel_plan(without_limits()), demand);
+  Survey<double> result;
+  use_instruction_set(static_cast<InstructionSet>(state.range(0)));
+  for (auto _ : state) {
+    surveyor->survey(all, result);
+    benchmark::DoNotOptimize(result.volume);
+  }
+  use_instruction_set(widest_instruction_set());
+}
+const int kWidest = static_cast<int>(widest_instruction_set());
+BENCHMARK_CAPTURE(on_set, count, false)
+    ->Name("instruction_set/voxel_survey")
+    ->ArgName("set")
+    ->DenseRange(0, kWidest)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(on_set, conditioning, true)
+    ->Name("instruction_set/conditioning")
+    ->ArgName("set")
+    ->DenseRange(0, kWidest)
+    ->Unit(benchmark::kMicrosecond);
 
 // Grids of n^3 cells: the cost follows the n^2 columns.
 void grid(benchmark::State& state) {

@@ -39,9 +39,7 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --front, --stage, --set, --masses, "
-       "--json; did "
-       "you mean "
-       "'--json'?"},
+       "--json, --threads, --instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},
