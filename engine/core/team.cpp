@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace pkm {
 namespace {
@@ -32,9 +33,12 @@ void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
 
 }  // namespace
 
+int team_size(int threads) {
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 Team::Team(int threads) : next_(kNoPiece) {
-  if (threads <= 0) threads = static_cast<int>(std::thread::hardware_concurrency());
-  for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+  for (int i = 1; i < team_size(threads); ++i) helpers_.emplace_back([this] { help(); });
 }
 
 Team::~Team() {
@@ -64,6 +68,7 @@ void Team::share(std::size_t pieces, WorkRef work) {
        done = done_.load(std::memory_order_acquire))
     await_change(done_, done);
   next_.store((job << 32) | kNoPiece, std::memory_order_relaxed);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 /// Works on pieces until none is left.
@@ -76,7 +81,12 @@ void Team::take_pieces() {
     const std::uint32_t count = std::max(1u, (pieces - begin) / (2 * static_cast<std::uint32_t>(threads())));
     if (!next_.compare_exchange_weak(next, next + count, std::memory_order_acquire, std::memory_order_acquire))
       continue;
-    work(begin, begin + count);
+    try {
+      work(begin, begin + count);
+    } catch (...) {
+      const std::lock_guard lock(failing_);
+      if (!failure_) failure_ = std::current_exception();
+    }
     if (done_.fetch_add(count, std::memory_order_release) + count == pieces) done_.notify_one();
     next = next_.load(std::memory_order_acquire);
   }

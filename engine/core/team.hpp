@@ -8,12 +8,14 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 namespace pkm {
 
-/// A reference to a function object that works on the pieces [begin, end). It must not throw.
+/// A reference to a function object that works on the pieces [begin, end).
 class WorkRef {
  public:
   template <class F>
@@ -31,9 +33,12 @@ class WorkRef {
   Call call_;
 };
 
+/// How many threads are meant: the number itself, or for 0 as many as the machine has cores.
+int team_size(int threads);
+
 class Team {
  public:
-  /// @param threads  with the one that calls; 0: as many as the machine has cores
+  /// @param threads  with the one that calls, as for team_size()
   explicit Team(int threads = 0);
   ~Team();
   Team(const Team&) = delete;
@@ -43,7 +48,8 @@ class Team {
 
   /// Has work(begin, end) done for all of [0, pieces), each piece once, in any order and on any thread; returns when
   /// all are done. Whoever is free takes a share of what is left, so shares get smaller towards the end. From one
-  /// thread at a time, and not from within a piece.
+  /// thread at a time, and not from within a piece. What the work throws is thrown here, once all are done or have
+  /// failed; of several exceptions one.
   void share(std::size_t pieces, WorkRef work);
 
  private:
@@ -60,6 +66,8 @@ class Team {
   alignas(64) std::atomic<std::uint32_t> done_ = 0;  ///< pieces of the job
   alignas(64) std::atomic<std::uint32_t> jobs_ = 0;  ///< what sleepers wait for
   std::atomic<bool> ends_ = false;
+  std::mutex failing_;
+  std::exception_ptr failure_;  ///< of the job
   std::vector<std::thread> helpers_;
 };
 
@@ -78,8 +86,8 @@ class LentTeam {
 /// Whether a team of more than one thread is lent to the calling thread.
 bool has_team();
 
-/// The same by the team lent to this thread, if there is one; else at once. What a piece computes must not depend on
-/// which thread does it. Within a piece no team is lent.
+/// Team::share by the team lent to this thread, if there is one; else work(0, pieces) here. What a piece computes must
+/// not depend on which thread does it. Within a piece no team is lent.
 void share_pieces(std::size_t pieces, WorkRef work);
 
 }  // namespace pkm

@@ -9,6 +9,7 @@
 #include "experiments/app/catalogue_json.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
+#include "experiments/app/running.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -162,9 +163,7 @@ void add_evaluate(CLI::App& app, Session& session) {
       "exact columns without limits, for every objective that serves it. An infeasible design is no error.\n"
       "Example: pkmopt evaluate experiments/4ppa-2par/paper-problem.toml --set a=0.3,b=1 --json");
   const auto threads = std::make_shared<int>(0);
-  command->add_option("--threads", *threads, "Number of threads (default: one per core)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add_threads(*command, *threads);
   command->callback(
       [&session, arguments, threads] { session.exit_code = evaluate(session.catalogues, *arguments, *threads); });
 }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -37,12 +38,11 @@ void add_instruction_set(CLI::App& command) {
     if (found == known.end())
       throw pkm::ConfigError({"", 0, "--instruction-set"}, "'" + name + "'", "one of " + pkm::join(known),
                              pkm::nearest_name(name, known));
-    const auto set = static_cast<pkm::InstructionSet>(found - known.begin());
-    if (set > pkm::widest_instruction_set())
-      throw pkm::ConfigError(
-          {"", 0, "--instruction-set"}, "'" + name + "'",
-          "what this processor has: " + std::string(name_of(pkm::widest_instruction_set())) + " or less");
-    pkm::use_instruction_set(set);
+    try {
+      pkm::use_instruction_set(static_cast<pkm::InstructionSet>(found - known.begin()));
+    } catch (const std::invalid_argument& reason) {
+      throw pkm::ConfigError({"", 0, "--instruction-set"}, reason.what());
+    }
   };
   command
       .add_option_function<std::string>("--instruction-set", choose,

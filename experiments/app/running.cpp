@@ -13,10 +13,14 @@
 
 namespace pkm {
 
-void add_running_options(CLI::App& command, RunningArguments& arguments) {
-  command.add_option("--threads", arguments.threads, "Number of threads (default: one per core)")
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Number of threads (default: one per core)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
+}
+
+void add_running_options(CLI::App& command, RunningArguments& arguments) {
+  add_threads(command, arguments.threads);
   command.add_flag("--quiet", arguments.quiet, "Print nothing but errors and warnings");
 }
 
@@ -27,7 +31,7 @@ RunOptions run_options(const RunningArguments& arguments) {
   return options;
 }
 
-int threads_of(const RunningArguments& arguments) { return ParallelEvaluator(arguments.threads).threads(); }
+int threads_of(const RunningArguments& arguments) { return team_size(arguments.threads); }
 
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments) {
   if (arguments.quiet) return std::make_unique<Progress>();

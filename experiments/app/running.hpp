@@ -17,6 +17,8 @@ struct RunningArguments {
   bool quiet = false;
 };
 
+/// Declares --threads.
+void add_threads(CLI::App& command, int& threads);
 /// Declares --threads and --quiet.
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 

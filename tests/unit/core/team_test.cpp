@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <numeric>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -26,6 +26,20 @@ TEST(Team, DoesEveryPieceOnce) {
       }
     }
   }
+}
+
+TEST(Team, ThrowsWhatAPieceThrowsOnAnyThread) {
+  Team team(2);
+  std::atomic<int> begun = 0;
+  const auto fail_together = [&](std::size_t, std::size_t) {  // one on each thread
+    ++begun;
+    while (begun < 2) std::this_thread::yield();
+    throw std::runtime_error("a piece");
+  };
+  EXPECT_THROW(team.share(2, fail_together), std::runtime_error);
+  std::atomic<int> after = 0;  // the team goes on, and has forgotten the failure
+  team.share(10, [&](std::size_t begin, std::size_t end) { after += static_cast<int>(end - begin); });
+  EXPECT_EQ(after, 10);
 }
 
 TEST(Team, WakesThreadsThatSleep) {
