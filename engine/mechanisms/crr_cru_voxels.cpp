@@ -5,26 +5,14 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// Clears bits [first, end).
-void clear_bits(std::uint64_t* bits, std::int64_t first, std::int64_t end) {
-  if (first >= end) return;
-  const auto from = static_cast<std::size_t>(first), to = static_cast<std::size_t>(end);
-  const std::uint64_t keep_below = (std::uint64_t{1} << (from % 64)) - 1;
-  const std::uint64_t keep_above = to % 64 == 0 ? 0 : ~((std::uint64_t{1} << (to % 64)) - 1);
-  const std::size_t a = from / 64, b = (to - 1) / 64;
-  if (a == b) {
-    bits[a] &= keep_below | keep_above;
-    return;
-  }
-  bits[a] &= keep_below;
-  for (std::size_t w = a + 1; w < b; ++w) bits[w] = 0;
-  bits[b] &= keep_above;
-}
-
-/// Sets bits [0, size) of `words` words and clears the rest.
-void set_bits(std::uint64_t* bits, std::size_t words, std::size_t size) {
-  std::fill_n(bits, words, ~std::uint64_t{0});
-  if (size % 64 != 0) bits[words - 1] = (std::uint64_t{1} << (size % 64)) - 1;
+/// Of the cells [first, end) those in word number w, as its bits.
+std::uint64_t bits_of(std::int64_t first, std::int64_t end, std::size_t w) {
+  const auto below = [w](std::int64_t cell) {
+    const std::int64_t bit = cell - 64 * static_cast<std::int64_t>(w);
+    const std::uint64_t some = (std::uint64_t{1} << (bit & 63)) - 1;
+    return bit <= 0 ? 0 : bit >= 64 ? ~std::uint64_t{0} : some;
+  };
+  return below(end) & ~below(first);
 }
 
 }  // namespace
@@ -47,85 +35,71 @@ Box default_box(const Design<double>& d, const Held& held) {
   return box;
 }
 
-void VoxelRows::prepare(const VoxelGrid& grid, const GridAxes& axes) {
-  const auto fill = [&grid](Axis& axis, std::size_t which) {
-    axis.lower = grid.lower[which];
-    axis.step = grid.step[which];
-    axis.center.resize(static_cast<std::size_t>(grid.cells[which]));
+void VoxelRows::prepare(const Design<double>& d, const Held& held, const VoxelGrid& grid, const GridAxes& axes) {
+  const auto make = [](Axis& axis, std::size_t cells, double lower, double step) {
+    axis.cells = cells;
+    axis.lower = lower;
+    axis.step = step;
+    axis.center.resize((cells + kLanes - 1) / kLanes * kLanes);
+  };
+  const auto from_grid = [&](Axis& axis, std::size_t which) {
+    make(axis, static_cast<std::size_t>(grid.cells[which]), grid.lower[which], grid.step[which]);
     for (std::size_t k = 0; k < axis.center.size(); ++k)
       axis.center[k] = grid.centre(which, static_cast<std::int64_t>(k));
   };
-  fill(u_, axes.u);
-  fill(v_, axes.v);
-  words_ = (v_.center.size() + 63) / 64;
-  plane_u_.resize((u_.center.size() + 63) / 64);
-  plane_v_.resize(words_);
-  row_.resize(words_);
-  coupled_.resize(u_.center.size() * words_);
-}
-
-RingLines VoxelRows::lines_along(const Axis& axis) {
-  RingLines lines{axis.lower, axis.step, static_cast<double>(axis.center.size()), {}, {}, {}, {}};
-  return lines;
-}
-
-/// Clears what lies outside of the ring of one line.
-void VoxelRows::cut(const RingCells& cells, std::size_t line, std::size_t size, std::uint64_t* bits) {
-  const auto whole = [](double number) { return static_cast<std::int64_t>(number); };
-  const std::int64_t first = whole(cells.first[line]), end = whole(cells.end[line]),
-                     last = static_cast<std::int64_t>(size);
-  if (first >= end) {
-    clear_bits(bits, 0, last);
-    return;
+  from_grid(u_, axes.u);
+  from_grid(v_, axes.v);
+  if (held.coordinate == 3) {
+    from_grid(n_, axes.outer);
+  } else {
+    make(n_, 1, 0, 0);
+    std::ranges::fill(n_.center, held_value(d.g, held));
   }
-  clear_bits(bits, 0, first);
-  clear_bits(bits, end, last);
-  clear_bits(bits, whole(cells.hole_first[line]), whole(cells.hole_end[line]));
+  const auto lines = std::max(n_.center.size(), u_.center.size());
+  for (auto* list : {&cells_.first, &cells_.end, &cells_.hole_first, &cells_.hole_end}) list->resize(lines);
+  row_.resize((v_.cells + 63) / 64);
 }
 
-bool VoxelRows::fill_plane(const Design<double>& d, const Frame<double>& f, const Cuts& c, double at) {
-  if (at < f.range[c.normal].lower || at > f.range[c.normal].upper) return false;
-  const auto fill = [&](std::size_t coordinate, std::size_t other, const Axis& axis, Bits& bits) {
-    const std::size_t size = axis.center.size();
-    set_bits(bits.data(), bits.size(), size);
-    const auto& range = f.range[coordinate];
-    const auto begin = axis.center.begin(), end = axis.center.end();
-    clear_bits(bits.data(), 0, std::lower_bound(begin, end, range.lower) - begin);
-    clear_bits(bits.data(), std::upper_bound(begin, end, range.upper) - begin, end - begin);
-    RingLines lines = lines_along(axis);
-    std::size_t rings = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (kPlane[i][0] == other || kPlane[i][1] == other) continue;
-      lines.center[rings] = f.center[i][coordinate];
-      lines.away[rings] = at - f.center[i][c.normal];
-      lines.in2[rings] = d.in2[i];
-      lines.out2[rings++] = d.out2[i];
-    }
-    if (rings > 0) {
-      const RingCells cells = with_instruction_set([&]<InstructionSet set>() { return cells_in_rings<set>(lines); });
-      for (std::size_t ring = 0; ring < rings; ++ring) cut(cells, ring, size, bits.data());
-    }
-    return std::any_of(bits.begin(), bits.end(), [](std::uint64_t word) { return word != 0; });
+void VoxelRows::fill_tables(const Design<double>& d, const Frame<double>& f, const Cuts& c) {
+  any_ = !f.singular && fill(d, f, c.normal, n_, c.u, u_, u_at_n_) && fill(d, f, c.normal, n_, c.v, v_, v_at_n_) &&
+         fill(d, f, c.u, u_, c.v, v_, v_at_u_);
+}
+
+bool VoxelRows::fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across, std::size_t b,
+                     const Axis& along, BitTable& table) {
+  const std::size_t words = (along.cells + 63) / 64;
+  const auto inside = [](const Axis& axis, const SlideRange<double>& range) {
+    const auto begin = axis.center.begin(), end = begin + static_cast<std::ptrdiff_t>(axis.cells);
+    return std::array{std::lower_bound(begin, end, range.lower) - begin,
+                      std::upper_bound(begin, end, range.upper) - begin};
   };
-  return fill(c.u, c.v, u_, plane_u_) && fill(c.v, c.u, v_, plane_v_);
-}
-
-void VoxelRows::fill_coupled(const Design<double>& d, const Frame<double>& f, const Cuts& c) {
-  const std::size_t size = v_.center.size(), columns = u_.center.size();
-  for (std::size_t j = 0; j < columns; ++j) set_bits(coupled_.data() + j * words_, words_, size);
-  RingLines lines = lines_along(v_);
+  const auto [first, end] = inside(along, f.range[b]);
+  range_.resize(words);
+  for (std::size_t w = 0; w < words; ++w) range_[w] = bits_of(first, end, w);
+  table.words = words;
+  table.bits.assign(across.cells * words, 0);
+  const auto [first_line, end_line] = inside(across, f.range[a]);
+  const auto rows_begin = static_cast<std::size_t>(first_line), rows_end = static_cast<std::size_t>(end_line);
+  for (std::size_t row = rows_begin; row < rows_end; ++row) std::ranges::copy(range_, table.bits.data() + row * words);
   for (std::size_t i = 0; i < 4; ++i) {
-    if (kPlane[i][0] == c.normal || kPlane[i][1] == c.normal) continue;
-    std::fill_n(lines.center, kLanes, f.center[i][c.v]);
-    std::fill_n(lines.in2, kLanes, d.in2[i]);
-    std::fill_n(lines.out2, kLanes, d.out2[i]);
-    for (std::size_t j = 0; j < columns; j += kLanes) {
-      const std::size_t count = std::min<std::size_t>(kLanes, columns - j);
-      for (std::size_t k = 0; k < count; ++k) lines.away[k] = u_.center[j + k] - f.center[i][c.u];
-      const RingCells cells = with_instruction_set([&]<InstructionSet set>() { return cells_in_rings<set>(lines); });
-      for (std::size_t k = 0; k < count; ++k) cut(cells, k, size, coupled_.data() + (j + k) * words_);
-    }
+    if (!(kPlane[i][0] == a && kPlane[i][1] == b) && !(kPlane[i][0] == b && kPlane[i][1] == a)) continue;
+    const RingLines lines{along.lower,
+                          along.step,
+                          static_cast<double>(along.cells),
+                          across.center.data(),
+                          across.center.size(),
+                          f.center[i][b],
+                          f.center[i][a],
+                          d.in2[i],
+                          d.out2[i]};
+    with_instruction_set([&]<InstructionSet set>() { cells_in_ring<set>(lines, cells_); });
+    const auto whole = [](double cell) { return static_cast<std::int64_t>(cell); };
+    for (std::size_t row = rows_begin; row < rows_end; ++row)
+      for (std::size_t w = 0; w < words; ++w)
+        table.bits[row * words + w] &= bits_of(whole(cells_.first[row]), whole(cells_.end[row]), w) &
+                                       ~bits_of(whole(cells_.hole_first[row]), whole(cells_.hole_end[row]), w);
   }
+  return std::ranges::any_of(table.bits, [](std::uint64_t word) { return word != 0; });
 }
 
 }  // namespace pkm::crr_cru

@@ -1,13 +1,15 @@
 // (3CRR/R)&CRU and Quadrupteron: voxel surveys from rows of bits. Same cells as the plain loop over poses.
 //
-// A limb's ring couples two coordinates only. So of a plane of cells (outer coordinate fixed) what the rings and
-// slides leave of u, of v, and of v over each u are three kinds of bit rows, and a column's feasible cells are the
-// bits that two rows share. Rows come from the ends of chords (crr_cru_rings.hpp); the plain test of a cell decides the
-// cells next to an end, so that rounding cannot tell the two ways apart.
+// At given phi a limb's ring and a slide's range couple two coordinates at most. So what is feasible of a section's
+// plane n, its coordinates u and v are three tables of bits: of u at each n, of v at each n, and of v at each u; the
+// feasible cells of a column along v are the bits that its two rows share. Rows come from the ends of chords
+// (crr_cru_rings.hpp); the plain test of a cell decides the cells next to an end, so that rounding cannot tell the two
+// ways apart.
 #pragma once
 
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/mechanisms/crr_cru_frame.hpp"
@@ -25,58 +27,64 @@ inline GridAxes grid_axes(const Held& held) { return held.coordinate == 3 ? Grid
 /// Holds every feasible pose: positions by the slides' ranges, phi by kappa_p >= 0. Order of axes as the sweep's.
 Box default_box(const Design<double>& d, const Held& held);
 
+/// Of every cell along one coordinate, the feasible cells along another: a row of bits in whole words.
+struct BitTable {
+  std::size_t words = 0;
+  std::vector<std::uint64_t> bits;
+
+  std::span<const std::uint64_t> row(std::size_t i) const { return {bits.data() + i * words, words}; }
+};
+
 /// Counts cells. Holds storage; use one per thread.
 class VoxelRows {
  public:
-  /// Calls visit(outer, u, row) for every outer cell and u cell that has feasible cells, with `words()` words of bits.
+  /// Calls visit(outer, u, row) for every outer cell and u cell that has feasible cells, with the row's words of bits.
   template <class Visit>
   void visit_columns(const Design<double>& d, const Held& held, const VoxelGrid& grid, const Visit& visit) {
     const GridAxes axes = grid_axes(held);
     const Cuts c = cuts(held);
-    const double held_at = held_value(d.g, held);
-    prepare(grid, axes);
-    Frame<double> f;
-    if (!c.outer_is_phi) {
-      f = frame(d, held_at);
-      if (f.singular) return;
-      fill_coupled(d, f, c);
-    }
+    prepare(d, held, grid, axes);
+    if (!c.outer_is_phi) fill_tables(d, frame(d, held_value(d.g, held)), c);
     for (std::int64_t k = 0; k < grid.cells[axes.outer]; ++k) {
-      const double outer = grid.centre(axes.outer, k);
-      if (c.outer_is_phi) {
-        f = frame(d, outer);
-        if (f.singular) continue;
-      }
-      if (!fill_plane(d, f, c, c.outer_is_phi ? held_at : outer)) continue;
-      if (c.outer_is_phi) fill_coupled(d, f, c);
-      for (std::size_t i = 0; i < u_.center.size(); ++i) {
-        if (!(plane_u_[i / 64] >> (i % 64) & 1)) continue;
-        std::uint64_t any = 0;
-        for (std::size_t w = 0; w < words_; ++w) any |= row_[w] = plane_v_[w] & coupled_[i * words_ + w];
-        if (any) visit(k, static_cast<std::int64_t>(i), row_);
-      }
+      if (c.outer_is_phi) fill_tables(d, frame(d, grid.centre(axes.outer, k)), c);
+      const std::size_t n = c.outer_is_phi ? 0 : static_cast<std::size_t>(k);
+      if (any_) visit_plane(n, [&](std::size_t u) { visit(k, static_cast<std::int64_t>(u), row_); });
     }
   }
-  std::size_t words() const { return words_; }
 
  private:
-  using Bits = std::vector<std::uint64_t>;
+  /// A coordinate's cells, and storage beyond them up to whole lanes.
   struct Axis {
     std::vector<double> center;
     double lower, step;
+    std::size_t cells;
   };
 
-  void prepare(const VoxelGrid& grid, const GridAxes& axes);
-  /// What slides and rings that do not couple u and v leave of them on the plane at `at`; false: nothing.
-  bool fill_plane(const Design<double>& d, const Frame<double>& f, const Cuts& c, double at);
-  /// What the rings that couple u and v leave of v over each u.
-  void fill_coupled(const Design<double>& d, const Frame<double>& f, const Cuts& c);
-  static RingLines lines_along(const Axis& axis);
-  static void cut(const RingCells& cells, std::size_t line, std::size_t size, std::uint64_t* bits);
+  void prepare(const Design<double>& d, const Held& held, const VoxelGrid& grid, const GridAxes& axes);
+  /// All tables at one phi; any_ is false where they leave nothing.
+  void fill_tables(const Design<double>& d, const Frame<double>& f, const Cuts& c);
+  /// What slides and the rings that couple the coordinates a and b leave of b at each a; false: nothing.
+  bool fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across, std::size_t b,
+            const Axis& along, BitTable& table);
 
-  Axis u_, v_;
-  std::size_t words_ = 0;
-  Bits plane_u_, plane_v_, coupled_, row_;
+  template <class Visit>
+  void visit_plane(std::size_t n, const Visit& visit) {
+    const auto of_u = u_at_n_.row(n), of_v = v_at_n_.row(n);
+    for (std::size_t w = 0; w < of_u.size(); ++w)
+      for (std::uint64_t bits = of_u[w]; bits != 0; bits &= bits - 1) {
+        const std::size_t u = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
+        const auto at_u = v_at_u_.row(u);
+        std::uint64_t any = 0;
+        for (std::size_t i = 0; i < of_v.size(); ++i) any |= row_[i] = of_v[i] & at_u[i];
+        if (any) visit(u);
+      }
+  }
+
+  Axis n_, u_, v_;
+  BitTable u_at_n_, v_at_n_, v_at_u_;
+  std::vector<std::uint64_t> row_, range_;
+  RingCells cells_;
+  bool any_ = false;
 };
 
 }  // namespace pkm::crr_cru
