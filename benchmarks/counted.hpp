@@ -13,6 +13,12 @@ namespace pkm::benchmarks {
 struct Operations {
   std::int64_t sums = 0, products = 0, quotients = 0, roots = 0;
   std::int64_t all() const { return sums + products + quotients + roots; }
+  friend Operations operator*(std::int64_t times, const Operations& each) {
+    return {times * each.sums, times * each.products, times * each.quotients, times * each.roots};
+  }
+  friend Operations operator+(const Operations& a, const Operations& b) {
+    return {a.sums + b.sums, a.products + b.products, a.quotients + b.quotients, a.roots + b.roots};
+  }
 };
 inline Operations operations;
 

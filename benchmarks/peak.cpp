@@ -1,9 +1,13 @@
 #include "benchmarks/peak.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <benchmark/benchmark.h>
 #if defined(__x86_64__)
+#if !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wuninitialized"  // false alarm of GCC 12 in its own header (its bug 105593)
+#endif
 #include <immintrin.h>
 #endif
 
@@ -32,6 +36,40 @@ constexpr int kRounds = 200000, kChains = 16;  // as many sums side by side as h
     for (int k = 0; k < kChains / 2; ++k) sum[k] = _mm256_fmadd_pd(sum[k], factor, factor);
   for (const __m256d& s : sum) benchmark::DoNotOptimize(s[0] + s[1] + s[2] + s[3]);
 }
+
+// Of vectors on which nothing depends but the next of the same chain.
+[[gnu::target("avx512f")]] void divide_512() {
+  __m512d x[kChains], by = _mm512_set1_pd(1.0001);
+  for (__m512d& each : x) each = by;
+  for (int i = 0; i < kRounds / 16; ++i)
+#pragma GCC unroll 16
+    for (int k = 0; k < kChains; ++k) x[k] = _mm512_div_pd(x[k], by);
+  for (const __m512d& each : x) benchmark::DoNotOptimize(each[0]);
+}
+[[gnu::target("avx512f")]] void root_512() {
+  __m512d x[kChains];
+  for (__m512d& each : x) each = _mm512_set1_pd(1.0001);
+  for (int i = 0; i < kRounds / 16; ++i)
+#pragma GCC unroll 16
+    for (int k = 0; k < kChains; ++k) x[k] = _mm512_sqrt_pd(x[k]);
+  for (const __m512d& each : x) benchmark::DoNotOptimize(each[0]);
+}
+[[gnu::target("avx2")]] void divide_256() {
+  __m256d x[kChains], by = _mm256_set1_pd(1.0001);
+  for (__m256d& each : x) each = by;
+  for (int i = 0; i < kRounds / 16; ++i)
+#pragma GCC unroll 16
+    for (int k = 0; k < kChains; ++k) x[k] = _mm256_div_pd(x[k], by);
+  for (const __m256d& each : x) benchmark::DoNotOptimize(each[0]);
+}
+[[gnu::target("avx2")]] void root_256() {
+  __m256d x[kChains];
+  for (__m256d& each : x) each = _mm256_set1_pd(1.0001);
+  for (int i = 0; i < kRounds / 16; ++i)
+#pragma GCC unroll 16
+    for (int k = 0; k < kChains; ++k) x[k] = _mm256_sqrt_pd(x[k]);
+  for (const __m256d& each : x) benchmark::DoNotOptimize(each[0]);
+}
 #endif
 void multiply_add_plainly() {
   double sum[kChains];
@@ -39,6 +77,28 @@ void multiply_add_plainly() {
   for (int i = 0; i < kRounds; ++i)
     for (int k = 0; k < kChains; ++k) sum[k] = sum[k] * 0.5 + 0.5;
   for (double& s : sum) benchmark::DoNotOptimize(s);
+}
+
+void divide_plainly() {
+  double x[kChains], by = 1.0001;
+  benchmark::DoNotOptimize(by);
+  for (double& each : x) each = by;
+  for (int i = 0; i < kRounds / 16; ++i)
+    for (double& each : x) each = each / by;
+  for (double& each : x) benchmark::DoNotOptimize(each);
+}
+void root_plainly() {
+  double x[kChains];
+  for (double& each : x) each = 1.0001;
+  for (int i = 0; i < kRounds / 16; ++i)
+    for (double& each : x) each = std::sqrt(each);
+  for (double& each : x) benchmark::DoNotOptimize(each);
+}
+
+double least_time(void (*work)()) {
+  double best = 1e9;
+  for (int i = 0; i < 10; ++i) best = std::min(best, seconds_of(work));
+  return best;
 }
 
 }  // namespace
@@ -56,16 +116,38 @@ double peak_flops() {
       lanes = 4;
     }
 #endif
-    double best = 1e9;
-    for (int i = 0; i < 10; ++i) best = std::min(best, seconds_of(work));
-    return 2.0 * kRounds * kChains * lanes / best;
+    return 2.0 * kRounds * kChains * lanes / least_time(work);
   }();
   return peak;
+}
+
+SlowOperations slow_operations() {
+  static const SlowOperations slow = [] {
+    void (*divide)() = divide_plainly;
+    void (*root)() = root_plainly;
+    double lanes = 1;
+#if defined(__x86_64__)
+    if (widest_instruction_set() == InstructionSet::avx512) {
+      divide = divide_512;
+      root = root_512;
+      lanes = 8;
+    } else if (widest_instruction_set() == InstructionSet::avx2) {
+      divide = divide_256;
+      root = root_256;
+      lanes = 4;
+    }
+#endif
+    const double numbers = kRounds / 16 * kChains * lanes;
+    return SlowOperations{least_time(divide) / numbers, least_time(root) / numbers};
+  }();
+  return slow;
 }
 
 void report_peak(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(peak_flops());
   state.counters["GFLOP_per_s"] = peak_flops() * 1e-9;
+  state.counters["division_ns"] = slow_operations().division * 1e9;
+  state.counters["root_ns"] = slow_operations().root * 1e9;
 }
 BENCHMARK(report_peak)->Name("peak/fused_multiply_add");
 

@@ -7,4 +7,11 @@ namespace pkm::benchmarks {
 /// the widest vectors that the processor has. Measured once, in some 20 ms.
 double peak_flops();
 
+/// Seconds that a division and a square root take, per number, on the same vectors. They occupy one unit of the
+/// processor that does nothing else meanwhile, so however many of them a kernel needs, this is the least it takes.
+struct SlowOperations {
+  double division, root;
+};
+SlowOperations slow_operations();
+
 }  // namespace pkm::benchmarks

@@ -51,8 +51,8 @@ class Stream {
   std::uint32_t generation_, individual_;
   Use use_;
   std::uint32_t block_ = 0;
-  std::array<std::uint32_t, 16> words_;  // four Philox blocks
-  std::size_t next_ = 16;
+  std::array<std::uint32_t, 12> words_;  // three Philox blocks: a child of four variables takes some 20 words
+  std::size_t next_ = 12;
   double spare_ = 0;
   bool has_spare_ = false;
 };

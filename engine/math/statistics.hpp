@@ -98,7 +98,8 @@ S weighted_deviation(const std::vector<S>& weight, const std::vector<S>& field) 
 /// weights that is position p (count - 1), the usual interpolation of order statistics. 0 without samples.
 inline double weighted_quantile(const std::vector<double>& weight, const std::vector<double>& field, double p) {
   if (field.empty()) return 0;
-  std::vector<std::size_t> order(field.size());
+  thread_local std::vector<std::size_t> order;
+  order.resize(field.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return field[a] != field[b] ? field[a] < field[b] : a < b; });

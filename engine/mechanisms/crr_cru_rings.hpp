@@ -1,7 +1,9 @@
-// (3CRR/R)&CRU and Quadrupteron: which cells of lines lie in a ring, kLanes lines side by side.
+// (3CRR/R)&CRU and Quadrupteron: which cells of lines lie in a ring, kLanes lines side by side; and how many cells rows
+// of bits have in common.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/core/instruction_set.hpp"
@@ -28,5 +30,20 @@ struct RingCells {
 /// The same cells that (place - across)^2 + (centre of the cell - center)^2 <= out2 and < in2 find one by one.
 template <InstructionSet set>
 void cells_in_ring(const RingLines& lines, RingCells& cells);
+
+/// One plane of cells: a column along v has the bits of `of_v` that its own row has, where `of_u` has its bit.
+struct PlaneRows {
+  const std::uint64_t *of_u, *of_v, *at_u;  ///< at_u: a row of `words` for each u
+  std::size_t u_cells, v_cells, words;
+};
+
+/// How many cells there are, and whether some are the first or the last along u or v.
+struct PlaneTally {
+  std::int64_t cells;
+  bool touches;
+};
+
+template <InstructionSet set>
+PlaneTally tally(const PlaneRows& rows);
 
 }  // namespace pkm::crr_cru

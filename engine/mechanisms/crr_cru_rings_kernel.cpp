@@ -47,6 +47,27 @@ void cells_in_ring(const RingLines& lines, RingCells& cells) {
   }
 }
 
+template <InstructionSet set>
+PlaneTally tally(const PlaneRows& rows) {
+  std::int64_t cells = 0;
+  std::uint64_t at_ends_of_u = 0, in_first = 0, in_last = 0;  // words of v
+  for (std::size_t u = 0; u < rows.u_cells; ++u) {
+    if (!(rows.of_u[u / 64] >> (u % 64) & 1)) continue;
+    const std::uint64_t* at_u = rows.at_u + u * rows.words;
+    std::uint64_t any = 0, word = 0;
+    for (std::size_t w = 0; w < rows.words; ++w) {
+      word = rows.of_v[w] & at_u[w];
+      if (w == 0) in_first |= word;
+      any |= word;
+      cells += __builtin_popcountll(word);
+    }
+    in_last |= word;
+    if (u == 0 || u == rows.u_cells - 1) at_ends_of_u |= any;
+  }
+  return {cells, at_ends_of_u != 0 || (in_first & 1) != 0 || (in_last >> ((rows.v_cells - 1) % 64) & 1) != 0};
+}
+
+template PlaneTally tally<PKM_INSTRUCTION_SET>(const PlaneRows&);
 template void cells_in_ring<PKM_INSTRUCTION_SET>(const RingLines&, RingCells&);
 
 }  // namespace pkm::crr_cru

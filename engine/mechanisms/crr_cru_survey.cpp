@@ -1,5 +1,7 @@
 #include "engine/mechanisms/crr_cru_survey.hpp"
 
+#include <utility>
+
 #include "engine/mechanisms/crr_cru_clear_cells.hpp"
 #include "engine/mechanisms/crr_cru_columns.hpp"
 #include "engine/mechanisms/crr_cru_inertia_tables.hpp"
@@ -183,59 +185,14 @@ class VoxelSurveyor final : public Surveyor {
     survey.clear();
     const Design<double> d = design(geometry(platform_, parameters), limits_);
     const VoxelGrid grid = grid_of(d);
-    const GridAxes axes = grid_axes(held_);
-    const bool over_phi = cuts(held_).outer_is_phi, inertia = demand_.dci || demand_.inertia_condition;
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume();
-    std::int64_t plane = -1, in_plane = 0;
-    const auto close_plane = [&] {
-      survey.feasible_cells += in_plane;
-      if (demand_.conditioning && !inertia && over_phi && in_plane > 0)
-        add_conditioning(d.g, demand_, grid.centre(axes.outer, plane),
-                         static_cast<double>(in_plane) * survey.cell_volume, survey);
-      in_plane = 0;
-    };
-    const std::int64_t last = grid.cells[axes.v] - 1;
-    thread_local InertiaTables tables;
-    Masses<double> b{};
-    double index = 0;  // conditioning at this phi
-    const std::array<int, 3> coordinates = swept_coordinates();
-    const double held_at = held_value(d.g, held_);
-    const auto set_phi = [&](double phi) {
-      tables.fill(d.g, b, mode_, phi, grid, coordinates, held_at);
-      if (demand_.conditioning) index = conditioning_at(d.g, demand_, phi);
-    };
-    if (inertia) {
-      b = masses(mass_model_, parameters);
-      if (!over_phi) set_phi(held_at);
-    }
-    visit_columns(parameters, d, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
-      if (outer != plane) {
-        close_plane();
-        if (inertia && over_phi) set_phi(grid.centre(axes.outer, outer));
-      }
-      plane = outer;
-      for (const std::uint64_t word : row) in_plane += std::popcount(word);
-      if (inertia) {
-        std::array<std::int64_t, 3> cell{};
-        cell[axes.outer] = outer;
-        cell[axes.u] = u;
-        for (std::size_t w = 0; w < row.size(); ++w)
-          for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
-            cell[axes.v] = static_cast<std::int64_t>(64 * w) + std::countr_zero(bits);
-            survey.weight.push_back(survey.cell_volume);
-            if (demand_.poses) survey.pose.push_back(pose_of(cell, grid, held_at));
-            if (demand_.conditioning) survey.conditioning.push_back(index);
-            add_inertia(tables.at(cell), demand_, survey);
-          }
-      }
-      survey.touches_box = survey.touches_box || outer == 0 || outer == grid.cells[axes.outer] - 1 || u == 0 ||
-                           u == grid.cells[axes.u] - 1 || (row.front() & 1) ||
-                           (row.back() >> static_cast<std::size_t>(last % 64) & 1);
-    });
-    close_plane();
+    if (demand_.dci || demand_.inertia_condition)
+      sample(parameters, d, grid, survey);
+    else
+      count(parameters, d, grid, survey);
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
-    if (demand_.conditioning && !inertia && !over_phi)
+    if (demand_.conditioning && survey.weight.empty())  // one phi for all
       add_conditioning(d.g, demand_, held_value(d.g, held_), survey.volume, survey);
   }
 
@@ -275,15 +232,89 @@ class VoxelSurveyor final : public Surveyor {
     for (std::size_t k = 0; k < 3; ++k) x[static_cast<std::size_t>(swept[k])] = grid.centre(k, cell[k]);
     return {x[0], x[1], x[2], x[3]};
   }
+  /// Cells alone, plane by plane. Where planes are of one phi each, its conditioning is a sample.
+  void count(std::span<const double> parameters, const Design<double>& d, const VoxelGrid& grid,
+             Survey<double>& survey) const {
+    const GridAxes axes = grid_axes(held_);
+    const bool over_phi = cuts(held_).outer_is_phi;
+    const auto add_plane = [&](std::int64_t outer, const PlaneTally& plane) {
+      if (plane.cells == 0) return;
+      survey.feasible_cells += plane.cells;
+      survey.touches_box = survey.touches_box || plane.touches || outer == 0 || outer == grid.cells[axes.outer] - 1;
+      if (demand_.conditioning && over_phi)
+        add_conditioning(d.g, demand_, grid.centre(axes.outer, outer),
+                         static_cast<double>(plane.cells) * survey.cell_volume, survey);
+    };
+    if (!limits_.clearance_min) {
+      rows().count_planes(d, held_, grid, add_plane);
+      return;
+    }
+    PlaneTally plane{};
+    std::int64_t current = 0;
+    visit_columns(parameters, d, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
+      if (outer != current) add_plane(std::exchange(current, outer), std::exchange(plane, {}));
+      for (const std::uint64_t word : row) plane.cells += std::popcount(word);
+      plane.touches = plane.touches || touches(u, row, grid, axes);
+    });
+    add_plane(current, plane);
+  }
+
+  /// Every cell, with its inertia.
+  void sample(std::span<const double> parameters, const Design<double>& d, const VoxelGrid& grid,
+              Survey<double>& survey) const {
+    const GridAxes axes = grid_axes(held_);
+    const bool over_phi = cuts(held_).outer_is_phi;
+    const Masses<double> b = masses(mass_model_, parameters);
+    const std::array<int, 3> coordinates = swept_coordinates();
+    const double held_at = held_value(d.g, held_);
+    thread_local InertiaTables tables;
+    double index = 0;  // conditioning at this phi
+    const auto set_phi = [&](double phi) {
+      tables.fill(d.g, b, mode_, phi, grid, coordinates, held_at);
+      if (demand_.conditioning) index = conditioning_at(d.g, demand_, phi);
+    };
+    if (!over_phi) set_phi(held_at);
+    std::int64_t plane = -1;
+    visit_columns(parameters, d, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
+      if (outer != plane && over_phi) set_phi(grid.centre(axes.outer, outer));
+      plane = outer;
+      std::array<std::int64_t, 3> cell{};
+      cell[axes.outer] = outer;
+      cell[axes.u] = u;
+      for (std::size_t w = 0; w < row.size(); ++w)
+        for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
+          cell[axes.v] = static_cast<std::int64_t>(64 * w) + std::countr_zero(bits);
+          ++survey.feasible_cells;
+          survey.weight.push_back(survey.cell_volume);
+          if (demand_.poses) survey.pose.push_back(pose_of(cell, grid, held_at));
+          if (demand_.conditioning) survey.conditioning.push_back(index);
+          add_inertia(tables.at(cell), demand_, survey);
+        }
+      survey.touches_box =
+          survey.touches_box || outer == 0 || outer == grid.cells[axes.outer] - 1 || touches(u, row, grid, axes);
+    });
+  }
+
+  /// Whether a column is at an end of u or has a cell at an end of v.
+  static bool touches(std::int64_t u, const std::vector<std::uint64_t>& row, const VoxelGrid& grid,
+                      const GridAxes& axes) {
+    const std::int64_t last = grid.cells[axes.v] - 1;
+    return u == 0 || u == grid.cells[axes.u] - 1 || (row.front() & 1) ||
+           (row.back() >> static_cast<std::size_t>(last % 64) & 1);
+  }
+
+  static VoxelRows& rows() {
+    thread_local VoxelRows rows;
+    return rows;
+  }
   template <class Visit>
   void visit_columns(std::span<const double> parameters, const Design<double>& d, const VoxelGrid& grid,
                      const Visit& visit) const {
-    thread_local VoxelRows rows;
     std::optional<ClearanceTest> test;
     if (limits_.clearance_min) test = {d.g, link_radii(parameters), mode_, *limits_.clearance_min};
     const double held_at = held_value(d.g, held_);
     visit_clear_columns(
-        rows, d, held_, grid, test, [&](const auto& cell) { return pose_of(cell, grid, held_at); }, visit);
+        rows(), d, held_, grid, test, [&](const auto& cell) { return pose_of(cell, grid, held_at); }, visit);
   }
 
   Platform platform_;

@@ -80,7 +80,8 @@ bool VoxelRows::fill(const Design<double>& d, const Frame<double>& f, std::size_
   table.bits.assign(across.cells * words, 0);
   const auto [first_line, end_line] = inside(across, f.range[a]);
   const auto rows_begin = static_cast<std::size_t>(first_line), rows_end = static_cast<std::size_t>(end_line);
-  for (std::size_t row = rows_begin; row < rows_end; ++row) std::ranges::copy(range_, table.bits.data() + row * words);
+  for (std::size_t row = rows_begin; row < rows_end; ++row)
+    for (std::size_t w = 0; w < words; ++w) table.bits[row * words + w] = range_[w];
   for (std::size_t i = 0; i < 4; ++i) {
     if (!(kPlane[i][0] == a && kPlane[i][1] == b) && !(kPlane[i][0] == b && kPlane[i][1] == a)) continue;
     const RingLines lines{along.lower,

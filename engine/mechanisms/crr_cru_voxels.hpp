@@ -41,15 +41,18 @@ class VoxelRows {
   /// Calls visit(outer, u, row) for every outer cell and u cell that has feasible cells, with the row's words of bits.
   template <class Visit>
   void visit_columns(const Design<double>& d, const Held& held, const VoxelGrid& grid, const Visit& visit) {
-    const GridAxes axes = grid_axes(held);
-    const Cuts c = cuts(held);
-    prepare(d, held, grid, axes);
-    if (!c.outer_is_phi) fill_tables(d, frame(d, held_value(d.g, held)), c);
-    for (std::int64_t k = 0; k < grid.cells[axes.outer]; ++k) {
-      if (c.outer_is_phi) fill_tables(d, frame(d, grid.centre(axes.outer, k)), c);
-      const std::size_t n = c.outer_is_phi ? 0 : static_cast<std::size_t>(k);
-      if (any_) visit_plane(n, [&](std::size_t u) { visit(k, static_cast<std::int64_t>(u), row_); });
-    }
+    visit_planes(d, held, grid, [&](std::int64_t outer, std::size_t n) {
+      visit_plane(n, [&](std::size_t u) { visit(outer, static_cast<std::int64_t>(u), row_); });
+    });
+  }
+  /// Calls visit(outer, tally) for outer cells, all those with feasible cells among them.
+  template <class Visit>
+  void count_planes(const Design<double>& d, const Held& held, const VoxelGrid& grid, const Visit& visit) {
+    visit_planes(d, held, grid, [&](std::int64_t outer, std::size_t n) {
+      const PlaneRows rows{u_at_n_.row(n).data(), v_at_n_.row(n).data(), v_at_u_.bits.data(), u_.cells, v_.cells,
+                           v_at_u_.words};
+      visit(outer, with_instruction_set([&]<InstructionSet set>() { return tally<set>(rows); }));
+    });
   }
 
  private:
@@ -67,6 +70,18 @@ class VoxelRows {
   bool fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across, std::size_t b,
             const Axis& along, BitTable& table);
 
+  /// Calls visit(outer, n) where the tables, filled, leave something; n: their row of the plane.
+  template <class Visit>
+  void visit_planes(const Design<double>& d, const Held& held, const VoxelGrid& grid, const Visit& visit) {
+    const GridAxes axes = grid_axes(held);
+    const Cuts c = cuts(held);
+    prepare(d, held, grid, axes);
+    if (!c.outer_is_phi) fill_tables(d, frame(d, held_value(d.g, held)), c);
+    for (std::int64_t k = 0; k < grid.cells[axes.outer]; ++k) {
+      if (c.outer_is_phi) fill_tables(d, frame(d, grid.centre(axes.outer, k)), c);
+      if (any_) visit(k, c.outer_is_phi ? 0 : static_cast<std::size_t>(k));
+    }
+  }
   template <class Visit>
   void visit_plane(std::size_t n, const Visit& visit) {
     const auto of_u = u_at_n_.row(n), of_v = v_at_n_.row(n);

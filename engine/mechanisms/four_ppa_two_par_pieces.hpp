@@ -193,7 +193,8 @@ void find_pieces(const Frame<S>& f, std::vector<Break<S>>& breaks, std::vector<P
   std::erase_if(breaks, [&](const Break<S>& b) { return !(value_of(b.theta) < value_of(last)); });
   breaks.push_back({last});
   const auto by_theta = [](const Break<S>& a, const Break<S>& b) { return value_of(a.theta) < value_of(b.theta); };
-  std::stable_sort(breaks.begin(), breaks.end(), by_theta);
+  for (auto next = breaks.begin(); next != breaks.end(); ++next)  // std::stable_sort allocates
+    std::rotate(std::upper_bound(breaks.begin(), next, *next, by_theta), next, next + 1);
 
   constexpr double kNear = 1e-13;  // rad; breaks nearer than this are one
   Signature before;                // of the piece before

@@ -37,11 +37,13 @@ inline void demand_dci(const EntryContext& context, Demand& demand) {
 }
 
 /// Of every sample: the coupling index of one joint, of the joint where it is largest, or the mean over the joints.
+/// Valid until the next call on this thread.
 /// @param limb  "1" to "4", "worst" or "mean"
 template <class S>
-std::vector<S> coupling_of(const Survey<S>& survey, const std::string& limb) {
+const std::vector<S>& coupling_of(const Survey<S>& survey, const std::string& limb) {
   if (limb != "worst" && limb != "mean") return survey.dci[static_cast<std::size_t>(limb[0] - '1')];
-  std::vector<S> field(survey.dci[0]);
+  thread_local std::vector<S> field;
+  field.resize(survey.dci[0].size());
   for (std::size_t k = 0; k < field.size(); ++k) {
     const S &a = survey.dci[0][k], &b = survey.dci[1][k], &c = survey.dci[2][k], &d = survey.dci[3][k];
     field[k] = limb == "worst" ? max(max(a, b), max(c, d)) : S(((a + b) + (c + d)) * 0.25);
