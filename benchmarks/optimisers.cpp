@@ -2,41 +2,16 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
+#include "benchmarks/silent_monitor.hpp"
+#include "benchmarks/sphere.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/math/random.hpp"
 
 namespace pkm::benchmarks {
 namespace {
 
-class Silent final : public Monitor {
- public:
-  bool generation(const Generation&) override { return true; }
-  void warn(const std::string&) override {}
-};
-
-// Sum of squares in four variables: evaluating it costs next to nothing.
-class Sphere final : public Problem {
- public:
-  const DesignSpace& space() const override { return space_; }
-  const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
-  const std::vector<MarginInfo>& margins() const override { return margins_; }
-  const std::vector<ReportInfo>& reports() const override { return reports_; }
-  void evaluate(std::span<const double> design, EvaluationSlot result) const override {
-    double sum = 0;
-    for (const double x : design) sum += x * x;
-    result.objectives[0] = sum;
-    result.status = Status::feasible;
-  }
-
- private:
-  DesignSpace space_{{{"a", "m", -1, 2}, {"b", "m", -1, 2}, {"c", "m", -1, 2}, {"d", "m", -1, 2}}};
-  std::vector<ObjectiveInfo> objectives_{{"sphere", "m^2", "sum of squares", Direction::minimise}};
-  std::vector<MarginInfo> margins_;
-  std::vector<ReportInfo> reports_;
-};
-
 void ga_overhead(benchmark::State& state) {
-  const Sphere problem;
+  const Sphere problem(4);
   const OptimiserEntry& entry = *find_named(all_optimisers(), "ga");
   Options options = default_options(entry.options);
   options.set("population", std::int64_t{state.range(0)});

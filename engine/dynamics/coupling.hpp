@@ -1,14 +1,11 @@
-// Dynamic coupling indices: how much of a joint's inertia force comes from the other joints.
-//
-//   DCI_i = 1 - exp(-delta_i),   delta_i = sum over k != i of |M_q(i,k)| / |M_q(i,i)|
-//
-// 0: none; tends to 1. Free of units, because all entries of M_q are in kg. Source: as pose_dynamics.hpp, eq 42.
+// What a joint-space inertia M_q says of a mechanism: coupling indices of the joints, and its condition.
 #pragma once
 
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 
+#include "engine/dynamics/coupling_indices.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/math/small_matrix.hpp"
 
@@ -16,12 +13,17 @@ namespace pkm {
 
 template <class S>
 Vector<S, 4> coupling_indices(const Matrix<S, 4, 4>& M) {
-  const S m01 = magnitude(M(0, 1)), m02 = magnitude(M(0, 2)), m03 = magnitude(M(0, 3)), m12 = magnitude(M(1, 2)),
-          m13 = magnitude(M(1, 3)), m23 = magnitude(M(2, 3));
-  const std::array<S, 4> off = {m01 + m02 + m03, m01 + m12 + m13, m02 + m12 + m23, m03 + m13 + m23};
-  Vector<S, 4> index;
-  for (std::size_t i = 0; i < 4; ++i) index[i] = S(1.0) - exp(S(off[i] / M(i, i) * -1.0));
-  return index;
+  return {coupling_indices(
+      JointInertia<S>{M(0, 0), M(1, 1), M(2, 2), M(3, 3), M(0, 1), M(0, 2), M(0, 3), M(1, 2), M(1, 3), M(2, 3)})};
+}
+
+/// The elements as a matrix.
+template <class S>
+Matrix<S, 4, 4> matrix_of(const JointInertia<S>& of) {
+  Matrix<S, 4, 4> M;
+  M.m = {of.m00, of.m01, of.m02, of.m03, of.m01, of.m11, of.m12, of.m13,
+         of.m02, of.m12, of.m22, of.m23, of.m03, of.m13, of.m23, of.m33};
+  return M;
 }
 
 /// Least over greatest eigenvalue of M_q, in [0, 1]: 1 where every joint feels the same inertia and none couples.

@@ -16,16 +16,14 @@
 
 #include "engine/dynamics/coupling.hpp"
 #include "engine/mechanisms/crr_cru_dynamics.hpp"
+#include "engine/mechanisms/crr_cru_joint_inertia.hpp"
 
 namespace pkm::crr_cru {
 
 /// What all poses of one phi have in common.
 template <class S>
-struct InertiaFrame {
-  std::array<Vector3<S>, 4> arm;              ///< C_i - D
-  std::array<std::array<S, 2>, 4> per_slide;  ///< s_i in the limb's plane, along the lower and the higher world axis
-  // platforms, and what slides along the rails
-  S xx, yy, zz, vx, vy, vz, k;
+struct InertiaFrame : SlideFrame<S> {
+  std::array<Vector3<S>, 4> arm;  ///< C_i - D
 };
 
 template <class S>
@@ -67,34 +65,6 @@ PlaneInertia<S> limb_share(const Geometry<S>& g, const Masses<S>& b, std::size_t
   return share;
 }
 
-/// M_q from the limbs' shares [kg].
-template <class S>
-Matrix<S, 4, 4> joint_inertia(const InertiaFrame<S>& f, const PlaneInertia<S>& l1, const PlaneInertia<S>& l2,
-                              const PlaneInertia<S>& l3, const PlaneInertia<S>& l4) {
-  const auto along = [&f](std::size_t i, const PlaneInertia<S>& l) {  // A_i s_i
-    const auto& s = f.per_slide[i];
-    return std::array<S, 2>{l.pp * s[0] + l.pq * s[1], l.pq * s[0] + l.qq * s[1]};
-  };
-  const std::array<S, 2> v1 = along(0, l1), v2 = along(1, l2), v3 = along(2, l3), v4 = along(3, l4);
-  const S vx = f.vx + (v2[0] + v3[0] + v4[0]), vy = f.vy + (v1[0] + v3[1]), vz = f.vz + (v1[1] + v2[1] + v4[1]);
-  const auto twice = [&f](std::size_t i, const std::array<S, 2>& v) {
-    return S(f.per_slide[i][0] * v[0] + f.per_slide[i][1] * v[1]);
-  };
-  const S k = f.k + ((twice(0, v1) + twice(1, v2)) + (twice(2, v3) + twice(3, v4)));
-  Matrix<S, 4, 4> M;
-  M(0, 0) = f.xx + (l2.pp + l3.pp + l4.pp);
-  M(1, 1) = f.yy + (l1.pp + l3.qq) - vy * 2.0 + k;
-  M(2, 2) = f.zz + (l1.qq + l2.qq + l4.qq);
-  M(3, 3) = k;
-  M(0, 1) = M(1, 0) = l3.pq - vx;
-  M(0, 2) = M(2, 0) = l2.pq + l4.pq;
-  M(0, 3) = M(3, 0) = vx;
-  M(1, 2) = M(2, 1) = l1.pq - vz;
-  M(1, 3) = M(3, 1) = vy - k;
-  M(2, 3) = M(3, 2) = vz;
-  return M;
-}
-
 /// M_q at a feasible position [kg].
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const InertiaFrame<S>& f, const Vector3<S>& at,
@@ -104,7 +74,7 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const In
     const Vector3<S> C = {at[0] + f.arm[i][0], at[1] + f.arm[i][1], at[2] + f.arm[i][2]};
     share[i] = limb_share(g, b, i, limb_at(g, i, C, mode[i]));
   }
-  return joint_inertia(f, share[0], share[1], share[2], share[3]);
+  return matrix_of(joint_inertia(f, share[0], share[1], share[2], share[3]));
 }
 
 }  // namespace pkm::crr_cru

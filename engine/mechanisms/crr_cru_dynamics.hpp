@@ -11,16 +11,11 @@
 #pragma once
 
 #include "engine/dynamics/pose_dynamics.hpp"
+#include "engine/mechanisms/crr_cru_joint_inertia.hpp"
 #include "engine/mechanisms/crr_cru_masses.hpp"
 #include "engine/mechanisms/crr_cru_yaw.hpp"
 
 namespace pkm::crr_cru {
-
-/// Inertia of a limb's rods as felt at C_i in the limb's plane: elements of M_d [kg].
-template <class S>
-struct PlaneInertia {
-  S pp, pq, qq;
-};
 
 template <class S>
 PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {

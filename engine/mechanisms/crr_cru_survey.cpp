@@ -270,7 +270,7 @@ class VoxelSurveyor final : public Surveyor {
     thread_local InertiaTables tables;
     double index = 0;  // conditioning at this phi
     const auto set_phi = [&](double phi) {
-      tables.fill(d.g, b, mode_, phi, grid, coordinates, held_at);
+      tables.fill(d.g, b, mode_, phi, grid, coordinates, axes.v, held_at);
       if (demand_.conditioning) index = conditioning_at(d.g, demand_, phi);
     };
     if (!over_phi) set_phi(held_at);
@@ -281,14 +281,23 @@ class VoxelSurveyor final : public Surveyor {
       std::array<std::int64_t, 3> cell{};
       cell[axes.outer] = outer;
       cell[axes.u] = u;
+      std::size_t first = 64 * row.size(), end = 0;
+      for (std::size_t w = row.size(); w-- > 0;)
+        if (row[w] != 0) {
+          first = 64 * w + static_cast<std::size_t>(std::countr_zero(row[w]));
+          end = std::max(end, 64 * (w + 1) - static_cast<std::size_t>(std::countl_zero(row[w])));
+        }
+      const auto* dci = demand_.dci ? &tables.coupling(cell, first, end) : nullptr;
       for (std::size_t w = 0; w < row.size(); ++w)
         for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
-          cell[axes.v] = static_cast<std::int64_t>(64 * w) + std::countr_zero(bits);
+          const std::size_t v = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
+          cell[axes.v] = static_cast<std::int64_t>(v);
           ++survey.feasible_cells;
           survey.weight.push_back(survey.cell_volume);
           if (demand_.poses) survey.pose.push_back(pose_of(cell, grid, held_at));
           if (demand_.conditioning) survey.conditioning.push_back(index);
-          add_inertia(tables.at(cell), demand_, survey);
+          for (std::size_t i = 0; dci && i < 4; ++i) survey.dci[i].push_back((*dci)[i][v]);
+          if (demand_.inertia_condition) survey.inertia_condition.push_back(inertia_condition(tables.at(cell)));
         }
       survey.touches_box =
           survey.touches_box || outer == 0 || outer == grid.cells[axes.outer] - 1 || touches(u, row, grid, axes);

@@ -1,0 +1,79 @@
+// How cost grows: with threads, population and number of variables. With the grid: voxel_survey/grid.
+#include <benchmark/benchmark.h>
+
+#include <thread>
+
+#include "benchmarks/inputs.hpp"
+#include "benchmarks/silent_monitor.hpp"
+#include "benchmarks/sphere.hpp"
+#include "benchmarks/timing.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/problem/evaluator.hpp"
+
+namespace pkm::benchmarks {
+namespace {
+
+/// Runs the genetic algorithm and counts designs per second.
+void run_ga(benchmark::State& state, const Problem& problem, std::int64_t population, std::int64_t generations,
+            Evaluator& evaluator) {
+  const OptimiserEntry& entry = *find_named(all_optimisers(), "ga");
+  Options options = default_options(entry.options);
+  options.set("population", population);
+  options.set("generations", generations);
+  const auto optimiser = entry.make(options, problem.space());
+  Silent monitor;
+  std::size_t evaluations = 0;
+  for (auto _ : state) {
+    EvaluationTable table(problem.shape());
+    optimiser->minimise({problem, evaluator, monitor, 1, {}}, table);
+    evaluations += table.size();
+  }
+  using benchmark::Counter;
+  state.counters["s_per_design"] = Counter(static_cast<double>(evaluations), Counter::kIsRate | Counter::kInvert);
+}
+
+// The paper's study with a population of 200 on 1, 2, ... as many threads as there are cores.
+void threads(benchmark::State& state) {
+  const Study study = paper_study();
+  ParallelEvaluator evaluator(static_cast<int>(state.range(0)));
+  run_ga(state, *study.problem, 200, 50, evaluator);
+}
+BENCHMARK(threads)
+    ->Name("scaling/threads")
+    ->DenseRange(1, static_cast<int>(std::thread::hardware_concurrency()))
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+// The paper's study: what a design takes of a population's evaluation and of the algorithm itself.
+void population(benchmark::State& state) {
+  const Study study = paper_study();
+  SerialEvaluator evaluator;
+  run_ga(state, *study.problem, state.range(0), 10, evaluator);
+}
+BENCHMARK(population)->Name("scaling/population")->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMillisecond);
+
+// The algorithm alone, with free evaluations.
+void own_population(benchmark::State& state) {
+  const Sphere problem(4);
+  SerialEvaluator evaluator;
+  run_ga(state, problem, state.range(0), 10, evaluator);
+}
+BENCHMARK(own_population)
+    ->Name("scaling/own_population")
+    ->RangeMultiplier(10)
+    ->Range(10, 100000)
+    ->Unit(benchmark::kMillisecond);
+
+void own_variables(benchmark::State& state) {
+  const Sphere problem(static_cast<std::size_t>(state.range(0)));
+  SerialEvaluator evaluator;
+  run_ga(state, problem, 100, 20, evaluator);
+}
+BENCHMARK(own_variables)
+    ->Name("scaling/own_variables")
+    ->RangeMultiplier(2)
+    ->Range(1, 128)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace pkm::benchmarks
