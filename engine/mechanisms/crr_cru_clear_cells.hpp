@@ -18,33 +18,23 @@ struct ClearanceTest {
   bool passes(const Pose<double>& pose) const { return keep_clear(links(g, radii, inverse(g, pose, mode)), least); }
 };
 
-/// VoxelRows::visit_columns, without the cells that do not pass.
-/// @param test     none: every cell passes
+/// Takes out of a column, a row of bits, the cells that do not pass.
+/// @param cell     any of the column
+/// @param along    the axis of the column
 /// @param pose_of  cell -> pose
-template <class PoseOf, class Visit>
-void visit_clear_columns(VoxelRows& rows, const Design<double>& d, const Held& held, const VoxelGrid& grid,
-                         const std::optional<ClearanceTest>& test, const PoseOf& pose_of, const Visit& visit) {
-  if (!test) {
-    rows.visit_columns(d, held, grid, visit);
-    return;
-  }
-  const GridAxes axes = grid_axes(held);
-  std::vector<std::uint64_t> clear;
-  rows.visit_columns(d, held, grid, [&](std::int64_t outer, std::int64_t u, const auto& row) {
-    std::array<std::int64_t, 3> cell{};
-    cell[axes.outer] = outer;
-    cell[axes.u] = u;
-    clear.assign(row.size(), 0);
-    std::uint64_t any = 0;
-    for (std::size_t w = 0; w < row.size(); ++w) {
-      for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
-        cell[axes.v] = static_cast<std::int64_t>(64 * w) + std::countr_zero(bits);
-        if (test->passes(pose_of(cell))) clear[w] |= bits & ~(bits - 1);
-      }
-      any |= clear[w];
+/// @return         whether any are left
+template <class PoseOf>
+bool clear_cells(const ClearanceTest& test, std::array<std::int64_t, 3> cell, std::size_t along, const PoseOf& pose_of,
+                 std::vector<std::uint64_t>& row) {
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < row.size(); ++w) {
+    for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
+      cell[along] = static_cast<std::int64_t>(64 * w) + std::countr_zero(bits);
+      if (!test.passes(pose_of(cell))) row[w] &= ~(bits & ~(bits - 1));
     }
-    if (any) visit(outer, u, clear);
-  });
+    any |= row[w];
+  }
+  return any != 0;
 }
 
 }  // namespace pkm::crr_cru

@@ -51,7 +51,6 @@ class InertiaTables {
           table.qq[place] = share.qq;
         }
     }
-    for (auto& list : index_) list.resize(static_cast<std::size_t>(grid.cells[along]) + kLanes);
   }
 
   /// M_q of a feasible cell [kg].
@@ -64,21 +63,22 @@ class InertiaTables {
     return matrix_of(joint_inertia(frame_, share(0), share(1), share(2), share(3)));
   }
 
-  /// The coupling indices of cells [first, end) of a row, by their number; valid until the next call.
-  /// @param row  a cell of it, the first
-  const std::array<std::vector<double>, 4>& coupling(const std::array<std::int64_t, 3>& row, std::size_t first,
-                                                     std::size_t end) {
+  /// The coupling indices of cells [first, end) of a row, by their number.
+  /// @param row    a cell of it, the first
+  /// @param index  grows where it is too short
+  void coupling(const std::array<std::int64_t, 3>& row, std::size_t first, std::size_t end,
+                std::array<std::vector<double>, 4>& index) const {
     std::array<ShareRow, 4> shares;
-    std::array<double*, 4> index;
+    std::array<double*, 4> to;
     for (std::size_t i = 0; i < 4; ++i) {
       const Table& t = table_[i];
       const std::size_t place = t.place(row);
       shares[i] = {t.pp.data() + place, t.pq.data() + place, t.qq.data() + place, t.varies};
-      index[i] = index_[i].data();
+      if (index[i].size() < end + kLanes) index[i].resize(end + kLanes);
+      to[i] = index[i].data();
     }
     const SlideFrame<double>& frame = frame_;
-    with_instruction_set([&]<InstructionSet set>() { coupling_along<set>(frame, shares, first, end, index); });
-    return index_;
+    with_instruction_set([&]<InstructionSet set>() { coupling_along<set>(frame, shares, first, end, to); });
   }
 
  private:
@@ -94,7 +94,6 @@ class InertiaTables {
   };
   InertiaFrame<double> frame_;
   std::array<Table, 4> table_;
-  std::array<std::vector<double>, 4> index_;
 };
 
 }  // namespace pkm::crr_cru

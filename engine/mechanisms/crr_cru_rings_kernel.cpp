@@ -29,6 +29,24 @@ template <class L, class Passes>
   return {from, to + 1.0};
 }
 
+/// @param words  of a row; where it is a constant, loops over words vanish
+[[gnu::always_inline]] inline PlaneTally tally_of(const PlaneRows& rows, std::size_t words) {
+  std::int64_t cells = 0;
+  std::uint64_t at_ends_of_u = 0, in_first = 0, in_last = 0;  // words of v
+  for (std::size_t u = 0; u < rows.u_cells; ++u) {
+    const std::uint64_t all_or_none = -(rows.of_u[u / 64] >> (u % 64) & 1);
+    const std::uint64_t at_end = u == 0 || u == rows.u_cells - 1 ? ~std::uint64_t{0} : 0;
+    for (std::size_t w = 0; w < words; ++w) {
+      const std::uint64_t word = all_or_none & rows.of_v[w] & rows.at_u[u * words + w];
+      cells += __builtin_popcountll(word);
+      at_ends_of_u |= word & at_end;
+      if (w == 0) in_first |= word;
+      if (w == words - 1) in_last |= word;
+    }
+  }
+  return {cells, at_ends_of_u != 0 || (in_first & 1) != 0 || (in_last >> ((rows.v_cells - 1) % 64) & 1) != 0};
+}
+
 }  // namespace
 
 template <InstructionSet set>
@@ -49,22 +67,7 @@ void cells_in_ring(const RingLines& lines, RingCells& cells) {
 
 template <InstructionSet set>
 PlaneTally tally(const PlaneRows& rows) {
-  std::int64_t cells = 0;
-  std::uint64_t at_ends_of_u = 0, in_first = 0, in_last = 0;  // words of v
-  for (std::size_t u = 0; u < rows.u_cells; ++u) {
-    if (!(rows.of_u[u / 64] >> (u % 64) & 1)) continue;
-    const std::uint64_t* at_u = rows.at_u + u * rows.words;
-    std::uint64_t any = 0, word = 0;
-    for (std::size_t w = 0; w < rows.words; ++w) {
-      word = rows.of_v[w] & at_u[w];
-      if (w == 0) in_first |= word;
-      any |= word;
-      cells += __builtin_popcountll(word);
-    }
-    in_last |= word;
-    if (u == 0 || u == rows.u_cells - 1) at_ends_of_u |= any;
-  }
-  return {cells, at_ends_of_u != 0 || (in_first & 1) != 0 || (in_last >> ((rows.v_cells - 1) % 64) & 1) != 0};
+  return rows.words == 1 ? tally_of(rows, 1) : tally_of(rows, rows.words);
 }
 
 template PlaneTally tally<PKM_INSTRUCTION_SET>(const PlaneRows&);

@@ -1,6 +1,7 @@
 #include "engine/mechanisms/crr_cru_voxels.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace pkm::crr_cru {
 namespace {
@@ -35,38 +36,44 @@ Box default_box(const Design<double>& d, const Held& held) {
   return box;
 }
 
-void VoxelRows::prepare(const Design<double>& d, const Held& held, const VoxelGrid& grid, const GridAxes& axes) {
-  const auto make = [](Axis& axis, std::size_t cells, double lower, double step) {
-    axis.cells = cells;
-    axis.lower = lower;
-    axis.step = step;
-    axis.center.resize((cells + kLanes - 1) / kLanes * kLanes);
-  };
-  const auto from_grid = [&](Axis& axis, std::size_t which) {
-    make(axis, static_cast<std::size_t>(grid.cells[which]), grid.lower[which], grid.step[which]);
-    for (std::size_t k = 0; k < axis.center.size(); ++k)
-      axis.center[k] = grid.centre(which, static_cast<std::int64_t>(k));
-  };
-  from_grid(u_, axes.u);
-  from_grid(v_, axes.v);
-  if (held.coordinate == 3) {
-    from_grid(n_, axes.outer);
+void SectionCells::lay(Axis& axis, const VoxelGrid& grid, std::size_t which) {
+  const auto cells = static_cast<std::size_t>(grid.cells[which]);
+  if (axis.cells == cells && axis.lower == grid.lower[which] && axis.step == grid.step[which]) return;  // next phi
+  axis.cells = cells;
+  axis.lower = grid.lower[which];
+  axis.step = grid.step[which];
+  axis.center.resize((axis.cells + kLanes - 1) / kLanes * kLanes);
+  for (std::size_t k = 0; k < axis.center.size(); ++k)
+    axis.center[k] = grid.centre(which, static_cast<std::int64_t>(k));
+}
+
+bool SectionCells::fill(const Design<double>& d, const Held& held, const VoxelGrid& grid, double phi) {
+  const Frame<double> f = frame(d, phi);
+  if (f.singular) return false;
+  const GridAxes axes = grid_axes(held);
+  const Cuts c = cuts(held);
+  lay(u_, grid, axes.u);
+  lay(v_, grid, axes.v);
+  if (c.outer_is_phi) {
+    n_ = {std::move(n_.center), 0, 0, 1};
+    n_.center.assign(kLanes, held_value(d.g, held));
   } else {
-    make(n_, 1, 0, 0);
-    std::ranges::fill(n_.center, held_value(d.g, held));
+    lay(n_, grid, axes.outer);
   }
   const auto lines = std::max(n_.center.size(), u_.center.size());
   for (auto* list : {&cells_.first, &cells_.end, &cells_.hole_first, &cells_.hole_end}) list->resize(lines);
-  row_.resize((v_.cells + 63) / 64);
-}
-
-void VoxelRows::fill_tables(const Design<double>& d, const Frame<double>& f, const Cuts& c) {
-  any_ = !f.singular && fill(d, f, c.normal, n_, c.u, u_, u_at_n_) && fill(d, f, c.normal, n_, c.v, v_, v_at_n_) &&
+  return fill(d, f, c.normal, n_, c.u, u_, u_at_n_) && fill(d, f, c.normal, n_, c.v, v_, v_at_n_) &&
          fill(d, f, c.u, u_, c.v, v_, v_at_u_);
 }
 
-bool VoxelRows::fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across, std::size_t b,
-                     const Axis& along, BitTable& table) {
+PlaneTally SectionCells::count(std::size_t n) const {
+  const PlaneRows rows{u_at_n_.row(n).data(), v_at_n_.row(n).data(), v_at_u_.bits.data(), u_.cells, v_.cells,
+                       v_at_u_.words};
+  return with_instruction_set([&]<InstructionSet set>() { return tally<set>(rows); });
+}
+
+bool SectionCells::fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across,
+                        std::size_t b, const Axis& along, BitTable& table) {
   const std::size_t words = (along.cells + 63) / 64;
   const auto inside = [](const Axis& axis, const SlideRange<double>& range) {
     const auto begin = axis.center.begin(), end = begin + static_cast<std::ptrdiff_t>(axis.cells);

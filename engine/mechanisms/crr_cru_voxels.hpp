@@ -14,6 +14,7 @@
 
 #include "engine/mechanisms/crr_cru_frame.hpp"
 #include "engine/mechanisms/crr_cru_rings.hpp"
+#include "engine/workspace/survey.hpp"
 #include "engine/workspace/voxel_grid.hpp"
 
 namespace pkm::crr_cru {
@@ -35,71 +36,66 @@ struct BitTable {
   std::span<const std::uint64_t> row(std::size_t i) const { return {bits.data() + i * words, words}; }
 };
 
-/// Counts cells. Holds storage; use one per thread.
-class VoxelRows {
+/// The cells of every section at one phi. Filled, threads may share it.
+class SectionCells {
  public:
-  /// Calls visit(outer, u, row) for every outer cell and u cell that has feasible cells, with the row's words of bits.
-  template <class Visit>
-  void visit_columns(const Design<double>& d, const Held& held, const VoxelGrid& grid, const Visit& visit) {
-    visit_planes(d, held, grid, [&](std::int64_t outer, std::size_t n) {
-      visit_plane(n, [&](std::size_t u) { visit(outer, static_cast<std::int64_t>(u), row_); });
-    });
-  }
-  /// Calls visit(outer, tally) for outer cells, all those with feasible cells among them.
-  template <class Visit>
-  void count_planes(const Design<double>& d, const Held& held, const VoxelGrid& grid, const Visit& visit) {
-    visit_planes(d, held, grid, [&](std::int64_t outer, std::size_t n) {
-      const PlaneRows rows{u_at_n_.row(n).data(), v_at_n_.row(n).data(), v_at_u_.bits.data(), u_.cells, v_.cells,
-                           v_at_u_.words};
-      visit(outer, with_instruction_set([&]<InstructionSet set>() { return tally<set>(rows); }));
-    });
-  }
+  /// Fills the tables. @return  whether they leave anything
+  bool fill(const Design<double>& d, const Held& held, const VoxelGrid& grid, double phi);
 
- private:
-  /// A coordinate's cells, and storage beyond them up to whole lanes.
-  struct Axis {
-    std::vector<double> center;
-    double lower, step;
-    std::size_t cells;
-  };
-
-  void prepare(const Design<double>& d, const Held& held, const VoxelGrid& grid, const GridAxes& axes);
-  /// All tables at one phi; any_ is false where they leave nothing.
-  void fill_tables(const Design<double>& d, const Frame<double>& f, const Cuts& c);
-  /// What slides and the rings that couple the coordinates a and b leave of b at each a; false: nothing.
-  bool fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across, std::size_t b,
-            const Axis& along, BitTable& table);
-
-  /// Calls visit(outer, n) where the tables, filled, leave something; n: their row of the plane.
+  /// Calls visit(u, row) for every column with feasible cells, with the row's words of bits.
+  /// @param n    the plane's number, 0 where the coordinate normal to it is held
+  /// @param row  storage
   template <class Visit>
-  void visit_planes(const Design<double>& d, const Held& held, const VoxelGrid& grid, const Visit& visit) {
-    const GridAxes axes = grid_axes(held);
-    const Cuts c = cuts(held);
-    prepare(d, held, grid, axes);
-    if (!c.outer_is_phi) fill_tables(d, frame(d, held_value(d.g, held)), c);
-    for (std::int64_t k = 0; k < grid.cells[axes.outer]; ++k) {
-      if (c.outer_is_phi) fill_tables(d, frame(d, grid.centre(axes.outer, k)), c);
-      if (any_) visit(k, c.outer_is_phi ? 0 : static_cast<std::size_t>(k));
-    }
-  }
-  template <class Visit>
-  void visit_plane(std::size_t n, const Visit& visit) {
+  void visit_columns(std::size_t n, std::vector<std::uint64_t>& row, const Visit& visit) const {
     const auto of_u = u_at_n_.row(n), of_v = v_at_n_.row(n);
+    row.resize(of_v.size());
     for (std::size_t w = 0; w < of_u.size(); ++w)
       for (std::uint64_t bits = of_u[w]; bits != 0; bits &= bits - 1) {
         const std::size_t u = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
         const auto at_u = v_at_u_.row(u);
         std::uint64_t any = 0;
-        for (std::size_t i = 0; i < of_v.size(); ++i) any |= row_[i] = of_v[i] & at_u[i];
-        if (any) visit(u);
+        for (std::size_t i = 0; i < of_v.size(); ++i) any |= row[i] = of_v[i] & at_u[i];
+        if (any) visit(static_cast<std::int64_t>(u), row);
       }
   }
+  PlaneTally count(std::size_t n) const;
+
+ private:
+  /// A coordinate's cells, and storage beyond them up to whole lanes.
+  struct Axis {
+    std::vector<double> center;
+    double lower = 0, step = 0;
+    std::size_t cells = 0;
+  };
+  static void lay(Axis& axis, const VoxelGrid& grid, std::size_t which);
+
+  /// What slides and the rings that couple the coordinates a and b leave of b at each a; false: nothing.
+  bool fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across, std::size_t b,
+            const Axis& along, BitTable& table);
 
   Axis n_, u_, v_;
   BitTable u_at_n_, v_at_n_, v_at_u_;
-  std::vector<std::uint64_t> row_, range_;
+  std::vector<std::uint64_t> range_;
   RingCells cells_;
-  bool any_ = false;
 };
+
+/// Calls visit(k, cells, n, survey) for every outer cell k whose section may have cells, among the team lent to this
+/// thread if there is one, as share_samples() does; n: the plane of `cells`.
+template <class Visit>
+void share_sections(const Design<double>& d, const Held& held, const VoxelGrid& grid, Survey<double>& survey,
+                    const Visit& visit) {
+  thread_local SectionCells own;
+  const std::size_t outer = grid_axes(held).outer;
+  const bool over_phi = cuts(held).outer_is_phi;
+  if (!over_phi && !own.fill(d, held, grid, held_value(d.g, held))) return;
+  share_samples(static_cast<std::size_t>(grid.cells[outer]), survey,
+                [&, &common = own](std::size_t piece, Survey<double>& part) {
+                  const auto k = static_cast<std::int64_t>(piece);
+                  if (!over_phi)
+                    visit(k, common, piece, part);
+                  else if (own.fill(d, held, grid, grid.centre(outer, k)))
+                    visit(k, own, std::size_t{0}, part);
+                });
+}
 
 }  // namespace pkm::crr_cru

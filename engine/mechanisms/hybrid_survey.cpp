@@ -59,16 +59,18 @@ class Conditioning {
   void finish() {
     if constexpr (std::is_same_v<S, double>) {
       const std::size_t count = poses_.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
-      for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine, &survey_.conditioning}) list->resize(whole);
+      const std::size_t before = survey_.conditioning.size();
+      for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine}) list->resize(whole);
+      survey_.conditioning.resize(before + whole);
       const Geometry<double>& g = frame_.g;
       const ConditioningDesign design{
           g.L1,      g.L2,   g.L3, g.d, g.e, {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
           kRoundoff, length_};
       with_instruction_set([&]<InstructionSet set>() {
         inverse_conditions<set>(design, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), whole,
-                                survey_.conditioning.data());
+                                survey_.conditioning.data() + before);
       });
-      survey_.conditioning.resize(count);
+      survey_.conditioning.resize(before + count);
     }
   }
 
@@ -166,22 +168,31 @@ class VoxelSurveyor final : public Surveyor {
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
     if (!(stroke > 0)) return;
-    thread_local VoxelScratch scratch;
-    VoxelColumns columns(d, grid, scratch);
-    thread_local PoseList poses;
-    Conditioning<double> conditioning(d.frame, demand_, poses, survey);
+    thread_local VoxelHeights heights;
+    const VoxelColumns columns(d, grid, heights);
     const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
-    if (d.clearance || demand_.conditioning)
-      columns.visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
-        survey.feasible_cells += end - i;
-        survey.touches_box =
-            survey.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
-        if (demand_.conditioning)
-          conditioning.add(grid.centre(1, j), grid.centre(2, k), static_cast<double>(end - i) * survey.cell_volume);
-      });
-    else
-      for (std::int64_t k = 0; k < grid.cells[2]; ++k) survey.feasible_cells += columns.count(k, survey.touches_box);
-    conditioning.finish();
+    const bool counts = !d.clearance && !demand_.conditioning;
+    share_samples(
+        static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
+        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part) {
+          thread_local PoseList poses;
+          Conditioning<double> conditioning(d.frame, demand_, poses, part);
+          const auto first = static_cast<std::int64_t>(piece) * kBetas;
+          for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) {
+            if (counts) {
+              part.feasible_cells += columns.count(k, part.touches_box);
+              continue;
+            }
+            columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+              part.feasible_cells += end - i;
+              part.touches_box =
+                  part.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
+              if (demand_.conditioning)
+                conditioning.add(grid.centre(1, j), grid.centre(2, k), static_cast<double>(end - i) * cell_volume);
+            });
+          }
+          conditioning.finish();
+        });
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
@@ -190,14 +201,18 @@ class VoxelSurveyor final : public Surveyor {
     const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
     VoxelMap m = grid.map();
     if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
-    VoxelScratch scratch;
-    VoxelColumns(d, grid, scratch).visit([&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
-      for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
-    });
+    VoxelHeights heights;
+    const VoxelColumns columns(d, grid, heights);
+    for (std::int64_t k = 0; k < grid.cells[2]; ++k)
+      columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+        for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
+      });
     return m;
   }
 
  private:
+  static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
+
   VoxelDesign design_of(std::span<const double> parameters) const {
     return {frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_), branch_,
             clearance_of(plan_)};

@@ -87,33 +87,32 @@ Box default_box(const VoxelDesign& design) {
   return box;
 }
 
-VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelScratch& scratch)
-    : design_(design), grid_(grid), found_(scratch) {
+VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelHeights& heights)
+    : design_(design), grid_(grid), heights_(heights) {
   const auto n = static_cast<std::size_t>(grid.cells[1] + kLanes);  // so that the last lanes may lie beyond the end
-  CellRuns& runs = found_.runs;
-  for (auto* list : {&found_.z, &found_.left, &found_.right, &runs.first, &runs.hole, &runs.after, &runs.end})
-    list->resize(n);
+  for (auto* list : {&heights.z, &heights.left, &heights.right}) list->resize(n);
   const Frame<double>& f = design.frame;
   for (std::size_t j = 0; j < n; ++j) {
     const double z = grid.centre(1, static_cast<std::int64_t>(j));
     const double n1 = f.signs[0] * root_or_zero((f.g.L1 - z) * (f.g.L1 + z));
     const double n2 = f.signs[1] * root_or_zero((f.g.L2 - z) * (f.g.L2 + z));
-    found_.z[j] = z;
-    found_.left[j] = max(f.lo[0] + n1, f.lo[1] + n2);
-    found_.right[j] = min(f.hi[0] + n1, f.hi[1] + n2);
+    heights.z[j] = z;
+    heights.left[j] = max(f.lo[0] + n1, f.lo[1] + n2);
+    heights.right[j] = min(f.hi[0] + n1, f.hi[1] + n2);
   }
 }
 
-CellTally VoxelColumns::find_runs(std::int64_t k) {
+VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k) const {
+  thread_local CellRuns runs;
   const Frame<double>& f = design_.frame;
   const double beta = grid_.centre(2, k);
-  first_z_ = end_z_ = 0;
-  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {0, false};
+  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {runs, 0, 0, {0, false}};
+  for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights_.z.size());
   const Section<double> s = section(f, beta);
   const double low = *std::ranges::max_element(s.lower), high = *std::ranges::min_element(s.upper);
-  const auto begin = found_.z.begin(), end = begin + grid_.cells[1];
-  first_z_ = static_cast<std::size_t>(std::lower_bound(begin, end, low) - begin);
-  end_z_ = std::max(first_z_, static_cast<std::size_t>(std::upper_bound(begin, end, high) - begin));
+  const auto begin = heights_.z.begin(), end = begin + grid_.cells[1];
+  const auto first_z = static_cast<std::size_t>(std::lower_bound(begin, end, low) - begin);
+  const auto end_z = std::max(first_z, static_cast<std::size_t>(std::upper_bound(begin, end, high) - begin));
   const auto end_of_x = [&](CurveIndex index) {
     const Curve<double>& c = s.curve[index];
     return EndOfX{c.a, c.a_z, c.b, c.b_z};
@@ -131,19 +130,18 @@ CellTally VoxelColumns::find_runs(std::int64_t k) {
                               grid_.lower[0],
                               grid_.step[0],
                               static_cast<double>(grid_.cells[0]),
-                              found_.z.data(),
-                              found_.left.data(),
-                              found_.right.data(),
-                              first_z_,
-                              end_z_};
-  return with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, found_.runs); });
+                              heights_.z.data(),
+                              heights_.left.data(),
+                              heights_.right.data(),
+                              first_z,
+                              end_z};
+  return {runs, first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
 }
 
-std::int64_t VoxelColumns::count(std::int64_t k, bool& touches) {
-  const CellTally tally = find_runs(k);
-  const CellRuns& r = found_.runs;
-  const auto some_at = [&](std::size_t j) {
-    return first_z_ <= j && j < end_z_ && r.hole[j] - r.first[j] + (r.end[j] - r.after[j]) > 0;
+std::int64_t VoxelColumns::count(std::int64_t k, bool& touches) const {
+  const auto& [runs, first_z, end_z, tally] = find_runs(k);
+  const auto some_at = [&, &r = runs, first = first_z, last = end_z](std::size_t j) {
+    return first <= j && j < last && r.hole[j] - r.first[j] + (r.end[j] - r.after[j]) > 0;
   };
   const bool last_beta = k == 0 || k == grid_.cells[2] - 1;
   if (tally.cells > 0)

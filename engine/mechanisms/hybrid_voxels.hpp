@@ -25,44 +25,46 @@ bool feasible(const VoxelDesign& design, double x, double z, double beta);
 /// A box that contains every feasible pose, as x, z, beta; where there is none, a box of some size.
 Box default_box(const VoxelDesign& design);
 
-/// Storage that surveys reuse.
-struct VoxelScratch {
+/// What all columns at a height have in common; storage that surveys reuse.
+struct VoxelHeights {
   std::vector<double> z, left, right;  ///< heights, and what limbs A and B leave of x there [m]
-  CellRuns runs;
 };
 
-/// The feasible cells of a grid, column by column along x.
+/// The feasible cells of a grid, column by column along x. Threads may share it.
 class VoxelColumns {
  public:
-  /// @param design, grid, scratch  stay alive
-  VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelScratch& scratch);
+  /// @param design, grid, heights  stay alive
+  VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelHeights& heights);
 
   /// Cells at beta number k, whatever the clearance.
   /// @param touches  set if some of them are at a side of the box
-  std::int64_t count(std::int64_t k, bool& touches);
+  std::int64_t count(std::int64_t k, bool& touches) const;
 
-  /// Calls visit(i, i_end, j, k) for every run [i, i_end) of feasible cells along x.
+  /// Calls visit(i, i_end, j) for every run [i, i_end) of feasible cells along x at beta number k.
   template <class Visit>
-  void visit(const Visit& visit) {
-    for (std::int64_t k = 0; k < grid_.cells[2]; ++k) {
-      find_runs(k);
-      const CellRuns& r = found_.runs;
-      for (std::size_t j = first_z_; j < end_z_; ++j)
-        for (const auto& [first, end] : {std::array{r.first[j], r.hole[j]}, std::array{r.after[j], r.end[j]}}) {
-          const auto from = static_cast<std::int64_t>(first), to = static_cast<std::int64_t>(end),
-                     height = static_cast<std::int64_t>(j);
-          if (!(from < to)) continue;
-          if (design_.clearance)
-            visit_clear(from, to, height, k, visit);
-          else
-            visit(from, to, height, k);
-        }
-    }
+  void visit(std::int64_t k, const Visit& visit) const {
+    const Columns at = find_runs(k);
+    for (std::size_t j = at.first_z; j < at.end_z; ++j)
+      for (const auto& [first, end] :
+           {std::array{at.runs.first[j], at.runs.hole[j]}, std::array{at.runs.after[j], at.runs.end[j]}}) {
+        const auto from = static_cast<std::int64_t>(first), to = static_cast<std::int64_t>(end),
+                   height = static_cast<std::int64_t>(j);
+        if (!(from < to)) continue;
+        if (design_.clearance)
+          visit_clear(from, to, height, k, visit);
+        else
+          visit(from, to, height);
+      }
   }
 
  private:
-  /// Finds the columns at beta number k.
-  CellTally find_runs(std::int64_t k);
+  /// The columns at one beta; the runs are this thread's, until its next call.
+  struct Columns {
+    const CellRuns& runs;
+    std::size_t first_z, end_z;
+    CellTally tally;
+  };
+  Columns find_runs(std::int64_t k) const;
   /// The links' pairs whose distance changes along x, or those where it doesn't, keep clear.
   bool clear(double x, double z, double beta, bool along_x) const;
 
@@ -73,16 +75,15 @@ class VoxelColumns {
     std::int64_t start = from;
     for (std::int64_t i = from; i < to; ++i) {
       if (clear(grid_.centre(0, i), z, beta, true)) continue;
-      if (start < i) visit(start, i, j, k);
+      if (start < i) visit(start, i, j);
       start = i + 1;
     }
-    if (start < to) visit(start, to, j, k);
+    if (start < to) visit(start, to, j);
   }
 
   const VoxelDesign& design_;
   const VoxelGrid& grid_;
-  VoxelScratch& found_;
-  std::size_t first_z_ = 0, end_z_ = 0;
+  const VoxelHeights& heights_;
 };
 
 }  // namespace pkm::hybrid

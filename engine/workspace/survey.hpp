@@ -57,8 +57,9 @@ void append_samples(const Survey<S>& from, Survey<S>& to) {
   append(from.inertia_condition, to.inertia_condition);
 }
 
-/// Calls fill(piece, survey) for every piece in [0, pieces), which is to add the piece's samples: in order, or, where a
-/// team is lent to this thread, shared out among it. The samples are the same, in the same order.
+/// Calls fill(piece, survey) for every piece in [0, pieces), which is to add the piece's samples, its feasible cells
+/// and whether they touch the box: in order, or, where a team is lent to this thread, shared out among it. The samples
+/// are the same, in the same order.
 template <class S, class Fill>
 void share_samples(std::size_t pieces, Survey<S>& survey, const Fill& fill) {
   if (!has_team()) {
@@ -69,7 +70,11 @@ void share_samples(std::size_t pieces, Survey<S>& survey, const Fill& fill) {
   share_pieces(pieces, [&](std::size_t piece, std::size_t end) {
     for (; piece < end; ++piece) fill(piece, parts[piece]);
   });
-  for (const Survey<S>& part : parts) append_samples(part, survey);
+  for (const Survey<S>& part : parts) {
+    append_samples(part, survey);
+    survey.feasible_cells += part.feasible_cells;
+    survey.touches_box = survey.touches_box || part.touches_box;
+  }
 }
 
 /// The values of a survey with derivatives.
