@@ -1,8 +1,7 @@
 // Joint-space inertia, coupling indices and drive forces of (3CRR/R)&CRU and the Quadrupteron, nominal.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-
+#include "benchmarks/inputs.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/mechanisms/crr_cru_dynamics.hpp"
@@ -10,10 +9,6 @@
 
 namespace pkm::benchmarks {
 namespace {
-
-const Mechanism& mechanism(const char* name) {
-  return **std::ranges::find_if(all_mechanisms(), [&](const auto& m) { return m->info().name == name; });
-}
 
 std::vector<double> nominal(const Mechanism& m) {
   std::vector<double> parameters;
@@ -26,7 +21,7 @@ SurveyPlan plan_of(Method method) {
   plan.method = method;
   plan.cells = {40, 40, 40};
   plan.held = {HeldCoordinate::Kind::value, 0.3, 3};
-  plan.limits = no_limits(mechanism("quadrupteron").info());
+  plan.limits = no_limits(mechanism_named("quadrupteron").info());
   plan.limits.given[0] = 0.2;
   plan.limits.given[1] = 0.1;
   return plan;
@@ -40,7 +35,7 @@ Demand coupling() {
 
 /// A survey of 40 x 40 x 40 voxels that cover all that is reached; time per feasible pose besides.
 void voxels(benchmark::State& state, const char* name) {
-  const Mechanism& m = mechanism(name);
+  const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
   const auto surveyor = m.prepare(plan_of(Method::voxels), coupling());
   Survey<double> survey;
@@ -56,7 +51,7 @@ void voxels(benchmark::State& state, const char* name) {
 
 /// The same number of cells in a box that is feasible as a whole: 64000 poses.
 void full_box(benchmark::State& state, const char* name) {
-  const Mechanism& m = mechanism(name);
+  const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
   SurveyPlan plan = plan_of(Method::voxels);
   plan.box = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
@@ -75,7 +70,7 @@ void full_box(benchmark::State& state, const char* name) {
 /// Mean worst index over a task box at five angles, by column nodes.
 template <class S>
 void task_box(benchmark::State& state) {
-  const Mechanism& m = mechanism("3crr-r-cru");
+  const Mechanism& m = mechanism_named("3crr-r-cru");
   const auto values = nominal(m);
   const std::vector<S> parameters(values.begin(), values.end());
   SurveyPlan plan = plan_of(Method::columns);
@@ -93,7 +88,7 @@ void task_box(benchmark::State& state) {
 
 /// Inverse dynamics by virtual work at one pose and motion.
 void inverse_dynamics(benchmark::State& state, const char* name) {
-  const Mechanism& m = mechanism(name);
+  const Mechanism& m = mechanism_named(name);
   const auto p = nominal(m);
   const auto platform = std::string(name) == "quadrupteron" ? crr_cru::Platform::rigid : crr_cru::Platform::jointed;
   const auto g = crr_cru::geometry(platform, std::span<const double>(p));

@@ -1,9 +1,7 @@
 // Surveys of (3CRR/R)&CRU and the Quadrupteron, nominal, with margins: for each coordinate that may be held.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-
-#include "engine/mechanisms/all.hpp"
+#include "benchmarks/inputs.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -22,8 +20,7 @@ SurveyPlan plan_of(const MechanismInfo& info, Method method, int held) {
 
 template <class S>
 void survey(benchmark::State& state, const char* name, Method method) {
-  const auto& mechanism =
-      **std::ranges::find_if(all_mechanisms(), [&](const auto& m) { return m->info().name == name; });
+  const Mechanism& mechanism = mechanism_named(name);
   std::vector<S> parameters;
   for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
   const auto surveyor = mechanism.prepare(plan_of(mechanism.info(), method, static_cast<int>(state.range(0))), {});

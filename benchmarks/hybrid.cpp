@@ -1,8 +1,7 @@
 // Surveys and pose tests of the hybrid robot: nominal, and random designs around it.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-
+#include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/mechanisms/hybrid_voxels.hpp"
@@ -10,9 +9,7 @@
 namespace pkm::benchmarks {
 namespace {
 
-const Mechanism& hybrid_robot() {
-  return **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m->info().name == "2t1r-p-hybrid"; });
-}
+const Mechanism& hybrid_robot() { return mechanism_named("2t1r-p-hybrid"); }
 
 SurveyPlan plan_of(Method method) {
   SurveyPlan plan;

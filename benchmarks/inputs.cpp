@@ -28,11 +28,12 @@ double volume(const Surveyor& surveyor, std::span<const double> parameters) {
 
 }  // namespace
 
-const Mechanism& four_ppa() {
+const Mechanism& mechanism_named(std::string_view name) {
   for (const auto& mechanism : all_mechanisms())
-    if (mechanism->info().name == "4ppa-2par") return *mechanism;
-  throw std::out_of_range("4ppa-2par is not in the catalogue");
+    if (mechanism->info().name == name) return *mechanism;
+  throw std::out_of_range(std::string(name) + " is not in the catalogue");
 }
+const Mechanism& four_ppa() { return mechanism_named("4ppa-2par"); }
 
 std::vector<double> design(double a, double b, double l_u, double l_d) {
   std::vector<double> all;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/mechanisms/four_ppa_two_par.hpp"
@@ -13,6 +14,7 @@
 
 namespace pkm::benchmarks {
 
+const Mechanism& mechanism_named(std::string_view name);
 const Mechanism& four_ppa();
 
 /// All parameters of 4PPa-2PaR for the four lengths that the paper varies [m]; d = 0.15, L0 = 2.5, nominal elsewhere.

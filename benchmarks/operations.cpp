@@ -52,6 +52,7 @@ void against_bound(benchmark::State& state, const Work& work, const Count& opera
   state.counters["bound_with_roots_us"] = 1e6 * of_roots;
   state.counters["times_the_bound"] = each / bound;
   state.counters["times_the_bound_with_roots"] = each / of_roots;
+  state.counters["percent_of_peak"] = 50 * bound / each;
 }
 
 Demand conditioning_too() {
@@ -107,12 +108,8 @@ void columns(benchmark::State& state) {
 
 // The others, nominal.
 
-const Mechanism& mechanism(const std::string& name) {
-  return **std::ranges::find_if(all_mechanisms(), [&](const auto& m) { return m->info().name == name; });
-}
-
 Work nominal(const std::string& name, const HeldCoordinate& held, const Demand& demand = {}) {
-  const Mechanism& m = mechanism(name);
+  const Mechanism& m = mechanism_named(name);
   Work work{m, {}, {}, demand};
   for (const Parameter& p : m.info().parameters) work.parameters.push_back(p.nominal);
   work.plan.method = Method::voxels;

@@ -123,31 +123,39 @@ void grid(benchmark::State& state) {
 }
 BENCHMARK(grid)->Name("voxel_survey/grid")->RangeMultiplier(2)->Range(16, 1024)->Unit(benchmark::kMicrosecond);
 
-// One design on a fine grid, by one thread and by two.
-void fine_grid(benchmark::State& state, bool conditioning) {
-  const auto all = optimal_design();
-  SurveyPlan plan = voxel_plan(without_limits());
-  const std::int64_t n = conditioning ? 128 : 512;
+// One design on a fine grid of n^3 cells, by one thread and by two.
+void fine_grid(benchmark::State& state, const Mechanism& mechanism, std::vector<double> parameters, std::int64_t n,
+               const Demand& demand = {}) {
+  SurveyPlan plan;
+  plan.method = Method::voxels;
+  plan.limits = no_limits(mechanism.info());
   plan.cells = {n, n, n};
-  Demand demand;
-  demand.conditioning = conditioning;
-  const auto surveyor = four_ppa().prepare(plan, demand);
+  const auto surveyor = mechanism.prepare(plan, demand);
+  if (parameters.empty())
+    for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
   Survey<double> result;
   Team team(2);
-  const auto by_one = [&] { surveyor->survey(all, result); };
+  const auto by_one = [&] { surveyor->survey(parameters, result); };
   const auto by_two = [&] {
     const LentTeam lent(team);
-    surveyor->survey(all, result);
+    surveyor->survey(parameters, result);
   };
   const Duel duel =
       take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
   state.counters["efficiency_percent"] = 100 * duel.ratio() / 2;
 }
-BENCHMARK_CAPTURE(fine_grid, volume, false)->Name("fine_grid/512_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
-BENCHMARK_CAPTURE(fine_grid, conditioning, true)
-    ->Name("fine_grid/conditioning_128_cubed")
-    ->Unit(benchmark::kMicrosecond)
-    ->UseRealTime();
+void fine_four_ppa(benchmark::State& state) { fine_grid(state, four_ppa(), optimal_design(), 512); }
+void fine_conditioning(benchmark::State& state) {
+  Demand demand;
+  demand.conditioning = true;
+  fine_grid(state, four_ppa(), optimal_design(), 128, demand);
+}
+void fine_hybrid(benchmark::State& state) { fine_grid(state, mechanism_named("2t1r-p-hybrid"), {}, 512); }
+void fine_jointed(benchmark::State& state) { fine_grid(state, mechanism_named("3crr-r-cru"), {}, 512); }
+BENCHMARK(fine_four_ppa)->Name("fine_grid/512_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(fine_conditioning)->Name("fine_grid/conditioning_128_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(fine_hybrid)->Name("fine_grid/2t1r-p-hybrid_512_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(fine_jointed)->Name("fine_grid/3crr-r-cru_512_cubed")->Unit(benchmark::kMicrosecond)->UseRealTime();
 
 void plain_loop_against_survey(benchmark::State& state, Design design) {
   const auto all = design();
