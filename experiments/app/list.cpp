@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/app/catalogue_json.hpp"
+#include "experiments/app/catalogue_text.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
 
@@ -13,61 +14,15 @@ namespace {
 
 struct ListArguments {
   std::string kind, name;
-  bool json = false;
+  bool json = false, markdown = false;
 };
-
-std::string cell(const Json& value) {
-  if (value.is_null()) return "-";
-  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_number_float()) return shortest(value.get<double>());
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
-  std::vector<std::string> words;
-  for (const auto& element : value) words.push_back(cell(element));
-  return words.empty() ? "none" : join(words, "; ");
-}
-
-/// One row per object, one column per key; columns in which nothing stands are left out.
-std::vector<Row> table(const Json& list) {
-  std::vector<Row> rows(list.size() + 1);
-  for (const auto& [key, unused] : list.front().items()) {
-    bool any = false;
-    for (const auto& object : list) any = any || !object[key].is_null();
-    if (!any) continue;
-    rows[0].push_back(key);
-    for (std::size_t i = 0; i < list.size(); ++i) rows[i + 1].push_back(cell(list[i][key]));
-  }
-  return rows;
-}
-
-void print_details(const Json& entry) {
-  std::vector<Row> head;
-  std::vector<std::pair<std::string, const Json*>> tables;
-  const auto is_list = [](const Json& value) { return value.is_array() && !value.empty() && value[0].is_object(); };
-  for (const auto& [key, value] : entry.items()) {
-    if (is_list(value)) {
-      tables.emplace_back(key, &value);
-    } else if (value.is_object()) {
-      for (const auto& [inner, content] : value.items()) {
-        if (is_list(content))
-          tables.emplace_back(key + " for " + inner, &content);
-        else
-          head.push_back({inner, content.is_array() ? "no " + key : content.is_null() ? "no limit" : cell(content)});
-      }
-    } else {
-      head.push_back({key, cell(value)});
-    }
-  }
-  std::cout << aligned(head);
-  for (const auto& [title, list] : tables) print_section(std::cout, title, table(*list));
-}
 
 /// A word that several catalogues know is told once per catalogue.
 void print_found(const Json& found) {
   bool first = true;
   for (const auto& [kind, entry] : found.items()) {
     if (found.size() > 1) std::cout << (first ? "" : "\n") << kind << '\n';
-    print_details(entry);
+    std::cout << entry_text(entry);
     first = false;
   }
 }
@@ -77,7 +32,7 @@ void print_overview(const Json& catalogues) {
   for (const auto& [kind, entries] : catalogues.items()) {
     std::cout << (first ? "" : "\n") << kind << '\n';
     std::vector<Row> rows;
-    for (const auto& entry : entries) rows.push_back({cell(entry["name"]), cell(entry["meaning"])});
+    for (const auto& entry : entries) rows.push_back({cell_text(entry["name"]), cell_text(entry["meaning"])});
     std::cout << aligned(rows);
     if (kind == "constraints") std::cout << "  or any objective, with min = .. or max = ..\n";
     first = false;
@@ -117,8 +72,12 @@ Json find_anywhere(const Json& catalogues, const std::string& word) {
 }
 
 int list(const Catalogues& catalogues, const ListArguments& arguments) {
-  const auto& [kind, name, json] = arguments;
+  const auto& [kind, name, json, markdown] = arguments;
   const Json all = catalogues_json(catalogues);
+  if (markdown) {
+    std::cout << catalogues_markdown(all);
+    return kDone;
+  }
   if (kind.empty() || (name.empty() && all.contains(kind))) {
     const Json listed = kind.empty() ? all : Json{{kind, all[kind]}};
     json ? print_json(std::cout, listed) : print_overview(listed);
@@ -145,6 +104,11 @@ void add_list(CLI::App& app, Session& session) {
       ->add_option("NAME", arguments->name, "One entry, with everything known of it: parameters, limits, options, ...")
       ->type_name("");
   command->add_flag("--json", arguments->json, "Print one JSON object, with everything known of each entry");
+  command
+      ->add_flag("--markdown", arguments->markdown,
+                 "Print everything known of all entries, as it stands in experiments/catalogue.md")
+      ->excludes("KIND")
+      ->excludes("--json");
   command->footer("Example: pkmopt list mechanisms 4ppa-2par");
   command->callback([&session, arguments] { session.exit_code = list(session.catalogues, *arguments); });
 }

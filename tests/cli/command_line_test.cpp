@@ -1,5 +1,7 @@
 // The grammar of the command line: what is refused, in which words and with which exit code; help, version, list.
+#include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -180,6 +182,13 @@ TEST(CliList, TellsEverythingOfAnEntry) {
   const auto sweep = pkmopt({"list", "optimisers", "sweep"}).out;
   EXPECT_THAT(sweep, HasSubstr("  max_objectives  no limit\n"));
   EXPECT_THAT(sweep, HasSubstr("one-at-a-time; full-factorial"));
+}
+
+TEST(CliList, CatalogueInTheExperimentsIsWhatIsThere) {
+  std::ostringstream file;
+  file << std::ifstream(std::filesystem::path(PKM_EXPERIMENTS) / "catalogue.md").rdbuf();
+  EXPECT_EQ(pkmopt({"list", "--markdown"}).out, file.str()) << "pkmopt list --markdown > experiments/catalogue.md";
+  EXPECT_EQ(pkmopt({"list", "objectives", "--markdown"}).exit_code, 2);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 
 namespace pkm::house {
@@ -62,6 +63,33 @@ TEST(Readme, NamesBothCommandsAndNothingThatIsMissing) {
     EXPECT_THAT(names, Contains(command));
     EXPECT_EQ(access((root / command).c_str(), X_OK), 0) << command << " cannot be executed";
   }
+}
+
+/// The keys that the reader of studies looks for by name.
+std::set<std::string> keys_read(const fs::path& folder) {
+  static const std::regex lookup(R"re((?:find|at|has|tables_of\(root,|type_of\(\w+,) ?\(?"([a-z][a-z_]*)")re");
+  std::set<std::string> keys;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename().string().find("section") == std::string::npos) continue;
+    std::ostringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    const std::string source = text.str();
+    for (std::sregex_iterator it(source.begin(), source.end(), lookup), end; it != end; ++it) keys.insert((*it)[1]);
+  }
+  return keys;
+}
+
+TEST(Readme, OfTheExperimentsTellsEveryKeyOfAStudy) {
+  const fs::path root = PKM_ROOT;
+  std::ostringstream file;
+  file << std::ifstream(root / "experiments" / "README.md").rdbuf();
+  const std::string text = file.str();
+  const auto keys = keys_read(root / "engine" / "setup");
+  EXPECT_GT(keys.size(), 30u);
+  std::vector<std::string> untold;
+  for (const std::string& key : keys)
+    if (!std::regex_search(text, std::regex("[`\\[ ]" + key + "[`\\], =]"))) untold.push_back(key);
+  EXPECT_THAT(untold, IsEmpty());
 }
 
 }  // namespace

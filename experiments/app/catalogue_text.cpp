@@ -1,0 +1,109 @@
+#include "experiments/app/catalogue_text.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/core/error.hpp"
+
+namespace pkm {
+namespace {
+
+/// One row per object, one column per key; columns in which nothing stands are left out.
+std::vector<Row> table(const Json& list) {
+  std::vector<Row> rows(list.size() + 1);
+  for (const auto& [key, unused] : list.front().items()) {
+    bool any = false;
+    for (const auto& object : list) any = any || !object[key].is_null();
+    if (!any) continue;
+    rows[0].push_back(key);
+    for (std::size_t i = 0; i < list.size(); ++i) rows[i + 1].push_back(cell_text(list[i][key]));
+  }
+  return rows;
+}
+
+struct Details {
+  std::vector<Row> head;  ///< name and value
+  std::vector<std::pair<std::string, std::vector<Row>>> tables;
+};
+
+Details details(const Json& entry) {
+  Details found;
+  const auto is_list = [](const Json& value) { return value.is_array() && !value.empty() && value[0].is_object(); };
+  for (const auto& [key, value] : entry.items()) {
+    if (is_list(value)) {
+      found.tables.emplace_back(key, table(value));
+    } else if (value.is_object()) {
+      for (const auto& [inner, content] : value.items()) {
+        if (is_list(content))
+          found.tables.emplace_back(key + " for " + inner, table(content));
+        else
+          found.head.push_back({inner, content.is_array()  ? "no " + key
+                                       : content.is_null() ? "no limit"
+                                                           : cell_text(content)});
+      }
+    } else {
+      found.head.push_back({key, cell_text(value)});
+    }
+  }
+  return found;
+}
+
+/// A row of a Markdown table; bars within cells are escaped.
+std::string markdown_row(const Row& row) {
+  std::string line = "|";
+  for (const std::string& cell : row) {
+    line += ' ';
+    for (const char c : cell) line += c == '|' ? std::string("\\|") : std::string(1, c);
+    line += " |";
+  }
+  return line + '\n';
+}
+
+std::string markdown_table(const std::vector<Row>& rows) {
+  std::string text = markdown_row(rows.front()) + '|';
+  for (std::size_t i = 0; i < rows.front().size(); ++i) text += "---|";
+  text += '\n';
+  for (auto row = rows.begin() + 1; row != rows.end(); ++row) text += markdown_row(*row);
+  return text;
+}
+
+}  // namespace
+
+std::string cell_text(const Json& value) {
+  if (value.is_null()) return "-";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_float()) return shortest(value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::vector<std::string> words;
+  for (const auto& element : value) words.push_back(cell_text(element));
+  return words.empty() ? "none" : join(words, "; ");
+}
+
+std::string entry_text(const Json& entry) {
+  const Details found = details(entry);
+  std::string text = aligned(found.head);
+  for (const auto& [title, rows] : found.tables) text += '\n' + title + '\n' + aligned(rows);
+  return text;
+}
+
+std::string catalogues_markdown(const Json& catalogues) {
+  std::string text =
+      "# What a study may name\n\n"
+      "Every mechanism, objective, constraint and optimiser with its options, which are keys of its table in a study. "
+      "Written by\n`pkmopt list --markdown > experiments/catalogue.md`.\n\n";
+  for (const auto& [kind, entries] : catalogues.items())
+    for (const auto& entry : entries) {
+      const Details found = details(entry);
+      text += "## " + kind + ": " + entry["name"].get<std::string>() + "\n\n";
+      std::vector<Row> head = {{"", ""}};
+      for (const Row& row : found.head)
+        if (row[0] != "name" && row[1] != "-") head.push_back(row);
+      text += markdown_table(head) + '\n';
+      for (const auto& [title, rows] : found.tables) text += title + ":\n\n" + markdown_table(rows) + '\n';
+    }
+  text.pop_back();  // the last blank line
+  return text;
+}
+
+}  // namespace pkm
