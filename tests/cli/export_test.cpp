@@ -160,6 +160,27 @@ TEST_F(ExportProgram, WritesTablesImageAndSurfaceOfAStudy) {
   EXPECT_EQ(counted, feasible);
 }
 
+TEST_F(ExportProgram, AStudyByColumnsIsPicturedInItsBox) {
+  spill(
+      "study.toml",
+      "[mechanism]\ntype = \"3crr-r-cru\"\n[variables]\nl_11 = { min = 0.16, max = 0.18 }\n[workspace]\nmethod = "
+      "\"columns\"\nphi = \"10 deg\"\nbox = { x = [0.1, 0.2], y = [0.1, 0.3], z = [0.15, 0.25] }\n[[objective]]\ntype "
+      "= \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\npopulation = 4\ngenerations = 1\n");
+  ASSERT_EQ(run({"run", "study.toml", "--output", "study.h5", "--quiet"}), 0) << output_;
+  const StudyContents study = read("study.h5");
+  EXPECT_EQ(study.final->map->voxels.lower[2], 0.15);  // the file's own map keeps to it, too
+  EXPECT_EQ(study.final->map->voxels.upper[2], 0.25);
+  ASSERT_EQ(run({"workspace", "--from", "study.h5", "--json"}), 0) << output_;
+  const Json workspace = Json::parse(output_);
+  EXPECT_EQ(workspace["axes"][1]["lower"], 0.1);
+  EXPECT_EQ(workspace["axes"][1]["upper"], 0.3);
+  EXPECT_EQ(workspace["cells"], 48 * 48 * 48);
+  EXPECT_NEAR(workspace["held"]["value"].get<double>(), 0.174532925199433, 1e-12);
+  EXPECT_NEAR(workspace["volume"].get<double>() / study.final->best->volume, 1, 0.02);
+  ASSERT_EQ(run({"export", "study.h5", "--stl", "."}), 0) << output_;
+  EXPECT_NEAR(volume_of(slurp("3crr-r-cru-best.stl")) / study.final->best->volume, 1, 0.02);
+}
+
 TEST_F(ExportProgram, AnyDesignOfAStudyCanBeNamed) {
   run_study();
   const StudyContents study = read("study.h5");
