@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/team.hpp"
+
 namespace pkm {
 namespace {
 
@@ -28,11 +30,17 @@ class Nodes {
   std::size_t cell(const Index& n) const {
     return (nearest(n, 0) * cells_[1] + nearest(n, 1)) * cells_[2] + nearest(n, 2);
   }
+  /// In the outer of the two layers.
+  bool beyond(const Index& n) const {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (n[i] == 0 || n[i] == size[i] - 1) return true;
+    return false;
+  }
+  /// In the outer layer only because the box ends there.
+  bool cut_off(const Index& n) const { return beyond(n) && margin_[cell(n)] > 0; }
   double margin(const Index& n) const {
     const double own = margin_[cell(n)];
-    for (std::size_t i = 0; i < 3; ++i)
-      if (n[i] == 0 || n[i] == size[i] - 1) return -std::fabs(own);
-    return own;
+    return beyond(n) ? -std::fabs(own) : own;
   }
   Point place(const Index& n) const {
     Point at;
@@ -83,6 +91,23 @@ class Builder {
       cut({&corner[0], &corner[kPaths[path][0]], &corner[kPaths[path][1]], &corner[7]}, path >= 3);
   }
 
+  /// Moves vertices to where the pose's margin changes its sign, but for those that the box alone makes.
+  void refine(const WorkspaceFields& workspace, const PoseMargin& margin) {
+    constexpr std::size_t kBlock = 256;
+    const std::size_t count = edges_.size();
+    share_pieces((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end) {
+      for (std::size_t k = block * kBlock; k < std::min(end * kBlock, count); ++k) {
+        if (edges_[k].cut_off) continue;
+        double inside = 0, outside = 1;
+        for (int step = 0; step < 7; ++step) {
+          const double middle = (inside + outside) / 2;
+          (margin(workspace.pose(edges_[k].at(middle))) >= 0 ? inside : outside) = middle;
+        }
+        surface_.vertices[k] = edges_[k].at((inside + outside) / 2);
+      }
+    });
+  }
+
   Isosurface take() { return std::move(surface_); }
 
  private:
@@ -114,11 +139,8 @@ class Builder {
     std::uint32_t& number = known_[8 * nodes_.number(low.node) + (high.direction ^ low.direction)];
     if (number != kNew) return number;
     number = static_cast<std::uint32_t>(surface_.vertices.size());
-    const double share = in.margin / (in.margin - out.margin);
-    const Point from = nodes_.place(in.node), to = nodes_.place(out.node);
-    Point at;
-    for (std::size_t i = 0; i < 3; ++i) at[i] = from[i] + share * (to[i] - from[i]);
-    surface_.vertices.push_back(at);
+    edges_.push_back({nodes_.place(in.node), nodes_.place(out.node), nodes_.cut_off(out.node)});
+    surface_.vertices.push_back(edges_.back().at(in.margin / (in.margin - out.margin)));
     surface_.cell.push_back(nodes_.cell(in.node));
     return number;
   }
@@ -128,7 +150,20 @@ class Builder {
     surface_.triangles.push_back(triangle);
   }
 
+  /// That a vertex lies on, from the feasible node.
+  struct Edge {
+    Point from, to;
+    bool cut_off;
+
+    Point at(double share) const {
+      Point point;
+      for (std::size_t i = 0; i < 3; ++i) point[i] = from[i] + share * (to[i] - from[i]);
+      return point;
+    }
+  };
+
   const Nodes& nodes_;
+  std::vector<Edge> edges_;           ///< one per vertex
   std::vector<std::uint32_t> known_;  ///< of every edge, named by its first node and its direction: the vertex on it
   Isosurface surface_;
 };
@@ -145,12 +180,13 @@ double Isosurface::volume() const {
   return sixfold / 6;
 }
 
-Isosurface isosurface(const WorkspaceFields& workspace) {
+Isosurface isosurface(const WorkspaceFields& workspace, const PoseMargin* margin) {
   const Nodes nodes(workspace);
   Builder builder(nodes);
   for (std::size_t i = 0; i + 1 < nodes.size[0]; ++i)
     for (std::size_t j = 0; j + 1 < nodes.size[1]; ++j)
       for (std::size_t k = 0; k + 1 < nodes.size[2]; ++k) builder.cut_cube({i, j, k});
+  if (margin) builder.refine(workspace, *margin);
   return builder.take();
 }
 

@@ -90,6 +90,22 @@ TEST_F(ExportProgram, VtkAndTheTableOfAnyMechanismsWorkspaceAreTheSame) {
   }
 }
 
+TEST_F(ExportProgram, SurfacesOfAnyMechanismsWorkspaceAreClosed) {
+  for (const auto& mechanism : all_mechanisms()) {
+    const std::string& name = mechanism->info().name;
+    SCOPED_TRACE(name);
+    ASSERT_EQ(run({"workspace", name, "--stl", "."}), 0) << output_;
+    const std::string stl = slurp(name + "-nominal.stl");
+    using Corner = std::array<float, 3>;
+    std::map<std::pair<Corner, Corner>, int> edges;
+    for (const auto& [normal, p, q, r] : triangles_of(stl))
+      for (const auto& edge : {std::pair(p, q), std::pair(q, r), std::pair(r, p)}) ++edges[edge];
+    for (const auto& [edge, times] : edges) ASSERT_EQ(edges[std::pair(edge.second, edge.first)], times);
+    ASSERT_EQ(run({"evaluate", name, "--json"}), 0) << output_;  // on exact columns
+    EXPECT_NEAR(volume_of(stl) / Json::parse(output_)["workspace"]["volume"].get<double>(), 1, 0.004);
+  }
+}
+
 TEST_F(ExportProgram, WorkspaceSaysWhatEvaluateSays) {
   run_study();
   ASSERT_EQ(run({"evaluate", "study.toml", "--set", "a=0.25", "--json"}), 0) << output_;
