@@ -101,20 +101,6 @@ std::vector<std::vector<std::string>> table(const StudyContents& contents, const
   return rows;
 }
 
-std::string status_word(Status status) {
-  switch (status) {
-    case Status::feasible:
-      return "feasible";
-    case Status::infeasible:
-      return "infeasible";
-    case Status::rejected:
-      return "rejected";
-    case Status::failed:
-      break;
-  }
-  return "failed";
-}
-
 /// Which constraint keeps a design from being feasible.
 std::string blocking(const StudyContents& contents, const DesignRecord& best) {
   std::size_t worst = 0;
@@ -149,7 +135,7 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
                  {"objectives", values_by_name(problem.objectives, record.objectives)},
                  {"constraints", values_by_name(problem.margins, record.margins)},
                  {"reports", values_by_name(problem.reports, record.reports)},
-                 {"status", status_word(record.status)},
+                 {"status", words(record.status)},
                  {"volume", record.volume}};
   if (!record.reason.empty()) object["reason"] = record.reason;
   return object;
@@ -179,7 +165,7 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
       const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
       const auto row = static_cast<std::size_t>(contents.best.row);
       const Status status = stage.table.status[row];
-      out << (status == Status::feasible ? "best so far:" : "best so far, which is " + status_word(status) + ":");
+      out << (status == Status::feasible ? "best so far:" : "best so far, which is " + words(status) + ":");
       for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
         out << ' ' << contents.problem.variables[i].name << " = " << digits(stage.table.design(row)[i]);
       for (std::size_t i = 0; i < contents.problem.objectives.size(); ++i)
@@ -200,7 +186,7 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
         << '\n';
   out << '\n' << aligned(table(contents, study)) << '\n';
   if (final.rounded && (final.rounded->status != Status::feasible || !final.rounded->reason.empty()))
-    out << "the rounded design is " << status_word(final.rounded->status) << rounded_remarks(contents, *final.rounded)
+    out << "the rounded design is " << words(final.rounded->status) << rounded_remarks(contents, *final.rounded)
         << '\n';
   const StageRecord& of_best = contents.stages[static_cast<std::size_t>(contents.best.stage)];
   const StageRecord& last = contents.stages.back();
@@ -249,7 +235,7 @@ Json summary_json(const StudyContents& contents) {
                       {"objectives", values_by_name(contents.problem.objectives, stage.table.objective_row(row))},
                       {"constraints", values_by_name(contents.problem.margins, stage.table.margin_row(row))},
                       {"reports", values_by_name(contents.problem.reports, stage.table.report_row(row))},
-                      {"status", status_word(stage.table.status[row])},
+                      {"status", words(stage.table.status[row])},
                       {"stage", contents.best.stage + 1},
                       {"generation", generation_of(stage, contents.best.row)}};
   }

@@ -17,6 +17,8 @@ Target bare_mechanism(std::shared_ptr<const Mechanism> mechanism) {
   target.limits = no_limits(mechanism->info());
   for (const auto& parameter : mechanism->info().parameters) target.parameters.push_back(parameter.nominal);
   target.mechanism = std::move(mechanism);
+  target.words = "the nominal design";
+  target.file_name = "nominal";
   return target;
 }
 
@@ -26,6 +28,8 @@ Target of_study(Study study) {
   target.mechanism = parts.mechanism;
   target.limits = parts.plan.limits;
   target.parameters = study.baseline.value_or(parts.parameters);
+  target.words = study.baseline ? "the baseline" : "the study's parameters";
+  target.file_name = study.baseline ? "baseline" : "parameters";
   target.study = std::move(study);
   return target;
 }
@@ -43,36 +47,13 @@ Target named_target(const Catalogues& catalogues, const std::string& name) {
                     "a study in TOML, or one of the mechanisms " + join(known), nearest_name(name, known));
 }
 
-/// The design that --from, --front and --stage name.
-std::span<const double> found_design(const StudyContents& contents, const DesignArguments& arguments) {
-  if (!arguments.front) {
-    if (arguments.stage)
-      throw ConfigError({"", 0, "--stage"}, "no --front", "--front N, the point of that stage's front");
-    if (contents.best.row < 0)
-      throw ConfigError({"", 0, "--from"}, arguments.from, "a study file with a best design: this one has none yet");
-    return contents.stages[static_cast<std::size_t>(contents.best.stage)].table.design(
-        static_cast<std::size_t>(contents.best.row));
-  }
-  std::vector<std::string> with;  // stages that have a front
-  for (std::size_t s = 0; s < contents.stages.size(); ++s)
-    if (contents.stages[s].front && !contents.stages[s].front->rows.empty()) with.push_back(std::to_string(s + 1));
-  if (with.empty())
-    throw ConfigError({"", 0, "--front"}, arguments.from, "a study file that holds a front: this one has none");
-  const std::string stage = arguments.stage ? std::to_string(*arguments.stage) : with.back();
-  if (std::find(with.begin(), with.end(), stage) == with.end())
-    throw ConfigError({"", 0, "--stage"}, stage, "a stage with a front: " + join(with));
-  const StageRecord& record = contents.stages[std::stoul(stage) - 1];
-  const std::vector<std::int64_t>& rows = record.front->rows;
-  if (*arguments.front < 1 || *arguments.front > static_cast<std::int64_t>(rows.size()))
-    throw ConfigError({"", 0, "--front"}, std::to_string(*arguments.front),
-                      "a point of the front of stage " + stage + ", 1 to " + std::to_string(rows.size()));
-  return record.table.design(static_cast<std::size_t>(rows[static_cast<std::size_t>(*arguments.front) - 1]));
-}
-
 Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
   Target target = of_study(study_of(contents, catalogues));
-  target.parameters = target.study->problem->parameters(found_design(contents, arguments));
+  ChosenDesign design = chosen_design(contents, *target.study, arguments.choice);
+  target.parameters = std::move(design.parameters);
+  target.words = std::move(design.words);
+  target.file_name = std::move(design.file_name);
   return target;
 }
 
@@ -81,8 +62,8 @@ Target chosen_target(const Catalogues& catalogues, const DesignArguments& argume
     throw ConfigError({}, arguments.from.empty() ? "no design" : "'" + arguments.target + "' together with --from",
                       "a mechanism, a study in TOML or --from F.h5");
   if (!arguments.from.empty()) return of_file(catalogues, arguments);
-  if (arguments.front || arguments.stage)
-    throw ConfigError({"", 0, arguments.front ? "--front" : "--stage"}, "no --from", "--from F.h5 beside it");
+  if (const char* const option = given_option(arguments.choice))
+    throw ConfigError({"", 0, option}, "no --from", "--from F.h5 beside it");
   return named_target(catalogues, arguments.target);
 }
 
@@ -101,6 +82,28 @@ void set_masses(Target& target, const std::string& model) {
 }
 
 }  // namespace
+
+void add_choice_options(CLI::App& command, DesignChoice& choice) {
+  command.add_flag("--baseline", choice.baseline, "Instead of the best design: the study's baseline");
+  command
+      .add_option("--generation", choice.generation,
+                  "Instead: of generation G of a stage (the first is 0) the design that --individual names")
+      ->type_name("G");
+  command.add_option("--individual", choice.individual, "Its place in the population, from 1")->type_name("I");
+  command.add_option("--front", choice.front, "Instead: point N of its trade-off (see 'pkmopt show F.h5')")
+      ->type_name("N");
+  command.add_option("--stage", choice.stage, "The stage of generation or front (default: the last that has one)")
+      ->type_name("N");
+}
+
+const char* given_option(const DesignChoice& choice) {
+  return choice.baseline     ? "--baseline"
+         : choice.generation ? "--generation"
+         : choice.individual ? "--individual"
+         : choice.front      ? "--front"
+         : choice.stage      ? "--stage"
+                             : nullptr;
+}
 
 void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
                      const std::string& meaning, bool required) {
@@ -143,10 +146,7 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
       .add_option("--from", arguments.from,
                   "The best design of a study file (of a trade-off the compromise), and its problem")
       ->type_name("F.h5");
-  command.add_option("--front", arguments.front, "Instead: point N of its trade-off (see 'pkmopt show F.h5')")
-      ->type_name("N");
-  command.add_option("--stage", arguments.stage, "The stage of that front (default: the last that has one)")
-      ->type_name("N");
+  add_choice_options(command, arguments.choice);
   add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults",
                   false);
   command
@@ -162,6 +162,10 @@ Target find_target(const Catalogues& catalogues, const DesignArguments& argument
   const auto given = parse_assignments(arguments.set, "--set", assignable_parameters(target.info()));
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i]) target.parameters[i] = *given[i];
+  if (!arguments.set.empty()) {
+    target.words += " with " + join(arguments.set);
+    target.file_name += "-changed";
+  }
   if (const std::string reason = target.mechanism->refuse(target.parameters); !reason.empty())
     throw ConfigError({"", 0, "--set"}, reason);
   return target;
