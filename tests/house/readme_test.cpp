@@ -65,6 +65,21 @@ TEST(Readme, NamesBothCommandsAndNothingThatIsMissing) {
   }
 }
 
+TEST(Readme, ShowsAMechanismThatATestBuilds) {
+  const fs::path root = PKM_ROOT;
+  const auto read = [](const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  };
+  const std::string readme = read(root / "README.md"), fence = "```cpp\n";
+  const std::size_t begin = readme.find(fence);
+  ASSERT_NE(begin, std::string::npos);
+  const std::string code =
+      readme.substr(begin + fence.size(), readme.find("```\n", begin + fence.size()) - begin - fence.size());
+  EXPECT_THAT(read(root / "tests" / "packaging" / "external" / "scara.cpp"), ::testing::HasSubstr(code));
+}
+
 /// The keys that the reader of studies looks for by name.
 std::set<std::string> keys_read(const fs::path& folder) {
   static const std::regex lookup(R"re((?:find|at|has|tables_of\(root,|type_of\(\w+,) ?\(?"([a-z][a-z_]*)")re");
