@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "engine/core/text_table.hpp"
+#include "engine/report/standing.hpp"
 #include "engine/study/progress.hpp"
 #include "experiments/app/front_summary.hpp"
 #include "experiments/app/solver_summary.hpp"
@@ -22,11 +23,10 @@ std::string digits(double value) {
 
 /// "+1.52 %": how much better than the baseline, in the objective's direction.
 std::string gain(double best, double baseline, Direction direction) {
-  if (!(std::fabs(baseline) > 0) || std::isnan(best)) return "";
-  const double change = 100 * (best - baseline) / std::fabs(baseline);
+  const std::optional<Gain> found = gain_over(baseline, best, direction);
+  if (!found) return "";
   char text[48];
-  std::snprintf(text, sizeof text, "%+.2f %%%s", change,
-                (direction == Direction::maximise) == (change >= 0) || change == 0 ? "" : ", worse");
+  std::snprintf(text, sizeof text, "%+.2f %%%s", found->percent, found->worse ? ", worse" : "");
   return text;
 }
 
@@ -101,28 +101,12 @@ std::vector<std::vector<std::string>> table(const StudyContents& contents, const
   return rows;
 }
 
-std::string status_word(Status status) {
-  switch (status) {
-    case Status::feasible:
-      return "feasible";
-    case Status::infeasible:
-      return "infeasible";
-    case Status::rejected:
-      return "rejected";
-    case Status::failed:
-      break;
-  }
-  return "failed";
-}
-
 /// Which constraint keeps a design from being feasible.
 std::string blocking(const StudyContents& contents, const DesignRecord& best) {
-  std::size_t worst = 0;
-  for (std::size_t i = 1; i < best.margins.size(); ++i)
-    if (best.margins[i] < best.margins[worst] || std::isnan(best.margins[worst])) worst = i;
-  if (best.margins.empty() || !(best.margins[worst] < 0)) return "";
-  return contents.problem.margins[worst].name + " blocks, margin " + digits(best.margins[worst]) + " " +
-         contents.problem.margins[worst].unit;
+  const auto worst = most_broken(best.margins);
+  if (!worst) return "";
+  return contents.problem.margins[*worst].name + " blocks, margin " + digits(best.margins[*worst]) + " " +
+         contents.problem.margins[*worst].unit;
 }
 
 /// What is wrong with the rounded design, as far as it is known.
@@ -149,7 +133,7 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
                  {"objectives", values_by_name(problem.objectives, record.objectives)},
                  {"constraints", values_by_name(problem.margins, record.margins)},
                  {"reports", values_by_name(problem.reports, record.reports)},
-                 {"status", status_word(record.status)},
+                 {"status", words(record.status)},
                  {"volume", record.volume}};
   if (!record.reason.empty()) object["reason"] = record.reason;
   return object;
@@ -179,7 +163,7 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
       const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
       const auto row = static_cast<std::size_t>(contents.best.row);
       const Status status = stage.table.status[row];
-      out << (status == Status::feasible ? "best so far:" : "best so far, which is " + status_word(status) + ":");
+      out << (status == Status::feasible ? "best so far:" : "best so far, which is " + words(status) + ":");
       for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
         out << ' ' << contents.problem.variables[i].name << " = " << digits(stage.table.design(row)[i]);
       for (std::size_t i = 0; i < contents.problem.objectives.size(); ++i)
@@ -200,7 +184,7 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
         << '\n';
   out << '\n' << aligned(table(contents, study)) << '\n';
   if (final.rounded && (final.rounded->status != Status::feasible || !final.rounded->reason.empty()))
-    out << "the rounded design is " << status_word(final.rounded->status) << rounded_remarks(contents, *final.rounded)
+    out << "the rounded design is " << words(final.rounded->status) << rounded_remarks(contents, *final.rounded)
         << '\n';
   const StageRecord& of_best = contents.stages[static_cast<std::size_t>(contents.best.stage)];
   const StageRecord& last = contents.stages.back();
@@ -249,7 +233,7 @@ Json summary_json(const StudyContents& contents) {
                       {"objectives", values_by_name(contents.problem.objectives, stage.table.objective_row(row))},
                       {"constraints", values_by_name(contents.problem.margins, stage.table.margin_row(row))},
                       {"reports", values_by_name(contents.problem.reports, stage.table.report_row(row))},
-                      {"status", status_word(stage.table.status[row])},
+                      {"status", words(stage.table.status[row])},
                       {"stage", contents.best.stage + 1},
                       {"generation", generation_of(stage, contents.best.row)}};
   }

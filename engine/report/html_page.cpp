@@ -1,0 +1,48 @@
+#include "engine/report/html_page.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/report/json_text.hpp"
+#include "engine/report/page_parts.hpp"
+#include "engine/report/sections.hpp"
+
+namespace pkm {
+namespace {
+
+std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
+
+std::string study_data(const PageStudy& page) {
+  const StudyContents& contents = page.contents;
+  return json_object({{"name", quoted(contents.name)},
+                      {"file", quoted(page.file)},
+                      {"problem", problem_data(page)},
+                      {"summary", summary_data(page)},
+                      {"convergence", convergence_data(contents)},
+                      {"populations", populations_data(contents)},
+                      {"front", front_data(contents)}});
+}
+
+}  // namespace
+
+std::string page_data(const std::vector<PageStudy>& studies, const std::string& program) {
+  std::string list;
+  for (const PageStudy& page : studies) list += (list.empty() ? "" : ",") + study_data(page);
+  return json_object({{"program", quoted(program)}, {"studies", '[' + list + ']'}});
+}
+
+std::string html_page(const std::vector<PageStudy>& studies, const std::string& program) {
+  const PageParts parts = page_parts();
+  const std::string data = page_data(studies, program);
+  const std::vector<std::pair<std::string_view, std::string_view>> marks = {
+      {"{{style}}", parts.style}, {"{{data}}", data}, {"{{plotly}}", parts.plotly}, {"{{script}}", parts.script}};
+  std::string page;
+  std::string_view rest = parts.html;
+  for (const auto& [mark, text] : marks) {  // in the order in which the page has them
+    const std::size_t at = rest.find(mark);
+    page.append(rest.substr(0, at)).append(text);
+    rest.remove_prefix(at + mark.size());
+  }
+  return page.append(rest);
+}
+
+}  // namespace pkm

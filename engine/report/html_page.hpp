@@ -1,0 +1,18 @@
+// `pkmopt report`: one HTML file that shows what studies found, opens from disk and asks no network for anything.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/report/page_study.hpp"
+
+namespace pkm {
+
+/// The page's data: {"program": .., "studies": [..]}, a study having the sections that it has something for.
+std::string page_data(const std::vector<PageStudy>& studies, const std::string& program);
+
+/// The page. Throws std::runtime_error with a sentence where the library was built without it (see page_parts).
+/// @param program  what made it, "pkmopt 0.1.0 (a1b2c3d)"
+std::string html_page(const std::vector<PageStudy>& studies, const std::string& program);
+
+}  // namespace pkm
