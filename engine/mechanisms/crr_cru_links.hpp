@@ -12,9 +12,10 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "engine/mechanisms/crr_cru.hpp"
-#include "engine/model/capsule.hpp"
+#include "engine/model/placed_link.hpp"
 
 namespace pkm::crr_cru {
 
@@ -118,6 +119,26 @@ inline std::string link_name(std::size_t link, Platform platform) {
   if (link < kFirstArm) return "rail " + std::to_string(link - kFirstRail + 1);
   if (platform == Platform::rigid) return "platform";
   return link == kArm4 ? "moving platform" : "middle platform";
+}
+
+/// All links at a pose, and the slides, drawn as balls that the rails run through. Empty where the pose does not
+/// assemble.
+inline std::vector<PlacedLink> placed_links(const Geometry<double>& g, const LinkRadii<double>& radius,
+                                            const Pose<double>& pose, const WorkingMode& mode) {
+  std::vector<PlacedLink> placed;
+  const Limbs<double> limbs = inverse(g, pose, mode);
+  if (!limbs.assembles) return placed;
+  const Links<double> all = links(g, radius, limbs);
+  const auto limb_called = [](std::size_t i) { return "limb " + std::to_string(i + 1); };
+  for (std::size_t i = 0; i < kLinks; ++i) {
+    const std::string part = i < kFirstRail ? limb_called(i / 2) : i < kFirstArm ? kFramePart : kPlatformPart;
+    placed.push_back({link_name(i, g.platform), part, all[i]});
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Point3<double>& A = limbs.limb[i].A;
+    placed.push_back({"slide " + std::to_string(i + 1), limb_called(i), {{A, A}, 2 * radius.rail}});
+  }
+  return placed;
 }
 
 }  // namespace pkm::crr_cru

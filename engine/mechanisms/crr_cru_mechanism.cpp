@@ -72,6 +72,7 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
   i.has_influence = true;
   i.has_dynamics = true;
   i.has_reactions = true;
+  i.has_links = true;
   i.mass_models = kMassModels;
   i.mass_model = kMassModels[static_cast<std::size_t>(mass_model)];
   i.coordinates = {"x", "y", "z", "phi"};
@@ -117,6 +118,9 @@ class CrrCru final : public Mechanism {
   VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
     return crr_cru::voxel_map(platform_, modes_.front(), sweep_of(info_, plan).held, p, plan);
   }
+  double middle(std::span<const double> p, int coordinate) const override {
+    return held_value(geometry(platform_, p), Held{static_cast<std::size_t>(coordinate)});
+  }
   void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
   void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const override {}
   double size(std::span<const double>) const override { return 1; }
@@ -155,6 +159,10 @@ class CrrCru final : public Mechanism {
     const Limbs<double> limbs = inverse(geometry(platform_, p), pose, mode_called(mode));
     if (!limbs.assembles) return std::nullopt;
     return crr_cru::influence(limbs.arm);
+  }
+  std::vector<PlacedLink> links(std::span<const double> p, const Pose<double>& pose,
+                                const std::string& mode) const override {
+    return placed_links(geometry(platform_, p), link_radii(p), pose, mode_called(mode));
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& rho) const override {
     return crr_cru::forward(geometry(platform_, p), rho);

@@ -43,6 +43,12 @@ Geometry<S> geometry(std::span<const S> p) {
   return {p[kA], p[kB], p[kLu], p[kLd], p[kD], p[kL0], p[kRu], p[kRd], p[kDu], p[kDd], p[kD0], p[kRp], p[kRs]};
 }
 
+/// The plane y that surveys are on where their plan names no other [m].
+template <class S>
+S middle_plane(const Geometry<S>& g) {
+  return g.L0 * 0.5;
+}
+
 /// Pose-level thresholds in the form in which the tests use them.
 template <class S>
 struct Limits {

@@ -19,4 +19,24 @@ std::string link_name(std::size_t link) {
   return "platform";
 }
 
+std::vector<PlacedLink> placed_links(const Geometry<double>& g, const Pose<double>& pose, WorkingMode mode) {
+  std::vector<PlacedLink> placed;
+  const Limbs<double> limb = inverse(g, pose, mode);
+  if (!limb.assembles) return placed;
+  for (int rail = 0; rail < 2; ++rail) {
+    const double x = rail == 0 ? 0 : g.b;
+    placed.push_back({"rail " + std::to_string(rail + 1), kFramePart, {{{x, 0, 0}, {x, g.L0, 0}}, g.R_s / 2}});
+  }
+  const Links<double> all = links(g, placement(pose, limb, mode));
+  const std::size_t second = links_of(kGroupsPerLimb).first, platform = links_of(kPlatform).first;
+  for (std::size_t i = 0; i < kLinks; ++i) {
+    const char* const part = i >= platform ? kPlatformPart : i >= second ? "limb 2" : "limb 1";
+    PlacedLink link{link_name(i), part, all[i]};
+    link.body.axis.from[1] += pose.y;
+    link.body.axis.to[1] += pose.y;
+    placed.push_back(std::move(link));
+  }
+  return placed;
+}
+
 }  // namespace pkm::four_ppa_two_par

@@ -33,9 +33,10 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "engine/mechanisms/four_ppa_two_par.hpp"
-#include "engine/model/capsule.hpp"
+#include "engine/model/placed_link.hpp"
 
 namespace pkm::four_ppa_two_par {
 
@@ -162,5 +163,9 @@ Nearest<S> nearest_links(const Links<S>& all) {
 
 /// "slider 1", "upper bar of slider 3", "lower connector of limb 2", "platform".
 std::string link_name(std::size_t link);
+
+/// All links at a pose in the world frame, and the rails, drawn half as thick as the sliders on them. Empty where the
+/// pose does not assemble.
+std::vector<PlacedLink> placed_links(const Geometry<double>& g, const Pose<double>& pose, WorkingMode mode);
 
 }  // namespace pkm::four_ppa_two_par

@@ -3,6 +3,7 @@
 
 #include "engine/core/options.hpp"
 #include "engine/mechanisms/four_ppa_two_par_dynamics.hpp"
+#include "engine/mechanisms/four_ppa_two_par_links.hpp"
 #include "engine/mechanisms/four_ppa_two_par_survey.hpp"
 #include "engine/mechanisms/list.hpp"
 
@@ -42,6 +43,7 @@ MechanismInfo make_info() {
   for (Parameter& parameter : mass_parameters()) i.parameters.push_back(std::move(parameter));
   i.has_influence = true;
   i.has_dynamics = true;
+  i.has_links = true;
   i.mass_models = {kMassModel};
   i.mass_model = kMassModel;
   i.coordinates = {"x", "y", "z", "theta"};
@@ -117,6 +119,7 @@ class FourPpaTwoPar final : public Mechanism {
   VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
     return four_ppa_two_par::voxel_map(geometry(p), plan);
   }
+  double middle(std::span<const double> p, int) const override { return middle_plane(geometry(p)); }
   void design_margins(std::span<const double> p, const LimitSpec& spec, std::span<double> margins) const override {
     margins_of(p, spec, margins);
   }
@@ -153,6 +156,10 @@ class FourPpaTwoPar final : public Mechanism {
   std::optional<Influence<double>> influence(std::span<const double> p, const Pose<double>& pose,
                                              const std::string& mode) const override {
     return four_ppa_two_par::influence(geometry(p), pose, mode_called(mode));
+  }
+  std::vector<PlacedLink> links(std::span<const double> p, const Pose<double>& pose,
+                                const std::string& mode) const override {
+    return placed_links(geometry(p), pose, mode_called(mode));
   }
   std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& q) const override {
     return four_ppa_two_par::forward(geometry(p), q);

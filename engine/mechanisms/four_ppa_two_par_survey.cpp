@@ -12,7 +12,7 @@ namespace {
 
 template <class S>
 S plane(const Geometry<S>& g, const HeldCoordinate& held) {
-  return held.kind == HeldCoordinate::Kind::value ? S(held.value) : S(g.L0 * 0.5);
+  return held.kind == HeldCoordinate::Kind::value ? S(held.value) : middle_plane(g);
 }
 
 template <class S>

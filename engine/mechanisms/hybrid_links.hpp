@@ -5,7 +5,10 @@
 // Pairs that share a joint are not tested. The carriage's y shifts all of them: they do not depend on it.
 #pragma once
 
+#include <vector>
+
 #include "engine/mechanisms/hybrid_chain.hpp"
+#include "engine/model/placed_link.hpp"
 
 namespace pkm::hybrid {
 
@@ -40,5 +43,10 @@ inline constexpr std::array<LinkPair, kLinkPairs> kPairs = {{{kLinkA, kLinkB},
                                                              {kLinkC, kLinkF},
                                                              {kLinkC, kLinkP},
                                                              {kLinkF, kLinkP}}};
+
+/// The robot as it is drawn at a pose: these links, and what carries them and is carried. Empty where the pose does not
+/// assemble.
+/// @param p  all parameters
+std::vector<PlacedLink> placed_links(std::span<const double> p, const Pose<double>& pose, const WorkingMode& mode);
 
 }  // namespace pkm::hybrid

@@ -68,6 +68,7 @@ MechanismInfo make_info() {
   i.characteristic_length = "e";
   i.margin_unit = "m";
   i.has_influence = true;
+  i.has_links = true;
   i.chain_input = "theta";
   i.chain_output = "gamma";
   return i;
@@ -96,6 +97,7 @@ class Hybrid final : public Mechanism {
   VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
     return hybrid::voxel_map(modes_.front().signs, modes_.front().branch, p, plan);
   }
+  double middle(std::span<const double> p, int) const override { return (p[kSMin + 1] + p[kSMax + 1]) / 2; }
   void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
   void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const override {}
   double size(std::span<const double> p) const override { return size_of(p); }
@@ -144,6 +146,10 @@ class Hybrid final : public Mechanism {
     const Joints<double> j = inverse(g, pose, mode_called(mode).signs);
     if (!j.assembles() || j.serial) return std::nullopt;
     return hybrid::influence(g, pose, j);
+  }
+  std::vector<PlacedLink> links(std::span<const double> p, const Pose<double>& pose,
+                                const std::string& mode) const override {
+    return placed_links(p, pose, mode_called(mode).signs);
   }
   ChainReport chain(std::span<const double> p, const MotionSample& at, double phase) const override {
     return inspect_chain(geometry(p), at, phase);

@@ -11,6 +11,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/optimisers/optimality.hpp"
 #include "engine/study/machine.hpp"
+#include "engine/workspace/picture_plan.hpp"
 
 namespace pkm {
 namespace {
@@ -73,17 +74,8 @@ std::unique_ptr<const DesignProblem> on_columns(const ProblemParts& parts) {
   }
 }
 
-/// The plan whose voxels picture the workspace: the study's own, or a default grid on the middle plane.
-SurveyPlan picture_plan(const SurveyPlan& plan) {
-  SurveyPlan picture = plan;
-  if (plan.method == Method::columns) {
-    picture.method = Method::voxels;
-    picture.cells = {32, 34, 60};
-    picture.box.reset();
-  }
-  if (plan.held.kind == HeldCoordinate::Kind::integrated) picture.held.kind = HeldCoordinate::Kind::middle;
-  return picture;
-}
+/// Cells of the map that a study by columns stores.
+constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
 
 /// Sentences on bounds and constraints that hold the best design back.
 std::vector<std::string> active_sentences(const DesignProblem& problem, const DesignRecord& best) {
@@ -231,7 +223,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
     f.rounded = evaluated_rounded(problem, rounded);
   }
   MapRecord map;
-  map.voxels = parts.mechanism->voxel_map(best, picture_plan(parts.plan));
+  map.voxels = parts.mechanism->voxel_map(best, picture_plan(parts.plan, kMapCells));
   for (const int swept : sweep_of(info, parts.plan).swept) {
     map.axes.push_back(info.coordinates[static_cast<std::size_t>(swept)]);
     map.units.push_back(swept == 3 ? "rad" : "m");

@@ -14,6 +14,7 @@
 #include "engine/math/dual.hpp"
 #include "engine/model/chain.hpp"
 #include "engine/model/influence.hpp"
+#include "engine/model/placed_link.hpp"
 #include "engine/model/pose.hpp"
 #include "engine/motion/motion.hpp"
 #include "engine/workspace/plan.hpp"
@@ -75,6 +76,7 @@ struct MechanismInfo {
   std::string chain_input, chain_output;  ///< angles of the auxiliary chain: Mechanism::chain answers; "": none
   bool has_dynamics = false;              ///< Mechanism::dynamics answers
   bool has_reactions = false;             ///< Mechanism::reactions answers
+  bool has_links = false;                 ///< Mechanism::links answers
   std::vector<std::string> mass_models;   ///< where masses can come from; the first is the default; none: no masses
   std::string mass_model;                 ///< the one in force
   int column = 2;                         ///< as in Sweep
@@ -108,6 +110,13 @@ class Mechanism {
   virtual std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const = 0;
   /// The cells of a voxel plan for one design (the plan's cells; box as in a survey).
   virtual VoxelMap voxel_map(std::span<const double> parameters, const SurveyPlan& plan) const = 0;
+  /// What HeldCoordinate::Kind::middle means for a design: the value at which a map holds that coordinate, unless its
+  /// plan says another [m or rad].
+  /// @param coordinate  one that a sweep of the mechanism holds
+  virtual double middle(std::span<const double>, int coordinate) const {
+    throw std::invalid_argument("mechanism " + info().name + " does not say where the middle of " +
+                                info().coordinates[static_cast<std::size_t>(coordinate)] + " is; give a value");
+  }
   /// Margins of the design-level tests, order of MechanismInfo::design_margins. Limits enter some of them.
   virtual void design_margins(std::span<const double> parameters, const LimitSpec& limits,
                               std::span<double> margins) const = 0;
@@ -151,6 +160,12 @@ class Mechanism {
   virtual std::optional<Influence<double>> influence(std::span<const double>, const Pose<double>&,
                                                      const std::string&) const {
     throw std::logic_error("mechanism " + info().name + " has no influence coefficients");
+  }
+  /// The mechanism as it is drawn at a pose, rails, platform and slides included: the same links in the same order at
+  /// every pose. Empty where the pose does not assemble.
+  /// @param mode  one of MechanismInfo::modes
+  virtual std::vector<PlacedLink> links(std::span<const double>, const Pose<double>&, const std::string&) const {
+    throw std::logic_error("mechanism " + info().name + " says nothing of its links");
   }
   /// The auxiliary chain at a pose on its way, with the motion of its input.
   /// @param phase  of the forks of the chain's two universal joints [rad]
@@ -209,6 +224,12 @@ inline Sweep sweep_of(const MechanismInfo& info, const SurveyPlan& plan) {
     if (sweep.held == plan.held.coordinate.value_or(info.held)) return sweep;
   throw std::invalid_argument("mechanism " + info.name + " has no survey that holds coordinate number " +
                               std::to_string(*plan.held.coordinate + 1));
+}
+
+/// Where a plan's map holds its coordinate for a design [m or rad]: at the plan's value, else in the middle.
+inline double held_value(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) {
+  if (plan.held.kind == HeldCoordinate::Kind::value) return plan.held.value;
+  return mechanism.middle(parameters, sweep_of(mechanism.info(), plan).held);
 }
 
 /// Unit of the volume that a plan measures.

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/report/chosen_design.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
@@ -43,36 +44,11 @@ Target named_target(const Catalogues& catalogues, const std::string& name) {
                     "a study in TOML, or one of the mechanisms " + join(known), nearest_name(name, known));
 }
 
-/// The design that --from, --front and --stage name.
-std::span<const double> found_design(const StudyContents& contents, const DesignArguments& arguments) {
-  if (!arguments.front) {
-    if (arguments.stage)
-      throw ConfigError({"", 0, "--stage"}, "no --front", "--front N, the point of that stage's front");
-    if (contents.best.row < 0)
-      throw ConfigError({"", 0, "--from"}, arguments.from, "a study file with a best design: this one has none yet");
-    return contents.stages[static_cast<std::size_t>(contents.best.stage)].table.design(
-        static_cast<std::size_t>(contents.best.row));
-  }
-  std::vector<std::string> with;  // stages that have a front
-  for (std::size_t s = 0; s < contents.stages.size(); ++s)
-    if (contents.stages[s].front && !contents.stages[s].front->rows.empty()) with.push_back(std::to_string(s + 1));
-  if (with.empty())
-    throw ConfigError({"", 0, "--front"}, arguments.from, "a study file that holds a front: this one has none");
-  const std::string stage = arguments.stage ? std::to_string(*arguments.stage) : with.back();
-  if (std::find(with.begin(), with.end(), stage) == with.end())
-    throw ConfigError({"", 0, "--stage"}, stage, "a stage with a front: " + join(with));
-  const StageRecord& record = contents.stages[std::stoul(stage) - 1];
-  const std::vector<std::int64_t>& rows = record.front->rows;
-  if (*arguments.front < 1 || *arguments.front > static_cast<std::int64_t>(rows.size()))
-    throw ConfigError({"", 0, "--front"}, std::to_string(*arguments.front),
-                      "a point of the front of stage " + stage + ", 1 to " + std::to_string(rows.size()));
-  return record.table.design(static_cast<std::size_t>(rows[static_cast<std::size_t>(*arguments.front) - 1]));
-}
-
 Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
   Target target = of_study(study_of(contents, catalogues));
-  target.parameters = target.study->problem->parameters(found_design(contents, arguments));
+  target.parameters =
+      chosen_design(contents, *target.study, {.front = arguments.front, .stage = arguments.stage}).parameters;
   return target;
 }
 

@@ -1,0 +1,157 @@
+#include "engine/report/isosurface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pkm {
+namespace {
+
+using Point = std::array<double, 3>;
+using Index = std::array<std::size_t, 3>;
+
+/// The nodes: along each axis the cells' centres between two layers on either face of the box, the outer one of which
+/// is outside.
+class Nodes {
+ public:
+  explicit Nodes(const WorkspaceFields& workspace)
+      : margin_(workspace.field("margin").values), grid_(workspace.grid()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      cells_[i] = static_cast<std::size_t>(grid_.cells[i]);
+      size[i] = cells_[i] + 2 * kLayers;
+    }
+  }
+
+  Index size{};  ///< nodes along each axis
+
+  std::size_t number(const Index& n) const { return (n[0] * size[1] + n[1]) * size[2] + n[2]; }
+  std::size_t cell(const Index& n) const {
+    return (nearest(n, 0) * cells_[1] + nearest(n, 1)) * cells_[2] + nearest(n, 2);
+  }
+  double margin(const Index& n) const {
+    const double own = margin_[cell(n)];
+    for (std::size_t i = 0; i < 3; ++i)
+      if (n[i] == 0 || n[i] == size[i] - 1) return -std::fabs(own);
+    return own;
+  }
+  Point place(const Index& n) const {
+    Point at;
+    for (std::size_t i = 0; i < 3; ++i)
+      at[i] = n[i] < kLayers              ? grid_.lower[i]
+              : n[i] >= size[i] - kLayers ? grid_.upper[i]
+                                          : grid_.centre(i, static_cast<std::int64_t>(n[i] - kLayers));
+    return at;
+  }
+
+ private:
+  static constexpr std::size_t kLayers = 2;
+
+  std::size_t nearest(const Index& n, std::size_t axis) const {
+    return std::clamp(n[axis], kLayers, size[axis] - kLayers - 1) - kLayers;
+  }
+
+  const std::vector<double>& margin_;
+  VoxelGrid grid_;
+  Index cells_{};
+};
+
+/// One corner of a cube or tetrahedron.
+struct Corner {
+  Index node;
+  std::size_t direction;  ///< from the cube's first corner: bit i is set where the node is one further along axis i
+  double margin;
+};
+
+class Builder {
+ public:
+  explicit Builder(const Nodes& nodes)
+      : nodes_(nodes), known_(8 * nodes.size[0] * nodes.size[1] * nodes.size[2], kNew) {}
+
+  void cut_cube(const Index& first) {
+    std::array<Corner, 8> corner;
+    std::size_t inside = 0;
+    for (std::size_t direction = 0; direction < 8; ++direction) {
+      const Index node = {first[0] + (direction & 1), first[1] + (direction >> 1 & 1), first[2] + (direction >> 2)};
+      corner[direction] = {node, direction, nodes_.margin(node)};
+      inside += corner[direction].margin > 0;
+    }
+    if (inside == 0 || inside == 8) return;
+    // Along the axes in each of their six orders from the first corner to the last; every second order is left-handed.
+    static constexpr std::array<std::array<std::size_t, 2>, 6> kPaths = {
+        {{1, 3}, {2, 6}, {4, 5}, {1, 5}, {2, 3}, {4, 6}}};
+    for (std::size_t path = 0; path < 6; ++path)
+      cut({&corner[0], &corner[kPaths[path][0]], &corner[kPaths[path][1]], &corner[7]}, path >= 3);
+  }
+
+  Isosurface take() { return std::move(surface_); }
+
+ private:
+  static constexpr std::uint32_t kNew = ~std::uint32_t{0};
+  using Tetrahedron = std::array<const Corner*, 4>;
+
+  void cut(Tetrahedron t, bool left_handed) {
+    // Bring the inner corners to the front; each exchange of two mirrors the tetrahedron.
+    std::size_t inside = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!(t[i]->margin > 0)) continue;
+      if (i != inside) {
+        std::swap(t[i], t[inside]);
+        left_handed = !left_handed;
+      }
+      ++inside;
+    }
+    const auto v = [&](std::size_t in, std::size_t out) { return vertex(*t[in], *t[out]); };
+    if (inside == 1) add({v(0, 1), v(0, 2), v(0, 3)}, left_handed);
+    if (inside == 3) add({v(0, 3), v(1, 3), v(2, 3)}, left_handed);
+    if (inside != 2) return;
+    add({v(0, 2), v(0, 3), v(1, 3)}, left_handed);
+    add({v(0, 2), v(1, 3), v(1, 2)}, left_handed);
+  }
+
+  /// Where the margin is 0 between two corners.
+  std::uint32_t vertex(const Corner& in, const Corner& out) {
+    const Corner &low = in.direction < out.direction ? in : out, &high = in.direction < out.direction ? out : in;
+    std::uint32_t& number = known_[8 * nodes_.number(low.node) + (high.direction ^ low.direction)];
+    if (number != kNew) return number;
+    number = static_cast<std::uint32_t>(surface_.vertices.size());
+    const double share = in.margin / (in.margin - out.margin);
+    const Point from = nodes_.place(in.node), to = nodes_.place(out.node);
+    Point at;
+    for (std::size_t i = 0; i < 3; ++i) at[i] = from[i] + share * (to[i] - from[i]);
+    surface_.vertices.push_back(at);
+    surface_.cell.push_back(nodes_.cell(in.node));
+    return number;
+  }
+
+  void add(std::array<std::uint32_t, 3> triangle, bool left_handed) {
+    if (left_handed) std::swap(triangle[1], triangle[2]);
+    surface_.triangles.push_back(triangle);
+  }
+
+  const Nodes& nodes_;
+  std::vector<std::uint32_t> known_;  ///< of every edge, named by its first node and its direction: the vertex on it
+  Isosurface surface_;
+};
+
+}  // namespace
+
+double Isosurface::volume() const {
+  double sixfold = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const Point &p = vertices[a], &q = vertices[b], &r = vertices[c];
+    sixfold +=
+        p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) + p[2] * (q[0] * r[1] - q[1] * r[0]);
+  }
+  return sixfold / 6;
+}
+
+Isosurface isosurface(const WorkspaceFields& workspace) {
+  const Nodes nodes(workspace);
+  Builder builder(nodes);
+  for (std::size_t i = 0; i + 1 < nodes.size[0]; ++i)
+    for (std::size_t j = 0; j + 1 < nodes.size[1]; ++j)
+      for (std::size_t k = 0; k + 1 < nodes.size[2]; ++k) builder.cut_cube({i, j, k});
+  return builder.take();
+}
+
+}  // namespace pkm

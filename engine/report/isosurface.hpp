@@ -1,0 +1,30 @@
+// The surface of a workspace as triangles: where the field `margin` passes through 0.
+//
+// Marching tetrahedra: nodes are the centres of the cells, cubes of eight nodes are cut into six tetrahedra around
+// their diagonal, and in each tetrahedron the surface is a triangle or a quadrilateral between the edges on which the
+// margin changes its sign. Neighbouring tetrahedra share edges, so the surface is closed and every edge belongs to
+// two triangles. So that it is closed on the box, too, a layer of nodes on the box's faces repeats the margins of the
+// outer cells, and a second one at the same place is outside.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/report/workspace_fields.hpp"
+
+namespace pkm {
+
+struct Isosurface {
+  std::vector<std::array<double, 3>> vertices;  ///< in the order of WorkspaceFields::axes
+  std::vector<std::size_t> cell;                ///< per vertex: the feasible cell next to it, whose fields it may show
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+
+  /// Of what the triangles enclose, in the product of the axes' units.
+  double volume() const;
+};
+
+/// Empty where no cell is feasible.
+Isosurface isosurface(const WorkspaceFields& workspace);
+
+}  // namespace pkm
