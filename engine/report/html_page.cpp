@@ -11,15 +11,29 @@ namespace {
 
 std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
 
+using Sections = std::vector<std::pair<std::string, std::string>>;
+
+void add_views(const Views& views, Sections& sections) {
+  sections.insert(sections.end(), {{"workspace", workspace_data(views)},
+                                   {"mechanism", mechanism_data(views)},
+                                   {"coupling", coupling_data(views)},
+                                   {"motions", motions_data(views)}});
+}
+
 std::string study_data(const PageStudy& page) {
   const StudyContents& contents = page.contents;
-  return json_object({{"name", quoted(contents.name)},
-                      {"file", quoted(page.file)},
-                      {"problem", problem_data(page)},
-                      {"summary", summary_data(page)},
-                      {"convergence", convergence_data(contents)},
-                      {"populations", populations_data(contents)},
-                      {"front", front_data(contents)}});
+  Sections sections = {{"name", quoted(contents.name)},
+                       {"file", quoted(page.file)},
+                       {"problem", problem_data(page)},
+                       {"summary", summary_data(page)},
+                       {"convergence", convergence_data(contents)},
+                       {"populations", populations_data(contents)},
+                       {"front", front_data(contents)}};
+  if (page.study)
+    add_views(views_of(page), sections);
+  else
+    sections.emplace_back("workspace", workspace_data(contents));
+  return json_object(sections);
 }
 
 }  // namespace

@@ -50,13 +50,14 @@ std::string packed_floats(std::span<const double> values) {
 }
 
 std::string packed_integers(std::span<const std::int64_t> values) {
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(values.size());
+  std::int64_t most = 0;
   for (const std::int64_t value : values) {
     PKM_EXPECTS(value >= 0 && value <= std::numeric_limits<std::uint32_t>::max());
-    numbers.push_back(static_cast<std::uint32_t>(value));
+    most = std::max(most, value);
   }
-  return packed("u32", numbers);
+  if (most <= std::numeric_limits<std::uint16_t>::max())
+    return packed("u16", std::vector<std::uint16_t>(values.begin(), values.end()));
+  return packed("u32", std::vector<std::uint32_t>(values.begin(), values.end()));
 }
 
 std::string packed_bytes(std::span<const std::uint8_t> values) { return "u8:" + base64(values); }

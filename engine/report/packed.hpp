@@ -15,7 +15,8 @@ std::string base64(std::span<const std::uint8_t> bytes);
 
 /// Single precision, seven digits: for pictures and for values that are read off.
 std::string packed_floats(std::span<const double> values);
-std::string packed_integers(std::span<const std::int64_t> values);  ///< each in [0, 2^32)
+/// Each in [0, 2^32); of two bytes where that is enough, else of four.
+std::string packed_integers(std::span<const std::int64_t> values);
 std::string packed_bytes(std::span<const std::uint8_t> values);
 /// Flags, eight to a byte, the lowest bit first.
 std::string packed_bits(std::span<const std::uint8_t> flags);

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "engine/report/page_study.hpp"
+#include "engine/report/views.hpp"
 
 namespace pkm {
 
@@ -21,5 +21,16 @@ std::string convergence_data(const StudyContents& contents);
 std::string populations_data(const StudyContents& contents);
 /// The trade-offs, with knees and compromise.
 std::string front_data(const StudyContents& contents);
+
+/// The feasible cells of each design with their fields, and the surface around them.
+std::string workspace_data(const Views& views);
+/// The same of the map that the file itself holds, which has no fields.
+std::string workspace_data(const StudyContents& contents);
+/// The links of each design at the poses that the page's sliders reach.
+std::string mechanism_data(const Views& views);
+/// Coupling indices against the rotation; maps and histograms are drawn from the workspace's fields.
+std::string coupling_data(const Views& views);
+/// Joints, forces and power along the study's motions.
+std::string motions_data(const Views& views);
 
 }  // namespace pkm

@@ -5,11 +5,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/core/team.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/running.hpp"
 #include "experiments/app/version.hpp"
 
 namespace pkm {
@@ -19,6 +21,7 @@ struct ReportArguments {
   std::vector<std::string> files;
   std::string output;
   bool force = false;
+  int threads = 0;
 };
 
 PageStudy page_study(const std::string& file, const Catalogues& catalogues) {
@@ -39,6 +42,8 @@ void report(const ReportArguments& arguments, const Catalogues& catalogues) {
                                  : arguments.output;
   if (!arguments.force && std::filesystem::exists(output))
     throw StorageError(output + " exists already; overwrite it with --force");
+  Team team(arguments.threads);
+  const LentTeam lent(team);
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, catalogues));
   const std::string page = html_page(studies, "pkmopt " + program_version() + " (" + program_revision() + ")");
@@ -59,6 +64,7 @@ void add_report(CLI::App& app, Session& session) {
   command->add_option("-o,--output", arguments->output, "The page (default: the first file's stem + .html)")
       ->type_name("R.html");
   command->add_flag("--force", arguments->force, "Overwrite the page if it exists");
+  add_threads(*command, arguments->threads);
   command->footer(
       "The page opens from disk and needs no network. What a study file does not hold is evaluated again.\n"
       "Example: pkmopt report paper-problem.h5");

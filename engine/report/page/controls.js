@@ -12,8 +12,8 @@ function slider(parent, name, count, start, text, changed) {
     set(value) { input.value = value; shown.textContent = text(Number(input.value)); },
   };
   input.addEventListener("input", () => {
-    shown.textContent = text(control.value);
     changed(control.value);
+    shown.textContent = text(control.value);
   });
   parent.append(control.node);
   return control;

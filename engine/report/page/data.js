@@ -12,6 +12,7 @@ function unpack(packed) {
   const bytes = bytesOf(parts[parts.length - 1]);
   switch (parts[0]) {
     case "f32": return new Float32Array(bytes.buffer);
+    case "u16": return new Uint16Array(bytes.buffer);
     case "u32": return new Uint32Array(bytes.buffer);
     case "u8": return bytes;
     case "bits": return Uint8Array.from({ length: 8 * bytes.length }, (_, i) => (bytes[i >> 3] >> (i & 7)) & 1);

@@ -2,6 +2,10 @@
 
 const sections = [
   { id: "summary", title: "Summary", show: showSummary },
+  { id: "workspace", title: "Workspace", show: showWorkspace },
+  { id: "mechanism", title: "Mechanism", show: showMechanism },
+  { id: "coupling", title: "Coupling", show: showCoupling },
+  { id: "motions", title: "Motions", show: showMotions },
   { id: "convergence", title: "Convergence", show: showConvergence },
   { id: "front", title: "Trade-off", show: showFront },
   { id: "populations", title: "Populations", show: showPopulations },
