@@ -15,6 +15,7 @@ pkm_test_packages=(
   libfcl-dev                                  # distances of capsules, computed by others
   libsimbody-dev                              # driving forces, computed by others
   python3 python3-numpy python3-h5py          # reads study files independently of us
+  python3-vtk9                                # reads exported workspaces as ParaView does
   clang-14 libclang-rt-14-dev                 # second compiler, its sanitizers
   clang-format-14
 )

@@ -28,12 +28,13 @@ class Nodes {
   std::size_t cell(const Index& n) const {
     return (nearest(n, 0) * cells_[1] + nearest(n, 1)) * cells_[2] + nearest(n, 2);
   }
-  double margin(const Index& n) const {
-    const double own = margin_[cell(n)];
+  /// Whether a node is of the layer outside.
+  bool outer(const Index& n) const {
     for (std::size_t i = 0; i < 3; ++i)
-      if (n[i] == 0 || n[i] == size[i] - 1) return -std::fabs(own);
-    return own;
+      if (n[i] == 0 || n[i] == size[i] - 1) return true;
+    return false;
   }
+  double margin(const Index& n) const { return outer(n) ? -1 : margin_[cell(n)]; }
   Point place(const Index& n) const {
     Point at;
     for (std::size_t i = 0; i < 3; ++i)
@@ -108,13 +109,15 @@ class Builder {
     add({v(0, 2), v(1, 3), v(1, 2)}, left_handed);
   }
 
-  /// Where the margin is 0 between two corners.
+  /// Where the margin is 0 between two corners; where the box ends, at the inner one, whichever edge leads there.
   std::uint32_t vertex(const Corner& in, const Corner& out) {
+    const bool ends = nodes_.outer(out.node);
     const Corner &low = in.direction < out.direction ? in : out, &high = in.direction < out.direction ? out : in;
-    std::uint32_t& number = known_[8 * nodes_.number(low.node) + (high.direction ^ low.direction)];
+    std::uint32_t& number =
+        known_[ends ? 8 * nodes_.number(in.node) : 8 * nodes_.number(low.node) + (high.direction ^ low.direction)];
     if (number != kNew) return number;
     number = static_cast<std::uint32_t>(surface_.vertices.size());
-    const double share = in.margin / (in.margin - out.margin);
+    const double share = ends ? 0 : in.margin / (in.margin - out.margin);
     const Point from = nodes_.place(in.node), to = nodes_.place(out.node);
     Point at;
     for (std::size_t i = 0; i < 3; ++i) at[i] = from[i] + share * (to[i] - from[i]);
@@ -124,12 +127,15 @@ class Builder {
   }
 
   void add(std::array<std::uint32_t, 3> triangle, bool left_handed) {
+    const auto [a, b, c] = triangle;
+    if (a == b || b == c || c == a) return;  // of the layer outside, which has no thickness
     if (left_handed) std::swap(triangle[1], triangle[2]);
     surface_.triangles.push_back(triangle);
   }
 
   const Nodes& nodes_;
-  std::vector<std::uint32_t> known_;  ///< of every edge, named by its first node and its direction: the vertex on it
+  /// The vertex on every edge, named by its first node and its direction; at a node itself direction 0.
+  std::vector<std::uint32_t> known_;
   Isosurface surface_;
 };
 

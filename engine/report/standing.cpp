@@ -4,20 +4,6 @@
 
 namespace pkm {
 
-std::string words(Status status) {
-  switch (status) {
-    case Status::feasible:
-      return "feasible";
-    case Status::infeasible:
-      return "infeasible";
-    case Status::rejected:
-      return "rejected";
-    case Status::failed:
-      break;
-  }
-  return "failed";
-}
-
 std::optional<Gain> gain_over(double baseline, double value, Direction direction) {
   if (!(std::fabs(baseline) > 0) || std::isnan(value)) return {};
   const double percent = 100 * (value - baseline) / std::fabs(baseline);

@@ -1,17 +1,13 @@
-// How a design stands, in words and numbers: what every account of a study says the same way.
+// How a design stands beside the baseline and its constraints: what every account of a study says the same way.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "engine/problem/problem.hpp"
 
 namespace pkm {
-
-/// "feasible", "infeasible", "rejected", "failed".
-std::string words(Status status);
 
 /// How a value differs from the baseline's.
 struct Gain {

@@ -187,11 +187,11 @@ Handle core_access(const std::string& what) {
   return access;
 }
 
-Handle create_file() {
+Handle create_file(std::size_t user_block) {
   const std::string what = "a file in memory";
   const Handle access = core_access(what);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
-  check(H5Pset_userblock(creation.get(), kSealBytes), what);
+  check(H5Pset_userblock(creation.get(), user_block), what);
   check(H5Pset_istore_k(creation.get(), 4), what);  // small index nodes: most datasets have one chunk
   check(H5Pset_obj_track_times(creation.get(), false), what);
   return {H5Fcreate("study in memory", H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, what};
@@ -218,11 +218,13 @@ std::string in_words(const Extent& extent) {
 }  // namespace
 
 struct ImageWriter::Parts {
+  explicit Parts(std::size_t block) : user_block(block), file(create_file(block)) {}
+  std::size_t user_block;
   QuietErrors quiet;
-  Handle file = create_file();
+  Handle file;
 };
 
-ImageWriter::ImageWriter() : parts_(std::make_unique<Parts>()) {}
+ImageWriter::ImageWriter(std::size_t user_block) : parts_(std::make_unique<Parts>(user_block)) {}
 ImageWriter::~ImageWriter() = default;
 
 void ImageWriter::group(const std::string& path, const std::string& description) {
@@ -247,6 +249,24 @@ void ImageWriter::attribute(const std::string& group, const std::string& name, c
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
     write_attribute(object.get(), name, file_type<Stored>(), memory_type<Stored>(), space.get(), &stored, what);
   }
+}
+
+template <class T>
+void ImageWriter::list_attribute(const std::string& group, const std::string& name, const std::vector<T>& values) {
+  const std::string what = group + "@" + name;
+  const Handle object(H5Oopen(parts_->file.get(), group.c_str(), H5P_DEFAULT), H5Oclose, what);
+  const hsize_t size = values.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
+  write_attribute(object.get(), name, file_type<T>(), memory_type<T>(), space.get(), values.data(), what);
+}
+
+void ImageWriter::ascii_attribute(const std::string& group, const std::string& name, const std::string& text) {
+  const std::string what = group + "@" + name;
+  const Handle object(H5Oopen(parts_->file.get(), group.c_str(), H5P_DEFAULT), H5Oclose, what);
+  const Handle type = text_type(text.size());
+  check(H5Tset_cset(type.get(), H5T_CSET_ASCII), what);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
+  write_attribute(object.get(), name, type.get(), type.get(), space.get(), text.data(), what);
 }
 
 template <class T>
@@ -279,10 +299,11 @@ std::string ImageWriter::finish() {
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), what);
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   if (size < 0) fail(what);
-  std::string bytes(kSealBytes + static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file, bytes.data() + kSealBytes, static_cast<std::size_t>(size)) != size) fail(what);
+  const std::size_t block = parts_->user_block;
+  std::string bytes(block + static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, bytes.data() + block, static_cast<std::size_t>(size)) != size) fail(what);
   // HDF5 1.10 hands out the file without its user block; the addresses inside count from the block's end all the same.
-  if (!starts_hdf5(bytes, kSealBytes)) bytes.erase(0, kSealBytes);
+  if (!starts_hdf5(bytes, block)) bytes.erase(0, block);
   return bytes;
 }
 
@@ -358,6 +379,8 @@ PKM_ATTRIBUTE(double)
 PKM_ATTRIBUTE(std::int64_t)
 PKM_ATTRIBUTE(std::uint64_t)
 PKM_ATTRIBUTE(bool)
+template void ImageWriter::list_attribute(const std::string&, const std::string&, const std::vector<double>&);
+template void ImageWriter::list_attribute(const std::string&, const std::string&, const std::vector<std::int64_t>&);
 PKM_ARRAY(double)
 PKM_ARRAY(float)
 PKM_ARRAY(std::int64_t)

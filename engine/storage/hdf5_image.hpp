@@ -41,15 +41,21 @@ class ImageWriter {
   static constexpr bool kReads = false;
   static constexpr bool kDerives = true;  ///< also writes what readers like but nothing reads back
 
-  ImageWriter();
+  /// @param user_block  bytes in front of the HDF5 data, left empty: 512 or a multiple of it, or 0
+  explicit ImageWriter(std::size_t user_block);
   ~ImageWriter();
   void group(const std::string& path, const std::string& description);
   template <class T>
   void attribute(const std::string& group, const std::string& name, const T& value, Repeats = Repeats::yes);
+  /// A list of numbers, double or std::int64_t.
+  template <class T>
+  void list_attribute(const std::string& group, const std::string& name, const std::vector<T>& values);
+  /// ASCII of fixed length, as some readers want it.
+  void ascii_attribute(const std::string& group, const std::string& name, const std::string& text);
   /// Chunked, extensible along the first dimension, shuffled and deflated; a single value is stored as such.
   template <class T>
   void array(const Leaf& leaf, const std::vector<T>& values, const Extent& extent);
-  /// The whole file, beginning with an empty user block of 512 bytes. To be called last.
+  /// The whole file. To be called last.
   std::string finish();
 
  private:

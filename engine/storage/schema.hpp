@@ -158,14 +158,8 @@ void describe_generations(Archive& archive, const std::string& stage, Generation
   array("population", "1", "Rows that form the population, generation after generation", generations.population,
         kAnyRows);
   if constexpr (Archive::kDerives) {
-    std::vector<std::int64_t> number(rows, 0);  // of the generation that each row belongs to
-    for (std::size_t g = 0; g < count; ++g) {
-      const std::size_t end = g + 1 < count ? static_cast<std::size_t>(generations.first_row[g + 1]) : rows;
-      for (std::size_t row = static_cast<std::size_t>(generations.first_row[g]); row < end; ++row)
-        number[row] = static_cast<std::int64_t>(g);
-    }
-    archive.array(Leaf{stage + "/evaluations/generation", "Generation, 0 is the start population", {"1"}, {}}, number,
-                  {rows});
+    archive.array(Leaf{stage + "/evaluations/generation", "Generation, 0 is the start population", {"1"}, {}},
+                  generations.generation_of_rows(rows), {rows});
   }
 }
 

@@ -12,6 +12,16 @@ std::span<const std::int64_t> GenerationRecords::population_of(std::size_t g) co
   return {population.data() + begin, end - begin};
 }
 
+std::vector<std::int64_t> GenerationRecords::generation_of_rows(std::size_t rows) const {
+  std::vector<std::int64_t> number(rows, 0);
+  for (std::size_t g = 0; g < size(); ++g) {
+    const std::size_t end = g + 1 < size() ? static_cast<std::size_t>(first_row[g + 1]) : rows;
+    for (auto row = static_cast<std::size_t>(first_row[g]); row < end; ++row)
+      number[row] = static_cast<std::int64_t>(g);
+  }
+  return number;
+}
+
 std::int64_t StudyContents::evaluations() const {
   std::size_t count = 0;
   for (const StageRecord& stage : stages) count += stage.table.size();
@@ -25,6 +35,7 @@ bool StudyContents::reproducible() const {
   return true;
 }
 
+std::string words(Status status) { return schema::kStatusWords[static_cast<std::size_t>(status)]; }
 std::string words(StudyState state) { return schema::kStateWords[static_cast<std::size_t>(state)]; }
 
 }  // namespace pkm

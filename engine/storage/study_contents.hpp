@@ -60,6 +60,8 @@ struct GenerationRecords {
   std::size_t size() const { return first_row.size(); }
   /// Rows of the table that form the population of generation g.
   std::span<const std::int64_t> population_of(std::size_t g) const;
+  /// Of each of the table's `rows` rows the generation that evaluated it.
+  std::vector<std::int64_t> generation_of_rows(std::size_t rows) const;
 };
 
 /// A bound or constraint that holds a design back.
@@ -91,6 +93,9 @@ struct FrontRecord {
   std::vector<double> reference;                      ///< corner of the hypervolume; empty: none
   std::vector<double> hypervolume, spread, igd_plus;  ///< an entry per generation
 };
+
+/// "feasible", "infeasible", "rejected", "failed".
+std::string words(Status status);
 
 /// One optimiser's part of the study.
 struct StageRecord {

@@ -76,7 +76,7 @@ void write_study(const std::string& path, const StudyContents& contents) {
   std::string bytes;
   try {
     check_indices(contents);
-    ImageWriter image;
+    ImageWriter image(kSealBytes);
     schema::describe(image, contents);
     bytes = image.finish();
   } catch (const ImageError& error) {

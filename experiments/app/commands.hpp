@@ -35,8 +35,10 @@ void add_dynamics(CLI::App& app, Session& session);
 void add_coupling(CLI::App& app, Session& session);
 void add_trajectory(CLI::App& app, Session& session);
 void add_simulate(CLI::App& app, Session& session);
+void add_workspace(CLI::App& app, Session& session);
 void add_show(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
+void add_export(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
 
 }  // namespace pkm

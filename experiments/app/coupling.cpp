@@ -1,6 +1,5 @@
 // `pkmopt coupling`: statistics of the dynamic coupling indices over a box of poses, and the map behind them.
 
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
 
@@ -8,19 +7,21 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/problem/inertia_options.hpp"
+#include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/workspace/survey_set.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/grid.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
 
+constexpr std::int64_t kUsualCells = 20;
 constexpr double kMostCells = 1e8;
 
-struct CouplingArguments : DesignArguments {
-  std::vector<std::string> box, cells;
+struct CouplingArguments : DesignArguments, GridArguments {
   std::string phi, mode, csv;
 };
 
@@ -53,30 +54,7 @@ SurveyPlan plan_of(const Target& target, const CouplingArguments& arguments) {
   plan.method = Method::voxels;
   plan.held_values.clear();
   const Sweep sweep = sweep_of(info, plan);
-  std::vector<Assignable> swept, numbers;
-  for (const int coordinate : sweep.swept) {
-    const auto index = static_cast<std::size_t>(coordinate);
-    swept.push_back({info.coordinates[index], coordinate == 3 ? "rad" : "m"});
-    numbers.push_back({info.coordinates[index], "1", 1, 1e6});
-  }
-  if (!arguments.box.empty()) {
-    const auto ranges = parse_ranges(arguments.box, "--box", swept);
-    plan.box = {{ranges[0], ranges[1], ranges[2]}};
-  }
-  for (std::size_t k = 0; k < 3; ++k)
-    if (plan.cells[k] == 0) plan.cells[k] = 20;
-  if (!arguments.cells.empty()) {
-    const auto cells = parse_all_assignments(arguments.cells, "--cells", numbers);
-    for (std::size_t k = 0; k < 3; ++k) {
-      plan.cells[k] = static_cast<std::int64_t>(cells[k]);
-      if (static_cast<double>(plan.cells[k]) != cells[k])
-        throw ConfigError({"", 0, "--cells"}, numbers[k].name + "=" + shortest(cells[k]), "a whole number of cells");
-    }
-  }
-  const double all =
-      static_cast<double>(plan.cells[0]) * static_cast<double>(plan.cells[1]) * static_cast<double>(plan.cells[2]);
-  if (all > kMostCells)
-    throw ConfigError({"", 0, "--cells"}, shortest(all) + " cells", "at most " + shortest(kMostCells));
+  set_grid(plan, info, arguments, kUsualCells, kMostCells);
   const Assignable held = held_coordinate(info);
   if (!arguments.phi.empty()) {
     if (sweep.held != info.held || held.name != "phi")
@@ -183,25 +161,25 @@ void print_coupling(const MechanismInfo& info, const Found& f) {
 }
 
 /// One line per feasible cell.
-void write_csv(const std::string& path, const MechanismInfo& info, const Survey<double>& survey) {
-  std::ofstream out(path);
-  for (const std::string& coordinate : info.coordinates) out << coordinate << ',';
-  out << "dci_1,dci_2,dci_3,dci_4,dci_worst\n";
+CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
+  std::vector<std::string> columns{info.coordinates.begin(), info.coordinates.end()};
+  columns.insert(columns.end(), {"dci_1", "dci_2", "dci_3", "dci_4", "dci_worst"});
+  CsvTable table(columns);
   const std::vector<double> worst = coupling_of(survey, "worst");
   for (std::size_t k = 0; k < survey.weight.size(); ++k) {
     const Pose<double>& at = survey.pose[k];
-    for (const double value : {at.x, at.y, at.z, at.angle}) out << shortest(value) << ',';
-    for (const auto& limb : survey.dci) out << shortest(limb[k]) << ',';
-    out << shortest(worst[k]) << '\n';
+    table.begin_row();
+    for (const double value : {at.x, at.y, at.z, at.angle}) table.add(value);
+    for (const auto& limb : survey.dci) table.add(limb[k]);
+    table.add(worst[k]);
   }
-  out.close();
-  if (!out) throw std::runtime_error("the map cannot be written to " + path);
+  return table;
 }
 
 int coupling(const Catalogues& catalogues, const CouplingArguments& arguments) {
   const Target target = find_target(catalogues, arguments);
   const Found found = find(target, arguments);
-  if (!arguments.csv.empty()) write_csv(arguments.csv, target.info(), found.all);
+  if (!arguments.csv.empty()) table_of(target.info(), found.all).write(arguments.csv);
   if (arguments.json)
     print_json(std::cout, coupling_json(target.info(), found));
   else
@@ -216,10 +194,7 @@ void add_coupling(CLI::App& app, Session& session) {
   CLI::App* command =
       app.add_subcommand("coupling", "Statistics of the dynamic coupling indices over a box of poses, and their map.");
   add_design_arguments(*command, *arguments);
-  command->add_option("--box", arguments->box, "Ranges of the swept coordinates; default: all that the design reaches")
-      ->type_name("NAME=FROM:TO")
-      ->allow_extra_args(false);
-  add_list_option(*command, "--cells", arguments->cells, "Cells along each of them; default: 20", false);
+  add_grid_options(*command, *arguments, kUsualCells);
   command->add_option("--phi", arguments->phi, "Angles: a list 0,30deg or from:to:count; default: the study's, else 0")
       ->type_name("ANGLES");
   command->add_option("--mode", arguments->mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")

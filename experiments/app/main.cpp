@@ -72,8 +72,10 @@ int run(int argc, char** argv) {
   pkm::add_coupling(app, session);
   pkm::add_trajectory(app, session);
   pkm::add_simulate(app, session);
+  pkm::add_workspace(app, session);
   pkm::add_show(app, session);
   pkm::add_report(app, session);
+  pkm::add_export(app, session);
   pkm::add_list(app, session);
   for (const char* name : {"run", "resume", "evaluate", "coupling"}) add_instruction_set(*app.get_subcommand(name));
   if (!pkm::parse_command_line(app, {argv + 1, argv + argc})) return pkm::kDone;

@@ -7,9 +7,9 @@
 
 #include "engine/core/unit.hpp"
 #include "engine/dynamics/simulation.hpp"
+#include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/csv.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/target.hpp"
 

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "engine/report/chosen_design.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
@@ -18,6 +17,8 @@ Target bare_mechanism(std::shared_ptr<const Mechanism> mechanism) {
   target.limits = no_limits(mechanism->info());
   for (const auto& parameter : mechanism->info().parameters) target.parameters.push_back(parameter.nominal);
   target.mechanism = std::move(mechanism);
+  target.words = "the nominal design";
+  target.file_name = "nominal";
   return target;
 }
 
@@ -27,6 +28,8 @@ Target of_study(Study study) {
   target.mechanism = parts.mechanism;
   target.limits = parts.plan.limits;
   target.parameters = study.baseline.value_or(parts.parameters);
+  target.words = study.baseline ? "the baseline" : "the study's parameters";
+  target.file_name = study.baseline ? "baseline" : "parameters";
   target.study = std::move(study);
   return target;
 }
@@ -47,8 +50,10 @@ Target named_target(const Catalogues& catalogues, const std::string& name) {
 Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
   Target target = of_study(study_of(contents, catalogues));
-  target.parameters =
-      chosen_design(contents, *target.study, {.front = arguments.front, .stage = arguments.stage}).parameters;
+  ChosenDesign design = chosen_design(contents, *target.study, arguments.choice);
+  target.parameters = std::move(design.parameters);
+  target.words = std::move(design.words);
+  target.file_name = std::move(design.file_name);
   return target;
 }
 
@@ -57,8 +62,8 @@ Target chosen_target(const Catalogues& catalogues, const DesignArguments& argume
     throw ConfigError({}, arguments.from.empty() ? "no design" : "'" + arguments.target + "' together with --from",
                       "a mechanism, a study in TOML or --from F.h5");
   if (!arguments.from.empty()) return of_file(catalogues, arguments);
-  if (arguments.front || arguments.stage)
-    throw ConfigError({"", 0, arguments.front ? "--front" : "--stage"}, "no --from", "--from F.h5 beside it");
+  if (const char* const option = given_option(arguments.choice))
+    throw ConfigError({"", 0, option}, "no --from", "--from F.h5 beside it");
   return named_target(catalogues, arguments.target);
 }
 
@@ -77,6 +82,28 @@ void set_masses(Target& target, const std::string& model) {
 }
 
 }  // namespace
+
+void add_choice_options(CLI::App& command, DesignChoice& choice) {
+  command.add_flag("--baseline", choice.baseline, "Instead of the best design: the study's baseline");
+  command
+      .add_option("--generation", choice.generation,
+                  "Instead: of generation G of a stage (the first is 0) the design that --individual names")
+      ->type_name("G");
+  command.add_option("--individual", choice.individual, "Its place in the population, from 1")->type_name("I");
+  command.add_option("--front", choice.front, "Instead: point N of its trade-off (see 'pkmopt show F.h5')")
+      ->type_name("N");
+  command.add_option("--stage", choice.stage, "The stage of generation or front (default: the last that has one)")
+      ->type_name("N");
+}
+
+const char* given_option(const DesignChoice& choice) {
+  return choice.baseline     ? "--baseline"
+         : choice.generation ? "--generation"
+         : choice.individual ? "--individual"
+         : choice.front      ? "--front"
+         : choice.stage      ? "--stage"
+                             : nullptr;
+}
 
 void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
                      const std::string& meaning, bool required) {
@@ -119,10 +146,7 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
       .add_option("--from", arguments.from,
                   "The best design of a study file (of a trade-off the compromise), and its problem")
       ->type_name("F.h5");
-  command.add_option("--front", arguments.front, "Instead: point N of its trade-off (see 'pkmopt show F.h5')")
-      ->type_name("N");
-  command.add_option("--stage", arguments.stage, "The stage of that front (default: the last that has one)")
-      ->type_name("N");
+  add_choice_options(command, arguments.choice);
   add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults",
                   false);
   command
@@ -138,6 +162,10 @@ Target find_target(const Catalogues& catalogues, const DesignArguments& argument
   const auto given = parse_assignments(arguments.set, "--set", assignable_parameters(target.info()));
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i]) target.parameters[i] = *given[i];
+  if (!arguments.set.empty()) {
+    target.words += " with " + join(arguments.set);
+    target.file_name += "-changed";
+  }
   if (const std::string reason = target.mechanism->refuse(target.parameters); !reason.empty())
     throw ConfigError({"", 0, "--set"}, reason);
   return target;

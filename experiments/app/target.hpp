@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/setup/study.hpp"
+#include "engine/report/chosen_design.hpp"
 
 namespace CLI {
 class App;
@@ -15,16 +15,21 @@ class App;
 namespace pkm {
 
 struct DesignArguments {
-  std::string target;                        ///< a mechanism's name or the path of a study
-  std::vector<std::string> set;              ///< lists of name=value
-  std::string masses;                        ///< a mass model; "": the study's, else the mechanism's default
-  std::string from;                          ///< instead of `target`: a study file, of which the best design is taken
-  std::optional<std::int64_t> front, stage;  ///< a point of a front of `from`, and of which stage
+  std::string target;            ///< a mechanism's name or the path of a study
+  std::vector<std::string> set;  ///< lists of name=value
+  std::string masses;            ///< a mass model; "": the study's, else the mechanism's default
+  std::string from;              ///< instead of `target`: a study file
+  DesignChoice choice;           ///< which of the file's designs
   bool json = false;
 };
 
 /// Declares the arguments above; what is parsed goes to `arguments`, which must outlive `command`.
 void add_design_arguments(CLI::App& command, DesignArguments& arguments);
+
+/// Declares --baseline, --generation, --individual, --front and --stage.
+void add_choice_options(CLI::App& command, DesignChoice& choice);
+/// The first of them that is given; null: none.
+const char* given_option(const DesignChoice& choice);
 
 /// Declares a list option such as --at: name=value, separated by commas, repeatable.
 void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
@@ -47,6 +52,8 @@ struct Target {
   LimitSpec limits;  ///< the study's; none for a bare mechanism
   /// The study's baseline, else its parameters, else the mechanism's defaults; then what --set names.
   std::vector<double> parameters;
+  std::string words;      ///< where they come from: "the baseline"
+  std::string file_name;  ///< the same for names of files: "baseline"
 
   const MechanismInfo& info() const { return mechanism->info(); }
 };

@@ -25,7 +25,7 @@ struct Refusal {
 TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
   const std::string commands =
       "one of run, resume, check, evaluate, pose, forward, dynamics, coupling, trajectory, simulate, "
-      "show, list";
+      "workspace, show, export, list";
   const std::string mechanism = "4ppa-2par";
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry->info().name;
@@ -38,8 +38,8 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
       {{"evaluate"}, "found no design; expected a mechanism, a study in TOML or --from F.h5"},
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
-       "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --front, --stage, --set, --masses, "
-       "--json, --threads, --instruction-set; did you mean '--json'?"},
+       "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
+       "--individual, --front, --stage, --set, --masses, --json, --threads, --instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},

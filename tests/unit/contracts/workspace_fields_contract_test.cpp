@@ -79,10 +79,20 @@ TEST_P(WorkspaceFieldsContract, MapsAreHeldAtTheMiddleUnlessThePlanSaysAValue) {
     said.held.value = middle;
     EXPECT_EQ(fields(said).field("feasible").values, found.field("feasible").values);
     EXPECT_NE(fields(said).held_note, found.held_note);
-    SurveyPlan columns = said;
-    columns.method = Method::columns;
-    columns.cells = {};
-    EXPECT_EQ(fields(columns).axes[2].cells, kPictureCells);
+  }
+}
+
+TEST_P(WorkspaceFieldsContract, ColumnsArePicturedByVoxels) {
+  const WorkspaceFields found = fields(test::plan(info(), Method::columns));
+  for (const WorkspaceAxis& axis : found.axes) EXPECT_EQ(axis.cells, kPictureCells);
+  EXPECT_GT(found.volume, 0);
+  if (info().held_can_integrate) {
+    SurveyPlan integrated = test::plan(info(), Method::columns);
+    integrated.held.kind = HeldCoordinate::Kind::integrated;
+    const WorkspaceFields middle = fields(integrated);
+    EXPECT_EQ(middle.held.lower, found.held.lower);
+    EXPECT_NE(middle.held_note, found.held_note);
+    EXPECT_EQ(middle.volume, found.volume);
   }
 }
 
@@ -161,7 +171,7 @@ TEST_P(WorkspaceFieldsContract, SurfaceIsClosedFacesOutwardsAndEnclosesWhatCells
     for (const bool is_cut : {false, true}) {
       SCOPED_TRACE("held coordinate " + std::to_string(sweep.held) + (is_cut ? ", cut by a box" : ""));
       SurveyPlan fine = is_cut ? cut(plan(sweep)) : plan(sweep);
-      for (auto& cells : fine.cells) cells *= 3;
+      for (auto& cells : fine.cells) cells *= 2;
       const WorkspaceFields found = fields(fine);
       EXPECT_EQ(found.touches_box, is_cut);
       const Isosurface surface = isosurface(found);

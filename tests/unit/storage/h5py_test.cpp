@@ -3,29 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cstdio>
 #include <cstdlib>
 
 #include "engine/storage/file_seal.hpp"
 #include "engine/storage/study_file.hpp"
+#include "tests/unit/storage/python_output.hpp"
 #include "tests/unit/storage/sample_study.hpp"
 
 namespace pkm {
 namespace {
 
+using test::bits;
 using testing::HasSubstr;
-
-const std::string kTests = std::string(PKM_TEST_DATA) + "/..";
-
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
-  char block[4096];
-  while (const std::size_t n = std::fread(block, 1, sizeof block, pipe)) text.append(block, n);
-  ::pclose(pipe);
-  return text;
-}
 
 class H5py : public testing::Test {
  protected:
@@ -34,7 +23,7 @@ class H5py : public testing::Test {
     write_study(path_, test::sample_study());
   }
   std::string python(const std::string& command, const std::string& more = "") const {
-    return output_of("/usr/bin/python3 '" + kTests + "/python/read_study.py' " + command + " '" + path_ + "' " + more);
+    return test::python_output("read_study.py", command + " '" + path_ + "' " + more);
   }
   void seal_again() const {
     std::string bytes = test::slurp(path_);
@@ -45,16 +34,6 @@ class H5py : public testing::Test {
   test::Folder folder_;
   std::string path_ = folder_ / "s.h5";
 };
-
-std::string bits(const std::vector<double>& values) {
-  std::string text;
-  char word[20];
-  for (const double value : values) {
-    std::snprintf(word, sizeof word, " %016llx", static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
-    text += word;
-  }
-  return text;
-}
 
 TEST_F(H5py, ReadsTheSameBits) {
   const StudyContents study = test::sample_study();
@@ -81,7 +60,8 @@ map (1, 2, 3) ['x', 'z', 'theta']
 TEST_F(H5py, FindsUnitDescriptionAndLayoutEverywhere) { EXPECT_THAT(python("labels"), HasSubstr(" datasets\n")); }
 
 TEST_F(H5py, RunsTheSnippetsOfTheDocumentation) {
-  EXPECT_THAT(python("snippets", "'" + kTests + "/../engine/storage/README.md'"), testing::EndsWith("\n4 snippets\n"));
+  EXPECT_THAT(python("snippets", "'" + std::string(PKM_TEST_DATA) + "/../../engine/storage/README.md'"),
+              testing::EndsWith("\n4 snippets\n"));
 }
 
 TEST_F(H5py, OpensEmptyStudies) {

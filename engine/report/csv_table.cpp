@@ -1,4 +1,4 @@
-#include "experiments/app/csv.hpp"
+#include "engine/report/csv_table.hpp"
 
 #include <cerrno>
 #include <cmath>
@@ -26,7 +26,15 @@ void CsvTable::next_cell() {
 
 void CsvTable::add(double value) {
   next_cell();
-  if (std::isfinite(value)) text_ += shortest(value + 0.0);  // no "-0"
+  if (std::isinf(value))
+    text_ += value > 0 ? "inf" : "-inf";
+  else if (!std::isnan(value))
+    text_ += shortest(value + 0.0);  // no "-0"
+}
+
+void CsvTable::add(std::int64_t number) {
+  next_cell();
+  text_ += std::to_string(number);
 }
 
 void CsvTable::add(const std::string& text) {
@@ -51,7 +59,7 @@ void CsvTable::add(const Vector<double, 4>& values) {
 void CsvTable::write(const std::string& path) const {
   errno = 0;
   std::ofstream file(path, std::ios::binary);
-  file << text_ << '\n';
+  file << text();
   file.close();
   if (!file) throw std::runtime_error(path + ": the table cannot be written (" + std::strerror(errno) + ")");
 }

@@ -1,0 +1,191 @@
+#include "engine/report/study_tables.hpp"
+
+#include <span>
+
+#include "engine/optimisers/front.hpp"
+
+namespace pkm {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Headers "objective conditioning", "margin rail-length [m]".
+template <class Named>
+void add_names(Names& columns, const std::string& kind, const std::vector<Named>& items) {
+  for (const Named& item : items) columns.push_back(header(kind + item.name, item.unit));
+}
+
+void add(CsvTable& table, std::span<const double> values) {
+  for (const double value : values) table.add(value);
+}
+
+std::int64_t numbered(std::size_t index) { return static_cast<std::int64_t>(index) + 1; }
+
+CsvTable evaluations(const StudyContents& contents) {
+  const ProblemRecord& problem = contents.problem;
+  Names columns = {"stage", "evaluation", "generation", "status"};
+  add_names(columns, "", problem.variables);
+  add_names(columns, "objective ", problem.objectives);
+  add_names(columns, "margin ", problem.margins);
+  add_names(columns, "report ", problem.reports);
+  CsvTable table(columns);
+  for (std::size_t s = 0; s < contents.stages.size(); ++s) {
+    const EvaluationTable& rows = contents.stages[s].table;
+    const auto generation = contents.stages[s].generations.generation_of_rows(rows.size());
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      table.begin_row();
+      for (const std::int64_t number : {numbered(s), static_cast<std::int64_t>(row), generation[row]})
+        table.add(number);
+      table.add(words(rows.status[row]));
+      for (const auto values : {rows.design(row), rows.objective_row(row), rows.margin_row(row), rows.report_row(row)})
+        add(table, values);
+    }
+  }
+  return table;
+}
+
+CsvTable generations(const StudyContents& contents) {
+  Names columns = {"stage", "generation", "evaluations", "best evaluation"};
+  add_names(columns, "objective ", contents.problem.objectives);
+  columns.insert(columns.end(), {"feasible_share", "diversity", "seconds [s]", "hypervolume", "spread", "igd_plus"});
+  CsvTable table(columns);
+  for (std::size_t s = 0; s < contents.stages.size(); ++s) {
+    const StageRecord& stage = contents.stages[s];
+    const GenerationRecords& list = stage.generations;
+    for (std::size_t g = 0; g < list.size(); ++g) {
+      const auto end = static_cast<std::int64_t>(stage.table.size());
+      table.begin_row();
+      for (const std::int64_t number :
+           {numbered(s), static_cast<std::int64_t>(g), g + 1 < list.size() ? list.first_row[g + 1] : end})
+        table.add(number);
+      if (list.best_row[g] < 0) {
+        table.add_empty(1 + contents.problem.objectives.size());
+      } else {
+        table.add(list.best_row[g]);
+        add(table, stage.table.objective_row(static_cast<std::size_t>(list.best_row[g])));
+      }
+      for (const double value : {list.feasible_share[g], list.diversity[g], list.seconds[g]}) table.add(value);
+      for (const auto indicator : {&FrontRecord::hypervolume, &FrontRecord::spread, &FrontRecord::igd_plus})
+        if (stage.front && g < (*stage.front.*indicator).size())
+          table.add((*stage.front.*indicator)[g]);
+        else
+          table.add_empty(1);
+    }
+  }
+  return table;
+}
+
+CsvTable populations(const StudyContents& contents) {
+  CsvTable table({"stage", "generation", "individual", "evaluation"});
+  for (std::size_t s = 0; s < contents.stages.size(); ++s) {
+    const GenerationRecords& list = contents.stages[s].generations;
+    for (std::size_t g = 0; g < list.size(); ++g) {
+      const auto population = list.population_of(g);
+      for (std::size_t k = 0; k < population.size(); ++k) {
+        table.begin_row();
+        for (const std::int64_t number : {numbered(s), static_cast<std::int64_t>(g), numbered(k), population[k]})
+          table.add(number);
+      }
+    }
+  }
+  return table;
+}
+
+/// The best design as far as the file knows it before the study's end.
+DesignRecord best_so_far(const StudyContents& contents) {
+  const EvaluationTable& rows = contents.stages[static_cast<std::size_t>(contents.best.stage)].table;
+  const auto row = static_cast<std::size_t>(contents.best.row);
+  const auto list = [](std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); };
+  DesignRecord best;
+  for (const ParameterRecord& parameter : contents.problem.parameters)
+    best.parameters.push_back(parameter.variable < 0 ? parameter.value
+                                                     : rows.design(row)[static_cast<std::size_t>(parameter.variable)]);
+  best.objectives = list(rows.objective_row(row));
+  best.margins = list(rows.margin_row(row));
+  best.reports = list(rows.report_row(row));
+  best.status = rows.status[row];
+  return best;
+}
+
+CsvTable best(const StudyContents& contents) {
+  std::vector<std::pair<std::string, DesignRecord>> designs;
+  const auto& final = contents.final;
+  if (!final || !final->best) designs.emplace_back("best", best_so_far(contents));
+  if (final) {
+    const auto take = [&](const char* name, const std::optional<DesignRecord>& record) {
+      if (record) designs.emplace_back(name, *record);
+    };
+    take("best", final->best);
+    take("rounded", final->rounded);
+    take("baseline", final->baseline);
+    take("best_exact", final->best_exact);
+    take("baseline_exact", final->baseline_exact);
+  }
+  Names columns = {"kind", "name", "unit"};
+  for (const auto& [name, design] : designs) columns.push_back(name);
+  CsvTable table(columns);
+  const auto begin_row = [&](const char* kind, const std::string& name, const std::string& unit) {
+    table.begin_row();
+    for (const std::string& text : {std::string(kind), name, unit}) table.add(text);
+  };
+  const auto add_rows = [&](const auto& items, std::vector<double> DesignRecord::*values, const auto& kind) {
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      begin_row(kind(items[i]), items[i].name, items[i].unit);
+      for (const auto& named : designs) table.add((named.second.*values)[i]);
+    }
+  };
+  const ProblemRecord& problem = contents.problem;
+  add_rows(problem.parameters, &DesignRecord::parameters,
+           [](const ParameterRecord& p) { return p.variable < 0 ? "parameter" : "variable"; });
+  add_rows(problem.objectives, &DesignRecord::objectives, [](const auto&) { return "objective"; });
+  add_rows(problem.margins, &DesignRecord::margins, [](const auto&) { return "margin"; });
+  add_rows(problem.reports, &DesignRecord::reports, [](const auto&) { return "report"; });
+  if (final) {
+    begin_row("workspace", "volume", final->volume_unit);
+    for (const auto& named : designs) table.add(named.second.volume);
+  }
+  begin_row("status", "status", "");
+  for (const auto& named : designs) table.add(words(named.second.status));
+  return table;
+}
+
+bool has_front(const StageRecord& stage) { return stage.front && !stage.front->rows.empty(); }
+
+CsvTable front(const StudyContents& contents) {
+  const ProblemRecord& problem = contents.problem;
+  Names columns = {"stage", "point", "evaluation", "knee", "compromise"};
+  add_names(columns, "objective ", problem.objectives);
+  add_names(columns, "", problem.variables);
+  CsvTable table(columns);
+  for (std::size_t s = 0; s < contents.stages.size(); ++s) {
+    const StageRecord& stage = contents.stages[s];
+    if (!has_front(stage)) continue;
+    const std::vector<std::int64_t>& rows = stage.front->rows;
+    const Scores scores = scores_of(problem.objectives, stage.table, rows);
+    std::vector<std::int64_t> knee(rows.size(), 0);
+    for (const std::size_t k : knees(scores)) knee[k] = 1;
+    const std::size_t middle = compromise(scores);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const auto row = static_cast<std::size_t>(rows[k]);
+      table.begin_row();
+      for (const std::int64_t number : {numbered(s), numbered(k), rows[k], knee[k], std::int64_t{k == middle}})
+        table.add(number);
+      add(table, stage.table.objective_row(row));
+      add(table, stage.table.design(row));
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<NamedTable> study_tables(const StudyContents& contents) {
+  std::vector<NamedTable> tables = {{"evaluations.csv", evaluations(contents)},
+                                    {"generations.csv", generations(contents)},
+                                    {"populations.csv", populations(contents)}};
+  if (contents.best.row >= 0) tables.push_back({"best.csv", best(contents)});
+  if (std::ranges::any_of(contents.stages, has_front)) tables.push_back({"front.csv", front(contents)});
+  return tables;
+}
+
+}  // namespace pkm

@@ -1,0 +1,72 @@
+#include "experiments/app/workspace_outputs.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/report/workspace_export.hpp"
+#include "engine/storage/safe_file.hpp"
+
+namespace pkm {
+namespace {
+
+std::string stl_path(const WorkspaceOutputs& outputs, const Target& target) {
+  return (std::filesystem::path(outputs.stl) / (target.info().name + "-" + target.file_name + ".stl")).string();
+}
+
+/// "workspace of 4ppa-2par, the best design of study wide"
+std::string title_of(const Target& target) {
+  return "workspace of " + target.info().name + ", " + target.words +
+         (target.study ? " of study " + target.study->name : "");
+}
+
+}  // namespace
+
+void refuse_existing(const std::vector<std::string>& files, bool force) {
+  for (const std::string& file : files)
+    if (!force && std::filesystem::exists(file))
+      throw StorageError(file + " exists already; overwrite it with --force");
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw StorageError(folder + ": the folder cannot be made (" + error.message() + ")");
+}
+
+void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs) {
+  command.add_option("--vtk", outputs.vtk, "Write all fields of the workspace's cells to this file, for ParaView")
+      ->type_name("F.vtkhdf");
+  command.add_option("--stl", outputs.stl, "Write the workspace's surface into this folder, as binary STL")
+      ->type_name("DIR");
+  command.add_flag("--force", outputs.force, "Overwrite files that exist");
+}
+
+std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target& target) {
+  std::vector<std::string> files;
+  if (!outputs.vtk.empty()) files.push_back(outputs.vtk);
+  if (!outputs.stl.empty()) files.push_back(stl_path(outputs, target));
+  return files;
+}
+
+WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode) {
+  try {
+    return workspace_fields(*target.mechanism, target.parameters, plan, mode);
+  } catch (const std::invalid_argument& reason) {
+    throw ConfigError({"", 0, target.info().name}, reason.what());
+  }
+}
+
+void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace) {
+  const std::string title = title_of(target);
+  if (!outputs.vtk.empty()) write_vtk_image(outputs.vtk, vtk_image(workspace, target.info(), target.parameters, title));
+  if (outputs.stl.empty()) return;
+  const Isosurface surface = isosurface(workspace);
+  if (surface.triangles.empty()) throw std::runtime_error("the workspace has no surface: no cell is feasible");
+  make_folder(outputs.stl);
+  replace_file(stl_path(outputs, target), stl_file(surface, title));
+}
+
+}  // namespace pkm

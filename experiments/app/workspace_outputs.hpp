@@ -1,0 +1,37 @@
+// The files that show a workspace to other programs, as `export` and `workspace` write them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/report/workspace_fields.hpp"
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+
+/// Throws StorageError, unless `force`, when one of the files exists.
+void refuse_existing(const std::vector<std::string>& files, bool force);
+/// Makes a folder, and those it lies in, if it is not there. Throws StorageError.
+void make_folder(const std::string& folder);
+
+struct WorkspaceOutputs {
+  std::string vtk;  ///< file; "": none
+  std::string stl;  ///< folder; "": none
+  bool force = false;
+
+  bool any() const { return !vtk.empty() || !stl.empty(); }
+};
+
+/// Declares --vtk, --stl and --force.
+void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs);
+
+/// What they will be for a design.
+std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target& target);
+
+/// The workspace's fields. Throws ConfigError when the mechanism cannot serve the plan.
+WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode);
+
+/// Writes files_of(); throws StorageError, and std::runtime_error when a surface is asked for and there is none.
+void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace);
+
+}  // namespace pkm

@@ -1,0 +1,41 @@
+#include "engine/report/csv_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace pkm {
+namespace {
+
+TEST(CsvTable, QuotesWhatWouldBreakARow) {
+  CsvTable table({"plain", "with, comma", header("a", "m"), header("ratio", "1")});
+  table.begin_row();
+  table.add("say \"no\"");
+  table.add(std::string("two\nlines"));
+  table.add(0.1);
+  table.add(std::int64_t{-7});
+  EXPECT_EQ(table.text(), "plain,\"with, comma\",a [m],ratio\n\"say \"\"no\"\"\",\"two\nlines\",0.1,-7\n");
+}
+
+TEST(CsvTable, NumbersReadBackWithTheirBits) {
+  for (const double value : {1.0 / 3, 5e-324, 1.7976931348623157e308, -2.5e-7}) {
+    CsvTable table({"x"});
+    table.begin_row();
+    table.add(value);
+    EXPECT_EQ(std::strtod(table.text().c_str() + 2, nullptr), value);
+  }
+}
+
+TEST(CsvTable, LeavesACellEmptyForWhatDoesNotExist) {
+  CsvTable table({"a", "b", "c", "d", "e"});
+  table.begin_row();
+  table.add(std::nan(""));
+  table.add_empty(2);
+  table.add(std::numeric_limits<double>::infinity());
+  table.add(-std::numeric_limits<double>::infinity());
+  EXPECT_EQ(table.text(), "a,b,c,d,e\n,,,inf,-inf\n");
+}
+
+}  // namespace
+}  // namespace pkm
