@@ -44,9 +44,16 @@ std::string page_data(const std::vector<PageStudy>& studies, const std::string& 
   return json_object({{"program", quoted(program)}, {"studies", '[' + list + ']'}});
 }
 
-std::string html_page(const std::vector<PageStudy>& studies, const std::string& program) {
+std::string page_data(const Views& views, const std::string& program) {
+  Sections sections = {{"name", quoted(views.mechanism.info().name + ", " + views.designs.front().name)},
+                       {"file", quoted("")},
+                       {"design", design_data(views)}};
+  add_views(views, sections);
+  return json_object({{"program", quoted(program)}, {"studies", '[' + json_object(sections) + ']'}});
+}
+
+std::string html_page(const std::string& data) {
   const PageParts parts = page_parts();
-  const std::string data = page_data(studies, program);
   const std::vector<std::pair<std::string_view, std::string_view>> marks = {
       {"{{style}}", parts.style}, {"{{data}}", data}, {"{{plotly}}", parts.plotly}, {"{{script}}", parts.script}};
   std::string page;

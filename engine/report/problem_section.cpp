@@ -39,4 +39,17 @@ std::string problem_data(const PageStudy& page) {
   return json_text(json);
 }
 
+std::string design_data(const Views& views) {
+  const MechanismInfo& info = views.mechanism.info();
+  const View& design = views.designs.front();
+  Json parameters = Json::array();
+  for (std::size_t i = 0; i < info.parameters.size(); ++i)
+    parameters.push_back({{"name", info.parameters[i].name},
+                          {"unit", info.parameters[i].unit},
+                          {"meaning", info.parameters[i].meaning},
+                          {"value", design.parameters[i]}});
+  return json_text(
+      Json{{"mechanism", info.name}, {"title", info.title}, {"name", design.name}, {"parameters", parameters}});
+}
+
 }  // namespace pkm

@@ -22,6 +22,8 @@ std::string populations_data(const StudyContents& contents);
 /// The trade-offs, with knees and compromise.
 std::string front_data(const StudyContents& contents);
 
+/// The parameters of a design that no study has found.
+std::string design_data(const Views& views);
 /// The feasible cells of each design with their fields, and the surface around them.
 std::string workspace_data(const Views& views);
 /// The same of the map that the file itself holds, which has no fields.

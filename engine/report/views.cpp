@@ -55,6 +55,14 @@ std::array<double, 2> held_range(const Views& views, const View& view) {
   return range;
 }
 
+Views no_views(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
+               const std::vector<NamedMotion>& motions) {
+  const MechanismInfo& info = mechanism.info();
+  return {
+      mechanism, page_plan(plan), survey_limits(info, plan.limits), mode.empty() ? info.modes.front() : mode, motions,
+      {}};
+}
+
 void add_view(Views& views, const std::string& name, const std::vector<double>& parameters) {
   View view{name, parameters, {}};
   try {
@@ -76,12 +84,7 @@ void add_view(Views& views, const std::string& name, const std::vector<double>& 
 Views views_of(const PageStudy& page) {
   const StudyContents& contents = page.contents;
   const ProblemParts& parts = page.study->problem->parts();
-  Views views{*parts.mechanism,
-              page_plan(parts.plan),
-              survey_limits(parts.mechanism->info(), parts.plan.limits),
-              parts.demand.mode.empty() ? parts.mechanism->info().modes.front() : parts.demand.mode,
-              page.study->motions,
-              {}};
+  Views views = no_views(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions);
   if (contents.best.row >= 0) {
     const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
     const auto design = stage.table.design(static_cast<std::size_t>(contents.best.row));
@@ -93,6 +96,13 @@ Views views_of(const PageStudy& page) {
              page.study->problem->parameters(design));
   }
   if (page.study->baseline) add_view(views, "baseline", *page.study->baseline);
+  return views;
+}
+
+Views views_of(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
+               const std::vector<NamedMotion>& motions, const std::pair<std::string, std::vector<double>>& design) {
+  Views views = no_views(mechanism, plan, mode, motions);
+  add_view(views, design.first, design.second);
   return views;
 }
 

@@ -22,8 +22,8 @@ struct View {
 /// Designs of one mechanism, under the same plan.
 struct Views {
   const Mechanism& mechanism;
-  SurveyPlan plan;  ///< of voxels, few enough for a page
-  LimitSpec limits;
+  SurveyPlan plan;   ///< of voxels, few enough for a page
+  LimitSpec limits;  ///< of poses
   std::string mode;
   std::vector<NamedMotion> motions;
   std::vector<View> designs;
@@ -32,5 +32,12 @@ struct Views {
 /// The best design of a study (the compromise where there are several objectives) and its baseline, evaluated again.
 /// @param page  of a study that this program can read
 Views views_of(const PageStudy& page);
+
+/// One design, without a study's results.
+/// @param plan    as of a study
+/// @param mode    one of MechanismInfo::modes
+/// @param design  its name, and all of the mechanism's parameters
+Views views_of(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
+               const std::vector<NamedMotion>& motions, const std::pair<std::string, std::vector<double>>& design);
 
 }  // namespace pkm

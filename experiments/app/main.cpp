@@ -25,8 +25,7 @@ int complain(const std::string& sentence, int exit_code) {
 }
 
 std::string version() {
-  return "pkmopt " + pkm::program_version() + " (" + pkm::program_revision() +
-         ")\ninstruction set: " + std::string(name_of(pkm::instruction_set())) + " of " +
+  return pkm::program_words() + "\ninstruction set: " + std::string(name_of(pkm::instruction_set())) + " of " +
          pkm::join({pkm::kInstructionSets.begin(), pkm::kInstructionSets.end()});
 }
 

@@ -37,16 +37,15 @@ PageStudy page_study(const std::string& file, const Catalogues& catalogues) {
 }
 
 void report(const ReportArguments& arguments, const Catalogues& catalogues) {
-  const std::string output = arguments.output.empty()
-                                 ? std::filesystem::path(arguments.files[0]).stem().string() + ".html"
-                                 : arguments.output;
+  const std::string output =
+      arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
   if (!arguments.force && std::filesystem::exists(output))
     throw StorageError(output + " exists already; overwrite it with --force");
   Team team(arguments.threads);
   const LentTeam lent(team);
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, catalogues));
-  const std::string page = html_page(studies, "pkmopt " + program_version() + " (" + program_revision() + ")");
+  const std::string page = html_page(page_data(studies, program_words()));
   replace_file(output, page);
   char size[32];
   std::snprintf(size, sizeof size, "%.1f MB", 1e-6 * static_cast<double>(page.size()));

@@ -3,7 +3,10 @@
 function shownUnit(unit) { return unit === "rad" ? "deg" : unit; }
 function shownScale(unit) { return unit === "rad" ? 180 / Math.PI : 1; }
 function axisTitle(axis) { return axisName(axis.name, shownUnit(axis.unit)); }
-function shownValue(value, axis, count = 4) { return quantity(value * shownScale(axis.unit), shownUnit(axis.unit), count); }
+function shownValue(value, axis, count = 4) {
+  const shown = value * shownScale(axis.unit);
+  return quantity(Math.abs(shown) < 1e-9 ? 0 : shown, shownUnit(axis.unit), count);  // rounding of a middle is 0
+}
 
 /** "dci_1" as people say it. */
 function fieldTitle(name, joints) {
@@ -62,10 +65,11 @@ function drawingOrder(axes) {
   return [0, 1, 2].sort((a, b) => place(axes[a]) - place(axes[b]));
 }
 
-/** What both designs' pictures span, in shown units. */
+/** What both designs' pictures span, in shown units: the feasible cells and a little room. */
 function sharedRange(designs, axis) {
-  const scale = shownScale(designs[0].axes[axis].unit);
-  return [Math.min(...designs.map((d) => d.axes[axis].lower)) * scale, Math.max(...designs.map((d) => d.axes[axis].upper)) * scale];
+  const [low, high] = feasibleRange(designs, axis), { unit, step } = designs[0].axes[axis];
+  const room = 1.2 * step + 0.02 * (high - low);
+  return [(low - room) * shownScale(unit), (high + room) * shownScale(unit)];
 }
 
 /** Range of a field over all designs. */

@@ -28,7 +28,7 @@ function showCoupling(study, section) {
     return { ...design, cells: (packed.cells ??= new Cells(packed)) };
   });
   const all = designs.map((design) => design.cells);
-  section.append(element("p", "lead", `Dynamic coupling indices of the drives over the feasible poses: 0 where a drive's acceleration needs no force of the others, up to 1. Masses: ${coupling.masses}.`));
+  section.append(element("p", "lead", `Dynamic coupling indices of the drives over the feasible poses: 0 where a drive's acceleration needs no force of the others, up to 1. Masses by the model “${coupling.masses}”.`));
   const grid = element("div", "grid");
   section.append(grid);
   const size = designs.length > 1 ? "half" : "";
@@ -36,12 +36,15 @@ function showCoupling(study, section) {
   for (const design of designs)
     addPlot(grid, {
       title: `Against ${coupling.rotation}, ${design.name}`, caption: "Mean over the feasible poses, and dotted the greatest.", size, height: 380,
-      make: () => ({ data: againstRotation(design, names), layout: { xaxis: axis(axisName(coupling.rotation, "deg")), yaxis: axis("DCI [1]", { range: [0, top] }), legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" } } }),
+      make: () => ({ data: againstRotation(design, names), layout: { xaxis: axis(axisName(coupling.rotation, "deg")), yaxis: axis("DCI [1]", { range: [0, top] }) } }),
     });
+  // A limb that is all but decoupled has all its poses in one bar, which must not flatten the others.
+  const heights = designs.flatMap((design) => histogramTraces(design.cells, names).map((trace) => Math.max(...trace.y)));
+  const often = Math.min(Math.max(...heights), Math.max(30, 1.3 * Math.max(...designs.map((_, d) => [...heights.slice(4 * d, 4 * d + 4)].sort((a, b) => b - a)[1]))));
   for (const design of designs)
     addPlot(grid, {
       title: `How often, ${design.name}`, caption: "Share of the workspace's cells with an index in each fiftieth.", size, height: 340,
-      make: () => ({ data: histogramTraces(design.cells, names), layout: { xaxis: axis("DCI [1]", { range: [0, 1] }), yaxis: axis("share of the poses [%]", { rangemode: "tozero" }), legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" } } }),
+      make: () => ({ data: histogramTraces(design.cells, names), layout: { xaxis: axis("DCI [1]", { range: [0, 1] }), yaxis: axis("share of the poses [%]", { range: [0, often] }) } }),
     });
   const bar = element("div", "controls panel");
   grid.append(bar);

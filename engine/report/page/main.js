@@ -2,6 +2,7 @@
 
 const sections = [
   { id: "summary", title: "Summary", show: showSummary },
+  { id: "design", title: "Design", show: showDesign },
   { id: "workspace", title: "Workspace", show: showWorkspace },
   { id: "mechanism", title: "Mechanism", show: showMechanism },
   { id: "coupling", title: "Coupling", show: showCoupling },
@@ -49,10 +50,10 @@ function showStudy(report, study) {
   for (const { id, title, show } of sections) {
     if (!study[id]) continue;
     shown.push({ id, title });
-    show(study, sectionOf(page, id, id === "summary" ? "" : title));
+    show(study, sectionOf(page, id, id === "summary" || id === "design" ? "" : title));
   }
-  page.append(element("footer", "", "Made by " + report.program + " from " +
-                                    report.studies.map((each) => each.file).join(", ") + "."));
+  const files = report.studies.map((each) => each.file).filter(Boolean).join(", ");
+  page.append(element("footer", "", "Made by " + report.program + (files ? " from " + files : "") + "."));
   showContents(shown);
 }
 

@@ -3,9 +3,10 @@
 function partColour(part, parts) {
   if (part === "frame") return "#8893a0";
   if (part === "platform") return document.documentElement.dataset.theme === "dark" ? "#e2e6eb" : "#2b3440";
-  const limb = /^limb (\d)$/.exec(part);
-  if (limb) return limbColours[(limb[1] - 1) % 4];
-  return ["#56b4e9", "#d55e00", "#b8a000"][parts.filter((p) => !/^(frame|platform|limb \d)$/.test(p)).indexOf(part) % 3];
+  const isLimb = (name) => name.startsWith("limb ");
+  if (isLimb(part)) return limbColours[parts.filter(isLimb).indexOf(part) % 4];
+  const others = parts.filter((name) => !isLimb(name) && name !== "frame" && name !== "platform");
+  return ["#56b4e9", "#d55e00", "#b8a000"][others.indexOf(part) % 3];
 }
 
 /** One design at all stored poses. */
@@ -147,22 +148,26 @@ function showMechanism(study, section) {
   choose(0);
   const span = () => all.map((design) => design.span()).reduce((a, b) => a.map(([low, high], c) => [Math.min(low, b[c][0]), Math.max(high, b[c][1])]));
   const [xs, ys, zs] = span();
-  const flat = (title, h, v, names, ranges) => addPlot(grid, {
-    title, size: "third", height: 460,
+  const [width, depth, height] = [xs, ys, zs].map(([low, high]) => high - low);
+  const slim = Math.max(depth, height) > 1.6 * width;
+  const column = element("div", "half column" + (slim ? " abreast" : ""));
+  const flat = (title, h, v, names, ranges) => addPlot(column, {
+    title, height: slim ? 694 : 312,
     make: () => ({
       data: flatTraces(poses, now(), cellsOf(poses.name), poses.values(places)[3], [h, v]),
       layout: { xaxis: axis(axisName(names[0], "m"), { range: ranges[0], zeroline: false, constrain: "domain" }), yaxis: axis(axisName(names[1], "m"), { range: ranges[1], scaleanchor: "x", constrain: "domain", zeroline: false }), showlegend: false },
     }),
   });
   const room = addPlot(grid, {
-    title: "In space", size: "third", height: 460,
+    title: "In space", size: "half", height: 694,
     make() {
-      const extents = [xs, ys, zs].map(([low, high]) => high - low), most = Math.max(...extents);
+      const most = Math.max(width, depth, height);
       return { data: solidTraces(poses, now(), cellsOf(poses.name), poses.values(places)),
                layout: { uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 }, legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
-                         scene: { xaxis: sceneAxis("x [m]", xs), yaxis: sceneAxis("y [m]", ys), zaxis: sceneAxis("z [m]", zs), aspectmode: "manual", aspectratio: Object.fromEntries(extents.map((e, i) => ["xyz"[i], 1.35 * e / most])), camera: { eye: { x: 1.2, y: -1.5, z: 0.7 } } } } };
+                         scene: { xaxis: sceneAxis("x [m]", xs), yaxis: sceneAxis("y [m]", ys), zaxis: sceneAxis("z [m]", zs), aspectmode: "manual", aspectratio: { x: 1.35 * width / most, y: 1.35 * depth / most, z: 1.35 * height / most }, camera: { eye: { x: 1.1, y: -1.45, z: 0.75 } } } } };
     },
   });
+  grid.append(column);
   plots = [room, flat("From the front", 0, 2, ["x", "z"], [xs, zs]), flat("From above", 0, 1, ["x", "y"], [xs, ys])];
   grid.append(element("div", "panel", element("h3", "", "At this pose"), verdict, readout));
 }

@@ -5,16 +5,28 @@ const motionColumns = [
   ["forces", "Drive forces", "force", "N"], ["power", "Power of the drives", "power", "W"],
 ];
 
+/** How an array of sums that cancel is told: what is rounding beside the rest is 0. */
+function beside(value, size) { return Math.abs(value) < 1e-9 * Math.abs(size) ? 0 : value; }
+
+function timesOf(motion) { return Array.from({ length: motion.samples }, (_, k) => motion.duration * k / (motion.samples - 1)); }
+
 function motionTraces(motion, joints, key, unit) {
-  const time = Array.from({ length: motion.samples }, (_, k) => motion.duration * k / (motion.samples - 1));
+  const time = timesOf(motion);
   return motion.designs.flatMap((design, d) => (design[key] || []).map((packed, i) => ({
-    type: "scatter", mode: "lines", x: time, y: unpack(packed), name: label(joints[i] + (motion.designs.length > 1 ? ", " + design.name : "")), legendgroup: joints[i],
+    type: "scatter", mode: "lines", x: time, y: unpack(packed), name: label(joints[i]), legendgroup: joints[i], showlegend: d === 0,
     line: { color: limbColours[i], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" }, hovertemplate: `%{y:.4g} ${label(unit)} at %{x:.4g} s<extra>${label(joints[i] + ", " + design.name)}</extra>`,
   })));
 }
 
+function conditioningAlong(motion) {
+  return motion.designs.map((design, d) => ({
+    type: "scatter", mode: "lines", x: timesOf(motion), y: unpack(design.conditioning), name: label(design.name), line: { color: seriesColours[d], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" },
+    hovertemplate: `%{y:.4f} at %{x:.4g} s<extra>${label(design.name)}</extra>`,
+  }));
+}
+
 function posesAlong(motion, coordinates) {
-  const time = Array.from({ length: motion.samples }, (_, k) => motion.duration * k / (motion.samples - 1));
+  const time = timesOf(motion);
   return motion.designs[0].poses.map((packed, c) => ({
     type: "scatter", mode: "lines", x: time, y: Array.from(unpack(packed), (value) => (c === 3 ? value * 180 / Math.PI : value)), name: label(coordinates[c]), yaxis: c === 3 ? "y2" : "y",
     line: { color: seriesColours[c], width: 2, dash: c === 3 ? "dot" : "solid" }, hovertemplate: `%{y:.4g} ${c === 3 ? "deg" : "m"} at %{x:.4g} s<extra>${label(coordinates[c])}</extra>`,
@@ -30,7 +42,7 @@ function motionSummary(motion, joints) {
     add("root mean square of force", summary.rms_force, "N");
     add("peak power", summary.peak_power, "W", summary.peak_total_power);
     if (summary.energy !== undefined) {
-      rows.push([name, "energy, braking giving back", ...joints.map(() => ""), quantity(summary.energy, "J", 4)]);
+      rows.push([name, "energy, braking giving back", ...joints.map(() => ""), quantity(beside(summary.energy, summary.energy_drawn), "J", 4)]);
       rows.push([name, "energy drawn", ...joints.map(() => ""), quantity(summary.energy_drawn, "J", 4)]);
     }
   }
@@ -61,13 +73,14 @@ function showMotions(study, section) {
   };
   const which = motions.length > 1 ? choice(controls, "motion", motions.map((m) => m.name), 0, () => { tell(); plots.forEach((plot) => plot.update()); }) : { value: 0 };
   tell();
-  const below = { orientation: "h", x: 0, y: -0.2, yanchor: "top" };
   plots.push(addPlot(grid, { title: "The motion" + (motions.length > 1 ? "" : ", " + motions[0].name), size: "half", height: 360,
-    make: () => ({ data: posesAlong(motion(), coordinates), layout: { xaxis: axis("time [s]"), yaxis: axis("position [m]"), yaxis2: axis(axisName(coordinates[3], "deg"), { overlaying: "y", side: "right", showgrid: false }), legend: below } }) }));
+    make: () => ({ data: posesAlong(motion(), coordinates), layout: { xaxis: axis("time [s]"), yaxis: axis("position [m]"), yaxis2: axis(axisName(coordinates[3], "deg"), { overlaying: "y", side: "right", showgrid: false }) } }) }));
   for (const [key, title, name, unit] of motionColumns) {
     if (!motions.some((m) => m.designs.some((d) => d[key]))) continue;
     plots.push(addPlot(grid, { title, size: "half", height: 360,
-      make: () => ({ data: motionTraces(motion(), joints, key, unit), layout: { xaxis: axis("time [s]"), yaxis: axis(axisName(name, unit)), legend: below } }) }));
+      make: () => ({ data: motionTraces(motion(), joints, key, unit), layout: { xaxis: axis("time [s]"), yaxis: axis(axisName(name, unit)) } }) }));
   }
+  plots.push(addPlot(grid, { title: "Conditioning", size: "half", height: 360,
+    make: () => ({ data: conditioningAlong(motion()), layout: { xaxis: axis("time [s]"), yaxis: axis("inverse condition number [1]", { rangemode: "tozero" }) } }) }));
   grid.append(table);
 }

@@ -29,7 +29,7 @@ function cards(study) {
     if (row.kind !== "objective") continue;
     const baseline = table.columns.findIndex((column) => column.name === "baseline");
     const against = baseline >= 0 && row.values[baseline] !== null
-                        ? " over the baseline's " + quantity(row.values[baseline], row.unit) : "";
+                        ? " beside the baseline's " + quantity(row.values[baseline], row.unit) : "";
     list.append(card(row.name, digits(row.values[0]), row.unit, ...(row.gain ? [gainText(row.gain), against] : [row.meaning])));
   }
   list.append(card("volume of work", study.summary.evaluations.toLocaleString("en-GB"), "evaluations",
@@ -94,9 +94,11 @@ function rateText(value, objective, unit) {
   return value === null ? "" : quantity(value * step, objective.unit, 4) + (name && name !== "1" ? " per " + name : "");
 }
 
+/** A table of text; columns that hold numbers are set to the right. */
 function simpleTable(head, rows) {
-  const table = element("table", "", element("thead", "", element("tr", "", ...head.map((text) => element("th", "", text)))));
-  table.append(element("tbody", "", ...rows.map((row) => element("tr", "", ...row.map((cell) => element("td", "", cell))))));
+  const isText = head.map((_, i) => rows.some((row) => row[i] && !/^[−+\d∞–]/.test(row[i])));
+  const table = element("table", "", element("thead", "", element("tr", "", ...head.map((text, i) => element("th", isText[i] ? "text" : "", text)))));
+  table.append(element("tbody", "", ...rows.map((row) => element("tr", "", ...row.map((cell, i) => element("td", isText[i] ? "text" : "", cell))))));
   return element("div", "scroll", table);
 }
 
@@ -136,16 +138,16 @@ function timeSpent({ stages, seconds }) {
     bars.append(element("span", "", (i + 1) + ". " + stage.optimiser), bar,
                 element("span", "", duration(stage.seconds)));
   }
-  const kinds = Object.keys(outcomeColours);
+  const kinds = Object.keys(outcomeColours).filter((outcome) => stages.some((stage) => stage.outcomes[outcome]));
   const rows = stages.map((stage, i) => [
     (i + 1) + ". " + stage.optimiser, stage.evaluations.toLocaleString("en-GB"),
     ...kinds.map((outcome) => stage.outcomes[outcome].toLocaleString("en-GB")), duration(stage.evaluating)]);
   const ends = stages.map((stage, i) => element("li", "", `stage ${i + 1}, ${stage.optimiser}: ` +
       (stage.starts ? count(stage.starts, "start") : count(stage.generations, "generation")) + (stage.stop ? ", ended: " + stage.stop : "")));
   const legend = element("p", "caption", "Bars: wall time, shared by how the evaluations ended: ");
-  for (const [outcome, ink] of Object.entries(outcomeColours)) {
+  for (const outcome of kinds) {
     const key = element("span", "", "■ ");
-    key.style.color = ink;
+    key.style.color = outcomeColours[outcome];
     legend.append(key, outcome + "  ");
   }
   return element("div", "panel half stretch", element("h3", "", "Where the time went"),

@@ -31,7 +31,7 @@ function workspaceScene(designs, order) {
   return {
     xaxis: sceneAxis(axisTitle(axes[0]), ranges[0]), yaxis: sceneAxis(axisTitle(axes[1]), ranges[1]), zaxis: sceneAxis(axisTitle(axes[2]), ranges[2]),
     aspectmode: "manual", aspectratio: toScale ? Object.fromEntries(extents.map((e, i) => ["xyz"[i], 1.2 * e / most])) : { x: 1, y: 1, z: 1 },
-    camera: { eye: { x: 1.25, y: -1.65, z: 0.85 } },
+    camera: { eye: { x: 1.6, y: -2.05, z: 1.05 }, center: { x: 0, y: 0, z: -0.08 } },
   };
 }
 
@@ -60,9 +60,9 @@ function showWorkspace(study, section) {
   for (const problem of study.workspace.problems) section.append(element("p", "warning", problem));
   if (!designs.length) return;
   const first = designs[0], order = drawingOrder(first.axes);
-  const held = designs.filter((d) => d.held.name).map((d) => `${shownValue(d.held.value, d.held)} (${d.name}, ${d.held.note})`);
+  const places = [...new Set(designs.filter((d) => d.held.name).map((d) => `${d.held.name} = ${shownValue(d.held.value, d.held)}, ${d.held.note}`))];
   const volumes = designs.map((d) => `${d.name} ${quantity(d.volume, d.volume_unit, 6)}`).join(", ");
-  section.append(element("p", "lead", "Feasible poses" + (held.length ? ` at ${first.held.name} = ${held.join("; ")}` : "") + `. Volume of the cells shown: ${volumes}. Both designs have the same axes and colours, and turn together.`));
+  section.append(element("p", "lead", "Feasible poses" + (places.length ? " at " + places.join("; ") : "") + `. Volume of the cells shown: ${volumes}.` + (designs.length > 1 ? " The designs have the same axes and colours, and turn together." : "")));
   const size = designs.length > 1 ? "half" : "";
   const names = first.fields.map((field) => field.name);
   const controls = element("div", "controls"), grid = element("div", "grid");
