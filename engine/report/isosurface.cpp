@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/team.hpp"
+
 namespace pkm {
 namespace {
 
@@ -28,13 +30,13 @@ class Nodes {
   std::size_t cell(const Index& n) const {
     return (nearest(n, 0) * cells_[1] + nearest(n, 1)) * cells_[2] + nearest(n, 2);
   }
-  /// Whether a node is of the layer outside.
-  bool outer(const Index& n) const {
+  /// In the outer of the two layers.
+  bool beyond(const Index& n) const {
     for (std::size_t i = 0; i < 3; ++i)
       if (n[i] == 0 || n[i] == size[i] - 1) return true;
     return false;
   }
-  double margin(const Index& n) const { return outer(n) ? -1 : margin_[cell(n)]; }
+  double margin(const Index& n) const { return beyond(n) ? -1 : margin_[cell(n)]; }
   Point place(const Index& n) const {
     Point at;
     for (std::size_t i = 0; i < 3; ++i)
@@ -84,6 +86,23 @@ class Builder {
       cut({&corner[0], &corner[kPaths[path][0]], &corner[kPaths[path][1]], &corner[7]}, path >= 3);
   }
 
+  /// Moves vertices to where the pose's margin changes its sign, but for those on the box.
+  void refine(const WorkspaceFields& workspace, const PoseMargin& margin) {
+    constexpr std::size_t kBlock = 256;
+    const std::size_t count = edges_.size();
+    share_pieces((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end) {
+      for (std::size_t k = block * kBlock; k < std::min(end * kBlock, count); ++k) {
+        if (edges_[k].ends) continue;
+        double inside = 0, outside = 1;
+        for (int step = 0; step < 7; ++step) {
+          const double middle = (inside + outside) / 2;
+          (margin(workspace.pose(edges_[k].at(middle))) >= 0 ? inside : outside) = middle;
+        }
+        surface_.vertices[k] = edges_[k].at((inside + outside) / 2);
+      }
+    });
+  }
+
   Isosurface take() { return std::move(surface_); }
 
  private:
@@ -111,30 +130,40 @@ class Builder {
 
   /// Where the margin is 0 between two corners; where the box ends, at the inner one, whichever edge leads there.
   std::uint32_t vertex(const Corner& in, const Corner& out) {
-    const bool ends = nodes_.outer(out.node);
+    const bool ends = nodes_.beyond(out.node);
     const Corner &low = in.direction < out.direction ? in : out, &high = in.direction < out.direction ? out : in;
     std::uint32_t& number =
         known_[ends ? 8 * nodes_.number(in.node) : 8 * nodes_.number(low.node) + (high.direction ^ low.direction)];
     if (number != kNew) return number;
     number = static_cast<std::uint32_t>(surface_.vertices.size());
-    const double share = ends ? 0 : in.margin / (in.margin - out.margin);
-    const Point from = nodes_.place(in.node), to = nodes_.place(out.node);
-    Point at;
-    for (std::size_t i = 0; i < 3; ++i) at[i] = from[i] + share * (to[i] - from[i]);
-    surface_.vertices.push_back(at);
+    edges_.push_back({nodes_.place(in.node), nodes_.place(out.node), ends});
+    surface_.vertices.push_back(edges_.back().at(ends ? 0 : in.margin / (in.margin - out.margin)));
     surface_.cell.push_back(nodes_.cell(in.node));
     return number;
   }
 
   void add(std::array<std::uint32_t, 3> triangle, bool left_handed) {
     const auto [a, b, c] = triangle;
-    if (a == b || b == c || c == a) return;  // of the layer outside, which has no thickness
+    if (a == b || b == c || c == a) return;  // between the two layers on the box, which lie at the same place
     if (left_handed) std::swap(triangle[1], triangle[2]);
     surface_.triangles.push_back(triangle);
   }
 
+  /// That a vertex lies on, from the feasible node.
+  struct Edge {
+    Point from, to;
+    bool ends;  ///< at the box
+
+    Point at(double share) const {
+      Point point;
+      for (std::size_t i = 0; i < 3; ++i) point[i] = from[i] + share * (to[i] - from[i]);
+      return point;
+    }
+  };
+
   const Nodes& nodes_;
-  /// The vertex on every edge, named by its first node and its direction; at a node itself direction 0.
+  std::vector<Edge> edges_;  ///< one per vertex
+  /// The vertex on every edge, named by its first node and its direction; of a node itself direction 0.
   std::vector<std::uint32_t> known_;
   Isosurface surface_;
 };
@@ -151,12 +180,13 @@ double Isosurface::volume() const {
   return sixfold / 6;
 }
 
-Isosurface isosurface(const WorkspaceFields& workspace) {
+Isosurface isosurface(const WorkspaceFields& workspace, const PoseMargin* margin) {
   const Nodes nodes(workspace);
   Builder builder(nodes);
   for (std::size_t i = 0; i + 1 < nodes.size[0]; ++i)
     for (std::size_t j = 0; j + 1 < nodes.size[1]; ++j)
       for (std::size_t k = 0; k + 1 < nodes.size[2]; ++k) builder.cut_cube({i, j, k});
+  if (margin) builder.refine(workspace, *margin);
   return builder.take();
 }
 

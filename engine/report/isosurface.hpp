@@ -25,6 +25,9 @@ struct Isosurface {
 };
 
 /// Empty where no cell is feasible.
-Isosurface isosurface(const WorkspaceFields& workspace);
+/// @param margin  of the same design. Without it vertices lie where the margins of two cells, taken as linear between
+///                them, have their zero; with it where the pose's own margin changes its sign, to a 128th of a cell,
+///                which takes some time and is shared among the team lent to the caller
+Isosurface isosurface(const WorkspaceFields& workspace, const PoseMargin* margin = nullptr);
 
 }  // namespace pkm

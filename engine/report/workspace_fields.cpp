@@ -30,7 +30,8 @@ class Rows {
       : mechanism_(mechanism),
         info_(mechanism.info()),
         parameters_(parameters),
-        limits_(survey_limits(info_, limits)),
+        limits_(limits),
+        margin_(mechanism, parameters, limits),
         mode_(mode.empty() ? info_.modes.front() : mode),
         found_(found),
         size_(static_cast<std::size_t>(found.axes[2].cells)) {
@@ -70,24 +71,11 @@ class Rows {
 
   void fill_pose(std::size_t cell) const {
     const Pose<double> pose = found_.pose(cell);
-    const bool in_lengths = !info_.margin_unit.empty();
-    double least = std::numeric_limits<double>::infinity();
-    if (in_lengths) {
-      thread_local std::vector<double> margins;
-      margins.clear();
-      mechanism_.pose_margins(parameters_, limits_, {&pose, 1}, margins);
-      for (const double margin : margins) least = std::fmin(least, margin);
-    }
-    if (!in_lengths || feasible(cell)) {
-      const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
-      if (!in_lengths)
-        for (const auto& named : report.margins) least = std::fmin(least, named.second);
-      if (feasible(cell)) {
-        at(kConditioning, cell) = report.conditioning.value_or(kNone);
-        for (std::size_t i = 0; report.joints && i < 4; ++i) at(kJoints + i, cell) = (*report.joints)[i];
-      }
-    }
-    at(kMargin, cell) = on_its_side(least, feasible(cell));
+    at(kMargin, cell) = on_its_side(margin_(pose), feasible(cell));
+    if (!feasible(cell)) return;
+    const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
+    at(kConditioning, cell) = report.conditioning.value_or(kNone);
+    for (std::size_t i = 0; report.joints && i < 4; ++i) at(kJoints + i, cell) = (*report.joints)[i];
   }
 
   /// Rounding, or a pose without margins, must not put a cell on the other side of the surface.
@@ -123,7 +111,8 @@ class Rows {
   const Mechanism& mechanism_;
   const MechanismInfo& info_;
   std::span<const double> parameters_;
-  LimitSpec limits_;
+  const LimitSpec& limits_;
+  PoseMargin margin_;
   std::string mode_;
   WorkspaceFields& found_;
   std::size_t size_;
@@ -140,11 +129,16 @@ VoxelGrid WorkspaceFields::grid() const {
 Pose<double> WorkspaceFields::pose(std::size_t cell) const {
   const VoxelGrid all = grid();
   auto rest = static_cast<std::int64_t>(cell);
-  std::array<double, 4> at{};
-  at[static_cast<std::size_t>(held.coordinate)] = held.lower;
-  for (std::size_t i = 3; i-- > 0; rest /= axes[i].cells)
-    at[static_cast<std::size_t>(axes[i].coordinate)] = all.centre(i, rest % axes[i].cells);
-  return {at[0], at[1], at[2], at[3]};
+  std::array<double, 3> at{};
+  for (std::size_t i = 3; i-- > 0; rest /= axes[i].cells) at[i] = all.centre(i, rest % axes[i].cells);
+  return pose(at);
+}
+
+Pose<double> WorkspaceFields::pose(const std::array<double, 3>& at) const {
+  std::array<double, 4> all{};
+  all[static_cast<std::size_t>(held.coordinate)] = held.lower;
+  for (std::size_t i = 0; i < 3; ++i) all[static_cast<std::size_t>(axes[i].coordinate)] = at[i];
+  return {all[0], all[1], all[2], all[3]};
 }
 
 const WorkspaceField* WorkspaceFields::find(std::string_view name) const {
@@ -155,6 +149,25 @@ const WorkspaceField* WorkspaceFields::find(std::string_view name) const {
 const WorkspaceField& WorkspaceFields::field(std::string_view name) const {
   if (const WorkspaceField* const found = find(name)) return *found;
   throw std::out_of_range("workspaces of mechanism " + mechanism + " have no field " + std::string(name));
+}
+
+PoseMargin::PoseMargin(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits)
+    : mechanism_(mechanism),
+      parameters_(parameters.begin(), parameters.end()),
+      limits_(survey_limits(mechanism.info(), limits)) {}
+
+double PoseMargin::operator()(const Pose<double>& pose) const {
+  double least = std::numeric_limits<double>::infinity();
+  if (mechanism_.info().margin_unit.empty()) {  // what exists of them, also where the pose does not assemble
+    const auto report = mechanism_.inspect(parameters_, pose, mechanism_.info().modes.front(), limits_);
+    for (const auto& named : report.margins) least = std::fmin(least, named.second);
+    return report.feasible || least < 0 ? least : -1;
+  }
+  thread_local std::vector<double> margins;
+  margins.clear();
+  mechanism_.pose_margins(parameters_, limits_, {&pose, 1}, margins);
+  for (const double margin : margins) least = std::fmin(least, margin);
+  return least;
 }
 
 WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
@@ -175,7 +188,7 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
   }
   found.held = axis_of(info, sweep.held);
   found.held.lower = found.held.upper = held_value(mechanism, parameters, picture);
-  found.held_note = plan.held.kind == HeldCoordinate::Kind::value    ? "as the plan says"
+  found.held_note = plan.held.kind == HeldCoordinate::Kind::value    ? "as given"
                     : plan.held.kind == HeldCoordinate::Kind::middle ? "the middle of the design"
                                                                      : "the middle of what the plan integrates over";
   found.fields.push_back({"feasible",

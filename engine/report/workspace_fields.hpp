@@ -58,10 +58,25 @@ struct WorkspaceFields {
   VoxelGrid grid() const;
   /// Centre of a cell.
   Pose<double> pose(std::size_t cell) const;
+  /// The pose with these values along the axes.
+  Pose<double> pose(const std::array<double, 3>& at) const;
   /// Null: there is no field of this name.
   const WorkspaceField* find(std::string_view name) const;
   /// Throws std::out_of_range where there is none.
   const WorkspaceField& field(std::string_view name) const;
+};
+
+/// Least margin of any pose of a design, in the sense of the field `margin`: >= 0 where surveys find it feasible.
+class PoseMargin {
+ public:
+  /// @param mechanism  must live as long
+  PoseMargin(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits);
+  double operator()(const Pose<double>& pose) const;
+
+ private:
+  const Mechanism& mechanism_;
+  std::vector<double> parameters_;
+  LimitSpec limits_;
 };
 
 /// The fields of one design. Threads: those of the team lent to the caller; the bits do not depend on them.

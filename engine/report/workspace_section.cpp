@@ -20,8 +20,8 @@ std::vector<double> of_feasible(const WorkspaceFields& workspace, const Workspac
 }
 
 /// Vertices by coordinate, each with the feasible cell next to it: its number among the feasible ones.
-Json surface(const WorkspaceFields& workspace) {
-  const Isosurface found = isosurface(workspace);
+Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
+  const Isosurface found = isosurface(workspace, margin);
   const std::vector<double>& feasible = workspace.field("feasible").values;
   std::vector<std::int64_t> number(feasible.size(), 0), cells, corners;
   for (std::size_t cell = 1; cell < feasible.size(); ++cell) number[cell] = number[cell - 1] + (feasible[cell - 1] > 0);
@@ -40,7 +40,7 @@ Json axis_data(const WorkspaceAxis& axis) {
   return {{"name", axis.name}, {"unit", axis.unit}, {"coordinate", axis.coordinate}};
 }
 
-Json workspace(const std::string& name, const WorkspaceFields& found) {
+Json workspace(const std::string& name, const WorkspaceFields& found, const PoseMargin* margin) {
   Json json = {{"name", name}, {"axes", Json::array()}, {"held", axis_data(found.held)}};
   for (const WorkspaceAxis& axis : found.axes) {
     json["axes"].push_back(axis_data(axis));
@@ -58,7 +58,7 @@ Json workspace(const std::string& name, const WorkspaceFields& found) {
                                 {"unit", field.unit},
                                 {"meaning", field.meaning},
                                 {"values", packed_levels(of_feasible(found, field))}});
-  json["surface"] = surface(found);
+  json["surface"] = surface(found, margin);
   return json;
 }
 
@@ -90,10 +90,12 @@ std::string workspace_data(const Views& views) {
       {"designs", Json::array()},
       {"problems", Json::array()}};
   for (const View& view : views.designs) {
-    if (view.workspace)
-      json["designs"].push_back(workspace(view.name, *view.workspace));
-    else
+    if (!view.workspace) {
       json["problems"].push_back("The design “" + view.name + "” is not shown: " + view.problem + ".");
+      continue;
+    }
+    const PoseMargin margin(views.mechanism, view.parameters, plan.limits);
+    json["designs"].push_back(workspace(view.name, *view.workspace, &margin));
   }
   return json_text(json);
 }
@@ -101,7 +103,7 @@ std::string workspace_data(const Views& views) {
 std::string workspace_data(const StudyContents& contents) {
   if (!contents.final || !contents.final->map || !contents.final->best) return "";
   const FinalRecord& final = *contents.final;
-  Json design = workspace("best", fields_of(*final.map, *final.best, final.volume_unit));
+  Json design = workspace("best", fields_of(*final.map, *final.best, final.volume_unit), nullptr);
   design["fields"].clear();  // the margin is only made up for the surface
   return json_text(Json{{"column", final.map->axes[2]}, {"designs", {design}}, {"problems", Json::array()}});
 }

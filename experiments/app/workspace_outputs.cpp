@@ -63,7 +63,8 @@ void write_workspace(const WorkspaceOutputs& outputs, const Target& target, cons
   const std::string title = title_of(target);
   if (!outputs.vtk.empty()) write_vtk_image(outputs.vtk, vtk_image(workspace, target.info(), target.parameters, title));
   if (outputs.stl.empty()) return;
-  const Isosurface surface = isosurface(workspace);
+  const PoseMargin margin(*target.mechanism, target.parameters, target.limits);
+  const Isosurface surface = isosurface(workspace, &margin);
   if (surface.triangles.empty()) throw std::runtime_error("the workspace has no surface: no cell is feasible");
   make_folder(outputs.stl);
   replace_file(stl_path(outputs, target), stl_file(surface, title));

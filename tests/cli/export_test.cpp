@@ -90,6 +90,22 @@ TEST_F(ExportProgram, VtkAndTheTableOfAnyMechanismsWorkspaceAreTheSame) {
   }
 }
 
+TEST_F(ExportProgram, SurfacesOfAnyMechanismsWorkspaceAreClosed) {
+  for (const auto& mechanism : all_mechanisms()) {
+    const std::string& name = mechanism->info().name;
+    SCOPED_TRACE(name);
+    ASSERT_EQ(run({"workspace", name, "--stl", "."}), 0) << output_;
+    const std::string stl = slurp(name + "-nominal.stl");
+    using Corner = std::array<float, 3>;
+    std::map<std::pair<Corner, Corner>, int> edges;
+    for (const auto& [normal, p, q, r] : triangles_of(stl))
+      for (const auto& edge : {std::pair(p, q), std::pair(q, r), std::pair(r, p)}) ++edges[edge];
+    for (const auto& [edge, times] : edges) ASSERT_EQ(edges[std::pair(edge.second, edge.first)], times);
+    ASSERT_EQ(run({"evaluate", name, "--json"}), 0) << output_;  // on exact columns
+    EXPECT_NEAR(volume_of(stl) / Json::parse(output_)["workspace"]["volume"].get<double>(), 1, 0.004);
+  }
+}
+
 TEST_F(ExportProgram, WorkspaceSaysWhatEvaluateSays) {
   run_study();
   ASSERT_EQ(run({"evaluate", "study.toml", "--set", "a=0.25", "--json"}), 0) << output_;
@@ -158,6 +174,27 @@ TEST_F(ExportProgram, WritesTablesImageAndSurfaceOfAStudy) {
   for (std::size_t at = read.find("3ff0000000000000", begin); at < end; at = read.find("3ff0000000000000", at + 1))
     ++counted;
   EXPECT_EQ(counted, feasible);
+}
+
+TEST_F(ExportProgram, AStudyByColumnsIsPicturedInItsBox) {
+  spill(
+      "study.toml",
+      "[mechanism]\ntype = \"3crr-r-cru\"\n[variables]\nl_11 = { min = 0.16, max = 0.18 }\n[workspace]\nmethod = "
+      "\"columns\"\nphi = \"10 deg\"\nbox = { x = [0.1, 0.2], y = [0.1, 0.3], z = [0.15, 0.25] }\n[[objective]]\ntype "
+      "= \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\npopulation = 4\ngenerations = 1\n");
+  ASSERT_EQ(run({"run", "study.toml", "--output", "study.h5", "--quiet"}), 0) << output_;
+  const StudyContents study = read("study.h5");
+  EXPECT_EQ(study.final->map->voxels.lower[2], 0.15);  // the file's own map keeps to it, too
+  EXPECT_EQ(study.final->map->voxels.upper[2], 0.25);
+  ASSERT_EQ(run({"workspace", "--from", "study.h5", "--json"}), 0) << output_;
+  const Json workspace = Json::parse(output_);
+  EXPECT_EQ(workspace["axes"][1]["lower"], 0.1);
+  EXPECT_EQ(workspace["axes"][1]["upper"], 0.3);
+  EXPECT_EQ(workspace["cells"], 48 * 48 * 48);
+  EXPECT_NEAR(workspace["held"]["value"].get<double>(), 0.174532925199433, 1e-12);
+  EXPECT_NEAR(workspace["volume"].get<double>() / study.final->best->volume, 1, 0.02);
+  ASSERT_EQ(run({"export", "study.h5", "--stl", "."}), 0) << output_;
+  EXPECT_NEAR(volume_of(slurp("3crr-r-cru-best.stl")) / study.final->best->volume, 1, 0.02);
 }
 
 TEST_F(ExportProgram, AnyDesignOfAStudyCanBeNamed) {

@@ -174,7 +174,10 @@ TEST_P(WorkspaceFieldsContract, SurfaceIsClosedFacesOutwardsAndEnclosesWhatCells
       for (auto& cells : fine.cells) cells *= 2;
       const WorkspaceFields found = fields(fine);
       EXPECT_EQ(found.touches_box, is_cut);
-      const Isosurface surface = isosurface(found);
+      const PoseMargin margin(mechanism(), parameters(), fine.limits);
+      const Isosurface coarse = isosurface(found), surface = isosurface(found, &margin);
+      EXPECT_NEAR(coarse.volume() / surface.volume(), 1, 0.06);
+      EXPECT_EQ(coarse.triangles, surface.triangles);
       ASSERT_GT(surface.triangles.size(), 100u);
       ASSERT_EQ(surface.cell.size(), surface.vertices.size());
       expect_closed(surface);
