@@ -16,9 +16,12 @@ pkm_test_packages=(
   libsimbody-dev                              # driving forces, computed by others
   python3 python3-numpy python3-h5py          # reads study files independently of us
   python3-vtk9                                # reads exported workspaces as ParaView does
+  chromium                                    # looks at the pages of pkmopt report
   clang-14 libclang-rt-14-dev                 # second compiler, its sanitizers
   clang-format-14
 )
+# For the page of pkmopt report. By the command's name: where node comes from elsewhere, Debian's package does not install.
+command -v npm >/dev/null || pkm_build_packages+=(npm)
 
 # Installs those of the named packages that are missing. Does nothing, and needs no rights, when none is.
 pkm_install_missing() {

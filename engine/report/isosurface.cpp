@@ -36,12 +36,7 @@ class Nodes {
       if (n[i] == 0 || n[i] == size[i] - 1) return true;
     return false;
   }
-  /// In the outer layer only because the box ends there.
-  bool cut_off(const Index& n) const { return beyond(n) && margin_[cell(n)] > 0; }
-  double margin(const Index& n) const {
-    const double own = margin_[cell(n)];
-    return beyond(n) ? -std::fabs(own) : own;
-  }
+  double margin(const Index& n) const { return beyond(n) ? -1 : margin_[cell(n)]; }
   Point place(const Index& n) const {
     Point at;
     for (std::size_t i = 0; i < 3; ++i)
@@ -91,13 +86,13 @@ class Builder {
       cut({&corner[0], &corner[kPaths[path][0]], &corner[kPaths[path][1]], &corner[7]}, path >= 3);
   }
 
-  /// Moves vertices to where the pose's margin changes its sign, but for those that the box alone makes.
+  /// Moves vertices to where the pose's margin changes its sign, but for those on the box.
   void refine(const WorkspaceFields& workspace, const PoseMargin& margin) {
     constexpr std::size_t kBlock = 256;
     const std::size_t count = edges_.size();
     share_pieces((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end) {
       for (std::size_t k = block * kBlock; k < std::min(end * kBlock, count); ++k) {
-        if (edges_[k].cut_off) continue;
+        if (edges_[k].ends) continue;
         double inside = 0, outside = 1;
         for (int step = 0; step < 7; ++step) {
           const double middle = (inside + outside) / 2;
@@ -133,19 +128,23 @@ class Builder {
     add({v(0, 2), v(1, 3), v(1, 2)}, left_handed);
   }
 
-  /// Where the margin is 0 between two corners.
+  /// Where the margin is 0 between two corners; where the box ends, at the inner one, whichever edge leads there.
   std::uint32_t vertex(const Corner& in, const Corner& out) {
+    const bool ends = nodes_.beyond(out.node);
     const Corner &low = in.direction < out.direction ? in : out, &high = in.direction < out.direction ? out : in;
-    std::uint32_t& number = known_[8 * nodes_.number(low.node) + (high.direction ^ low.direction)];
+    std::uint32_t& number =
+        known_[ends ? 8 * nodes_.number(in.node) : 8 * nodes_.number(low.node) + (high.direction ^ low.direction)];
     if (number != kNew) return number;
     number = static_cast<std::uint32_t>(surface_.vertices.size());
-    edges_.push_back({nodes_.place(in.node), nodes_.place(out.node), nodes_.cut_off(out.node)});
-    surface_.vertices.push_back(edges_.back().at(in.margin / (in.margin - out.margin)));
+    edges_.push_back({nodes_.place(in.node), nodes_.place(out.node), ends});
+    surface_.vertices.push_back(edges_.back().at(ends ? 0 : in.margin / (in.margin - out.margin)));
     surface_.cell.push_back(nodes_.cell(in.node));
     return number;
   }
 
   void add(std::array<std::uint32_t, 3> triangle, bool left_handed) {
+    const auto [a, b, c] = triangle;
+    if (a == b || b == c || c == a) return;  // between the two layers on the box, which lie at the same place
     if (left_handed) std::swap(triangle[1], triangle[2]);
     surface_.triangles.push_back(triangle);
   }
@@ -153,7 +152,7 @@ class Builder {
   /// That a vertex lies on, from the feasible node.
   struct Edge {
     Point from, to;
-    bool cut_off;
+    bool ends;  ///< at the box
 
     Point at(double share) const {
       Point point;
@@ -163,8 +162,9 @@ class Builder {
   };
 
   const Nodes& nodes_;
-  std::vector<Edge> edges_;           ///< one per vertex
-  std::vector<std::uint32_t> known_;  ///< of every edge, named by its first node and its direction: the vertex on it
+  std::vector<Edge> edges_;  ///< one per vertex
+  /// The vertex on every edge, named by its first node and its direction; of a node itself direction 0.
+  std::vector<std::uint32_t> known_;
   Isosurface surface_;
 };
 

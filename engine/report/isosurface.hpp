@@ -4,7 +4,7 @@
 // their diagonal, and in each tetrahedron the surface is a triangle or a quadrilateral between the edges on which the
 // margin changes its sign. Neighbouring tetrahedra share edges, so the surface is closed and every edge belongs to
 // two triangles. So that it is closed on the box, too, a layer of nodes on the box's faces repeats the margins of the
-// outer cells, and a second one at the same place is outside.
+// outer cells, and a second one at the same place is outside; there the surface goes through the nodes.
 #pragma once
 
 #include <array>

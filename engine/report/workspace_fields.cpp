@@ -22,13 +22,6 @@ WorkspaceAxis axis_of(const MechanismInfo& info, int coordinate) {
   return axis;
 }
 
-/// Limits under which the margins of a pose say what surveys say: those leave out a clearance that is not given.
-LimitSpec survey_limits(const MechanismInfo& info, LimitSpec limits) {
-  for (std::size_t i = 0; i < info.limits.size(); ++i)
-    if (info.limits[i].group == "clearance" && !limits.given[i]) limits.given[i] = info.limits[i].inactive;
-  return limits;
-}
-
 /// Fills fields in, one row of cells along the last axis after the other.
 class Rows {
  public:
@@ -214,6 +207,12 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
     for (; row < end; ++row) rows.fill(row);
   });
   return found;
+}
+
+LimitSpec survey_limits(const MechanismInfo& info, LimitSpec limits) {
+  for (std::size_t i = 0; i < info.limits.size(); ++i)
+    if (info.limits[i].group == "clearance" && !limits.given[i]) limits.given[i] = info.limits[i].inactive;
+  return limits;
 }
 
 std::optional<FieldRange> range_of(const WorkspaceField& field) {

@@ -87,6 +87,9 @@ class PoseMargin {
 WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
                                  const std::string& mode);
 
+/// Limits under which the margins of a pose say what surveys say: those leave out a clearance that is not given.
+LimitSpec survey_limits(const MechanismInfo& info, LimitSpec limits);
+
 /// Least and greatest value of a field; absent where it has none.
 struct FieldRange {
   double least, greatest;

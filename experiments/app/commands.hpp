@@ -37,6 +37,7 @@ void add_trajectory(CLI::App& app, Session& session);
 void add_simulate(CLI::App& app, Session& session);
 void add_workspace(CLI::App& app, Session& session);
 void add_show(CLI::App& app, Session& session);
+void add_report(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
 

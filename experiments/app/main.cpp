@@ -25,8 +25,7 @@ int complain(const std::string& sentence, int exit_code) {
 }
 
 std::string version() {
-  return "pkmopt " + pkm::program_version() + " (" + pkm::program_revision() +
-         ")\ninstruction set: " + std::string(name_of(pkm::instruction_set())) + " of " +
+  return pkm::program_words() + "\ninstruction set: " + std::string(name_of(pkm::instruction_set())) + " of " +
          pkm::join({pkm::kInstructionSets.begin(), pkm::kInstructionSets.end()});
 }
 
@@ -74,6 +73,7 @@ int run(int argc, char** argv) {
   pkm::add_simulate(app, session);
   pkm::add_workspace(app, session);
   pkm::add_show(app, session);
+  pkm::add_report(app, session);
   pkm::add_export(app, session);
   pkm::add_list(app, session);
   for (const char* name : {"run", "resume", "evaluate", "coupling"}) add_instruction_set(*app.get_subcommand(name));

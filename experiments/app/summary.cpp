@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "engine/core/text_table.hpp"
+#include "engine/report/standing.hpp"
 #include "engine/study/progress.hpp"
 #include "experiments/app/front_summary.hpp"
 #include "experiments/app/solver_summary.hpp"
@@ -22,11 +23,10 @@ std::string digits(double value) {
 
 /// "+1.52 %": how much better than the baseline, in the objective's direction.
 std::string gain(double best, double baseline, Direction direction) {
-  if (!(std::fabs(baseline) > 0) || std::isnan(best)) return "";
-  const double change = 100 * (best - baseline) / std::fabs(baseline);
+  const std::optional<Gain> found = gain_over(baseline, best, direction);
+  if (!found) return "";
   char text[48];
-  std::snprintf(text, sizeof text, "%+.2f %%%s", change,
-                (direction == Direction::maximise) == (change >= 0) || change == 0 ? "" : ", worse");
+  std::snprintf(text, sizeof text, "%+.2f %%%s", found->percent, found->worse ? ", worse" : "");
   return text;
 }
 
@@ -103,12 +103,10 @@ std::vector<std::vector<std::string>> table(const StudyContents& contents, const
 
 /// Which constraint keeps a design from being feasible.
 std::string blocking(const StudyContents& contents, const DesignRecord& best) {
-  std::size_t worst = 0;
-  for (std::size_t i = 1; i < best.margins.size(); ++i)
-    if (best.margins[i] < best.margins[worst] || std::isnan(best.margins[worst])) worst = i;
-  if (best.margins.empty() || !(best.margins[worst] < 0)) return "";
-  return contents.problem.margins[worst].name + " blocks, margin " + digits(best.margins[worst]) + " " +
-         contents.problem.margins[worst].unit;
+  const auto worst = most_broken(best.margins);
+  if (!worst) return "";
+  return contents.problem.margins[*worst].name + " blocks, margin " + digits(best.margins[*worst]) + " " +
+         contents.problem.margins[*worst].unit;
 }
 
 /// What is wrong with the rounded design, as far as it is known.

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/core/team.hpp"
+#include "engine/report/html_page.hpp"
 #include "engine/report/workspace_export.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/storage/safe_file.hpp"
@@ -12,6 +13,7 @@
 #include "experiments/app/grid.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
+#include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {
@@ -20,7 +22,7 @@ namespace {
 constexpr double kMostCells = 1e7;
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs {
-  std::string held, csv;
+  std::string held, csv, html;
   int threads = 0;
 };
 
@@ -154,13 +156,21 @@ void print_workspace(const Target& target, const WorkspaceFields& workspace, con
 int workspace(const Catalogues& catalogues, const WorkspaceArguments& arguments) {
   const Target target = find_target(catalogues, arguments);
   std::vector<std::string> files = files_of(arguments, target);
-  if (!arguments.csv.empty()) files.push_back(arguments.csv);
+  for (const std::string& file : {arguments.csv, arguments.html})
+    if (!file.empty()) files.push_back(file);
   refuse_existing(files, arguments.force);
   Team team(arguments.threads);
   const LentTeam lent(team);
-  const WorkspaceFields found = fields_of(target, plan_of(target, arguments), known_mode(target.info(), arguments));
+  const SurveyPlan plan = plan_of(target, arguments);
+  const std::string mode = known_mode(target.info(), arguments);
+  const WorkspaceFields found = fields_of(target, plan, mode);
   write_workspace(arguments, target, found);
   if (!arguments.csv.empty()) replace_file(arguments.csv, workspace_table(found).text());
+  if (!arguments.html.empty()) {
+    const auto motions = target.study ? target.study->motions : std::vector<NamedMotion>();
+    const Views views = views_of(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
+    replace_file(arguments.html, html_page(page_data(views, program_words())));
+  }
   if (arguments.json)
     print_json(std::cout, workspace_json(target, found, files));
   else
@@ -183,6 +193,8 @@ void add_workspace(CLI::App& app, Session& session) {
       ->type_name("MODE");
   add_workspace_outputs(*command, *arguments);
   command->add_option("--csv", arguments->csv, "Write a row per cell to this file")->type_name("FILE");
+  command->add_option("--html", arguments->html, "Write a page with plots of the design to this file")
+      ->type_name("FILE");
   add_threads(*command, arguments->threads);
   command->footer(
       "Cells count where their centre is feasible under the study's limits; a bare mechanism has none. Files are in "

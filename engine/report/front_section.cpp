@@ -1,0 +1,46 @@
+#include <nlohmann/json.hpp>
+
+#include "engine/optimisers/front.hpp"
+#include "engine/report/json_text.hpp"
+#include "engine/report/sections.hpp"
+
+namespace pkm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<double> copy(std::span<const double> values) { return {values.begin(), values.end()}; }
+
+Json points(const ProblemRecord& problem, const StageRecord& stage) {
+  const Scores front = scores_of(problem.objectives, stage.table, stage.front->rows);
+  Json list = Json::array();
+  for (const std::int64_t row : stage.front->rows) {
+    const auto r = static_cast<std::size_t>(row);
+    list.push_back({{"evaluation", r + 1},
+                    {"design", copy(stage.table.design(r))},
+                    {"objectives", copy(stage.table.objective_row(r))},
+                    {"knee", false},
+                    {"compromise", false}});
+  }
+  for (const std::size_t i : knees(front)) list[i]["knee"] = true;
+  list[compromise(front)]["compromise"] = true;
+  return list;
+}
+
+}  // namespace
+
+std::string front_data(const StudyContents& contents) {
+  Json fronts = Json::array();
+  for (const StageRecord& stage : contents.stages)
+    if (stage.front && !stage.front->rows.empty())
+      fronts.push_back({{"stage", &stage - contents.stages.data() + 1},
+                        {"optimiser", stage.optimiser},
+                        {"reference", stage.front->reference},
+                        {"points", points(contents.problem, stage)}});
+  if (fronts.empty() || contents.problem.objectives.size() < 2) return "";
+  Json json = {{"fronts", fronts}, {"baseline", Json()}};
+  if (contents.final && contents.final->baseline) json["baseline"] = contents.final->baseline->objectives;
+  return json_text(json);
+}
+
+}  // namespace pkm

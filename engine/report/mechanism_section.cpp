@@ -1,0 +1,196 @@
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/team.hpp"
+#include "engine/report/json_text.hpp"
+#include "engine/report/packed.hpp"
+#include "engine/report/sections.hpp"
+
+namespace pkm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kSteps = 9;      // of each coordinate that the workspace sweeps over
+constexpr std::size_t kHeldSteps = 7;  // of the one that it holds
+
+struct Slider {
+  std::vector<double> values;
+
+  Slider() = default;
+  Slider(double lower, double upper, std::size_t steps) {
+    if (!(upper > lower)) steps = 1;
+    for (std::size_t k = 0; k < steps; ++k)
+      values.push_back(steps == 1 ? lower
+                                  : lower + (upper - lower) * static_cast<double>(k) / static_cast<double>(steps - 1));
+  }
+};
+
+/// Values of x, y, z and rotation that span the feasible cells, and the held coordinate's range.
+std::array<Slider, 4> sliders_of(const View& view) {
+  const WorkspaceFields& workspace = *view.workspace;
+  const std::vector<double>& feasible = workspace.field("feasible").values;
+  std::array<std::array<double, 2>, 4> range;
+  range.fill({1e300, -1e300});
+  for (std::size_t cell = 0; cell < feasible.size(); ++cell) {
+    if (!(feasible[cell] > 0)) continue;
+    const Pose<double> pose = workspace.pose(cell);
+    const double at[] = {pose.x, pose.y, pose.z, pose.angle};
+    for (std::size_t c = 0; c < 4; ++c) range[c] = {std::min(range[c][0], at[c]), std::max(range[c][1], at[c])};
+  }
+  std::array<Slider, 4> sliders;
+  for (std::size_t c = 0; c < 4; ++c) sliders[c] = Slider(range[c][0], range[c][1], kSteps);
+  sliders[static_cast<std::size_t>(workspace.held.coordinate)] =
+      Slider(view.held_range[0], view.held_range[1], kHeldSteps);
+  return sliders;
+}
+
+/// What the page knows of one pose.
+struct DrawnPose {
+  PoseReport report;
+  std::vector<PlacedLink> links;
+};
+
+/// Every combination of the sliders' values, the rotation running fastest.
+std::vector<DrawnPose> draw(const Views& views, const View& view, const std::array<Slider, 4>& sliders) {
+  std::size_t count = 1;
+  for (const Slider& slider : sliders) count *= slider.values.size();
+  std::vector<DrawnPose> poses(count);
+  share_pieces(count, [&](std::size_t pose, std::size_t end) {
+    for (; pose < end; ++pose) {
+      std::array<double, 4> at{};
+      for (std::size_t c = 4, rest = pose; c-- > 0; rest /= sliders[c].values.size())
+        at[c] = sliders[c].values[rest % sliders[c].values.size()];
+      const Pose<double> drawn{at[0], at[1], at[2], at[3]};
+      poses[pose].report = views.mechanism.inspect(view.parameters, drawn, views.mode, views.limits);
+      poses[pose].links = views.mechanism.links(view.parameters, drawn, views.mode);
+    }
+  });
+  return poses;
+}
+
+/// The ends of the links, each place once: links that are joined share theirs. `from` and `to` number them.
+struct Ends {
+  std::size_t count = 0;
+  std::vector<std::size_t> from, to;
+  std::array<std::vector<double>, 3> at;  ///< x, y, z: all ends of the first drawn pose, then of the next
+
+  explicit Ends(const std::vector<DrawnPose>& poses) {
+    std::vector<std::vector<Point3<double>>> places;  // by end of a link, by pose
+    for (const DrawnPose& pose : poses) {
+      if (places.empty()) places.resize(2 * pose.links.size());
+      for (std::size_t k = 0; k < pose.links.size(); ++k) {
+        places[2 * k].push_back(pose.links[k].body.axis.from);
+        places[2 * k + 1].push_back(pose.links[k].body.axis.to);
+      }
+    }
+    std::map<std::vector<Point3<double>>, std::size_t> known;
+    std::vector<const std::vector<Point3<double>>*> kept;
+    for (std::size_t end = 0; end < places.size(); ++end) {
+      const auto [found, is_new] = known.emplace(places[end], kept.size());
+      if (is_new) kept.push_back(&found->first);
+      (end % 2 ? to : from).push_back(found->second);
+    }
+    count = kept.size();
+    for (std::size_t pose = 0; count > 0 && pose < kept[0]->size(); ++pose)
+      for (const auto* const end : kept)
+        for (std::size_t i = 0; i < 3; ++i) at[i].push_back((*end)[pose][i]);
+  }
+};
+
+/// The feasible pose nearest to the middle of the feasible ones, else the first that is drawn.
+std::size_t usual_pose(const std::vector<DrawnPose>& poses, const std::array<Slider, 4>& sliders) {
+  const auto place = [&](std::size_t pose) {
+    std::array<double, 4> at{};
+    for (std::size_t c = 4, rest = pose; c-- > 0; rest /= sliders[c].values.size())
+      at[c] = static_cast<double>(rest % sliders[c].values.size());
+    return at;
+  };
+  std::array<double, 4> middle{};
+  double count = 0;
+  for (std::size_t pose = 0; pose < poses.size(); ++pose) {
+    if (!poses[pose].report.feasible) continue;
+    for (std::size_t c = 0; c < 4; ++c) middle[c] += place(pose)[c];
+    ++count;
+  }
+  std::size_t best = 0;
+  double least = 1e300;
+  for (std::size_t pose = 0; pose < poses.size(); ++pose) {
+    if (poses[pose].links.empty() || (count > 0 && !poses[pose].report.feasible)) continue;
+    double distance = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double away = place(pose)[c] - (count > 0 ? middle[c] / count : 0);
+      distance += away * away;
+    }
+    if (distance < least) {
+      least = distance;
+      best = pose;
+    }
+  }
+  return best;
+}
+
+Json mechanism(const Views& views, const View& view) {
+  const MechanismInfo& info = views.mechanism.info();
+  const std::array<Slider, 4> sliders = sliders_of(view);
+  const std::vector<DrawnPose> poses = draw(views, view, sliders);
+  const auto drawn = std::ranges::find_if(poses, [](const DrawnPose& pose) { return !pose.links.empty(); });
+  if (drawn == poses.end()) return Json();
+
+  Json json = {{"name", view.name}, {"coordinates", Json::array()}, {"joints", info.joints}, {"links", Json::array()}};
+  for (std::size_t c = 0; c < 4; ++c)
+    json["coordinates"].push_back(
+        {{"name", info.coordinates[c]}, {"unit", c == 3 ? "rad" : "m"}, {"values", sliders[c].values}});
+  const Ends ends(poses);
+  for (std::size_t k = 0; k < drawn->links.size(); ++k) {
+    const PlacedLink& link = drawn->links[k];
+    json["links"].push_back({{"name", link.name},
+                             {"part", link.part},
+                             {"radius", link.body.radius},
+                             {"from", ends.from[k]},
+                             {"to", ends.to[k]}});
+  }
+  // Per pose: whether it is drawn, why it is not feasible; per drawn pose: the ends, joints, conditioning.
+  std::vector<std::string> reasons = {""};
+  std::vector<std::uint8_t> is_drawn;
+  std::vector<std::int64_t> reason;
+  std::vector<double> conditioning;
+  std::array<std::vector<double>, 4> joints;
+  for (const DrawnPose& pose : poses) {
+    is_drawn.push_back(!pose.links.empty());
+    const std::string why = pose.report.feasible ? "" : pose.report.reason;
+    const auto known = std::ranges::find(reasons, why);
+    reason.push_back(known - reasons.begin());
+    if (known == reasons.end()) reasons.push_back(why);
+    if (pose.links.empty()) continue;
+    conditioning.push_back(pose.report.conditioning.value_or(std::nan("")));
+    for (std::size_t i = 0; i < 4; ++i)
+      joints[i].push_back(pose.report.joints ? (*pose.report.joints)[i] : std::nan(""));
+  }
+  json["start"] = usual_pose(poses, sliders);
+  json["ends"] = ends.count;
+  json["drawn"] = packed_bits(is_drawn);
+  json["reasons"] = reasons;
+  json["reason"] = packed_integers(reason);
+  for (const auto& coordinate : ends.at) json["at"].push_back(packed_levels(coordinate));
+  for (const auto& joint : joints) json["positions"].push_back(packed_floats(joint));
+  json["conditioning"] = packed_floats(conditioning);
+  return json;
+}
+
+}  // namespace
+
+std::string mechanism_data(const Views& views) {
+  if (!views.mechanism.info().has_links) return "";
+  Json designs = Json::array();
+  for (const View& view : views.designs)
+    if (view.workspace)
+      if (Json json = mechanism(views, view); !json.is_null()) designs.push_back(std::move(json));
+  if (designs.empty()) return "";
+  return json_text(Json{{"mode", views.mode}, {"designs", designs}});
+}
+
+}  // namespace pkm

@@ -1,0 +1,118 @@
+// Plots: drawn when they come into view, in the colours of the theme, and drawn again when it changes.
+
+const limbColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7"];          // Okabe and Ito: told apart by everybody
+const seriesColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
+const fieldColours = "Cividis";                                            // perceptually uniform
+const timeColours = "Viridis";
+
+const plots = [];
+let plotlyIsThere = false;
+
+/** Plotly takes a second to compile: by then the page can be read. */
+function loadPlotly() {
+  return new Promise((resolve) => requestAnimationFrame(() => setTimeout(() => {
+    document.head.append(element("script", "", document.getElementById("plotly").textContent));
+    plotlyIsThere = true;
+    for (const plot of plots) toBeSeen.observe(plot.node);
+    resolve();
+  })));
+}
+
+const toBeSeen = new IntersectionObserver((entries) => {
+  for (const entry of entries)
+    if (entry.isIntersecting) plots.find((plot) => plot.node === entry.target)?.draw();
+}, { rootMargin: "400px" });
+
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+}
+
+/** A colour of "#rrggbb" made transparent. */
+function faded(hex, alpha) {
+  const part = (i) => parseInt(hex.slice(i, i + 2), 16);
+  return `rgba(${part(1)},${part(3)},${part(5)},${alpha})`;
+}
+
+function axis(title, more = {}) {
+  return {
+    title: { text: title, standoff: 8 }, automargin: true, gridcolor: colour("grid"), linecolor: colour("line"),
+    zerolinecolor: colour("line"), ticks: "outside", tickcolor: colour("line"), tickmode: "auto", ...more,
+  };
+}
+
+function colourBar(title) {
+  return { title: { text: title, side: "right" }, thickness: 12, outlinewidth: 0, len: 0.92, tickfont: { size: 12 } };
+}
+
+function layoutOf(more) {
+  return {
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+    font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
+    margin: { l: 12, r: 12, t: 12, b: 12 }, hovermode: "closest",
+    hoverlabel: { bgcolor: colour("panel"), bordercolor: colour("line"), font: { color: colour("ink"), size: 13 } },
+    legend: { orientation: "h", x: 0, y: 1.02, xanchor: "left", yanchor: "bottom" },
+    colorway: seriesColours,
+    ...more,
+  };
+}
+
+/**
+ * Adds a panel with a plot to `parent`.
+ * @param options  title, caption, size (a class: "half"), height [px], make: () => ({ data, layout })
+ * @returns { panel, node, update() }; update() draws anew what has been drawn
+ */
+function addPlot(parent, { title, caption, size = "", height = 380, make }) {
+  const node = element("div", "plot");
+  node.style.height = height + "px";
+  const panel = element("div", "panel " + size, title ? element("h3", "", title) : null,
+                        caption ? element("p", "caption", caption) : null, node);
+  parent.append(panel);
+  const plot = {
+    panel, node, drawn: false,
+    draw() { if (!plot.drawn) plot.update(true); },
+    update(first = false) {
+      if (!first && !plot.drawn) return;
+      plot.drawn = true;
+      const { data, layout } = make();
+      plot.done = Plotly.react(node, data, layoutOf(layout),
+                               { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"] });
+    },
+  };
+  plots.push(plot);
+  if (plotlyIsThere) toBeSeen.observe(node);
+  return plot;
+}
+
+function forgetPlots() {
+  for (const plot of plots.splice(0)) {
+    toBeSeen.unobserve(plot.node);
+    if (plot.drawn) Plotly.purge(plot.node);
+  }
+}
+
+function drawAllPlots() {
+  for (const plot of plots) plot.draw();
+  return Promise.all(plots.map((plot) => plot.done));
+}
+
+function themeButton(button) {
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  let chosen = null;
+  const show = () => {
+    const dark = chosen === null ? system.matches : chosen === "dark";
+    document.documentElement.dataset.theme = dark ? "dark" : "light";
+    button.textContent = dark ? "☀ Light" : "☾ Dark";
+    for (const plot of plots) plot.update();
+  };
+  button.addEventListener("click", () => {
+    chosen = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    show();
+  });
+  system.addEventListener("change", show);
+  addEventListener("beforeprint", () => {  // paper is white
+    document.documentElement.dataset.theme = "light";
+    for (const plot of plots) if (plotlyIsThere) plot.update(true);
+  });
+  addEventListener("afterprint", show);
+  show();
+}

@@ -1,0 +1,59 @@
+// Numbers, units and names as a reader sees them. All that comes from a study file is text: it goes into the page by
+// textContent, and into Plotly's labels through label(), because Plotly reads a little HTML and templates.
+
+function label(text) {
+  const entities = { "&": "&amp;", "<": "&lt;", ">": "&gt;", "%": "&#37;" };
+  return String(text).replace(/[&<>%]/g, (c) => entities[c]);
+}
+
+/** Up to `digits` significant digits, without trailing zeros; "–" for what does not exist. */
+function digits(value, count = 6) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  const text = Number(value.toPrecision(count));
+  const size = Math.abs(text);
+  const plain = size !== 0 && (size < 1e-4 || size >= 1e9) ? text.toExponential() : String(text);
+  return plain.replace("e+", "e").replace(/^-/, "−").replace("e-", "e−");
+}
+
+function unitText(unit) {
+  return unit === "1" || !unit ? "" : unit.replace(/\^2/g, "²").replace(/\^3/g, "³").replace(/ /g, " ");
+}
+
+function quantity(value, unit, count) {
+  const name = unitText(unit);
+  return digits(value, count) + (name ? " " + name : "");
+}
+
+/** "x [m]": an axis. */
+function axisName(name, unit) {
+  const text = unitText(unit);
+  return label(name) + (text ? " [" + label(text) + "]" : "");
+}
+
+function duration(seconds) {
+  if (seconds === null || seconds === undefined) return "–";
+  if (seconds < 1e-3) return digits(1e6 * seconds, 3) + " µs";
+  if (seconds < 1) return digits(1e3 * seconds, 3) + " ms";
+  if (seconds < 120) return digits(seconds, 3) + " s";
+  const minutes = Math.floor(seconds / 60);
+  if (minutes < 120) return minutes + " min " + Math.round(seconds - 60 * minutes) + " s";
+  return Math.floor(minutes / 60) + " h " + (minutes % 60) + " min";
+}
+
+function count(number, one, many = one + "s") {
+  return number.toLocaleString("en-GB") + " " + (number === 1 ? one : many);
+}
+
+function ordinal(number) {
+  const tens = number % 100, ones = number % 10;
+  return number + (tens > 10 && tens < 14 ? "th" : ones === 1 ? "st" : ones === 2 ? "nd" : ones === 3 ? "rd" : "th");
+}
+
+/** A new element with classes and children; strings become text. */
+function element(name, classes = "", ...children) {
+  const node = document.createElement(name);
+  if (classes) node.className = classes;
+  node.append(...children.filter((child) => child !== null && child !== undefined && child !== ""));
+  return node;
+}

@@ -1,0 +1,23 @@
+// How a design stands beside the baseline and its constraints: what every account of a study says the same way.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "engine/problem/problem.hpp"
+
+namespace pkm {
+
+/// How a value differs from the baseline's.
+struct Gain {
+  double percent = 0;  ///< of the baseline's size; > 0 where the value is larger
+  bool worse = false;  ///< in the objective's direction
+};
+/// None where there is nothing to compare: the baseline's value is 0, or one is NaN.
+std::optional<Gain> gain_over(double baseline, double value, Direction direction);
+
+/// The margin that is broken most; none where all hold.
+std::optional<std::size_t> most_broken(std::span<const double> margins);
+
+}  // namespace pkm

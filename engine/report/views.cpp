@@ -1,0 +1,109 @@
+#include "engine/report/views.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "engine/report/thinning.hpp"
+#include "engine/workspace/picture_plan.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::int64_t kMostCells = 40;  // per axis of a page
+
+/// Voxels of the study's workspace, at most as many as a page can carry.
+SurveyPlan page_plan(const SurveyPlan& plan) {
+  SurveyPlan picture = picture_plan(plan, {kMostCells, kMostCells, kMostCells});
+  for (std::int64_t& cells : picture.cells) cells = std::min(cells, kMostCells);
+  return picture;
+}
+
+/// How far the held coordinate can move from the workspace's value until none of some feasible poses is feasible.
+std::array<double, 2> held_range(const Views& views, const View& view) {
+  constexpr std::size_t kPoses = 100;
+  constexpr int kSteps = 60;
+  const WorkspaceFields& workspace = *view.workspace;
+  const std::vector<double>& feasible = workspace.field("feasible").values;
+  std::vector<std::size_t> cells;
+  for (std::size_t cell = 0; cell < feasible.size(); ++cell)
+    if (feasible[cell] > 0) cells.push_back(cell);
+  std::vector<Pose<double>> poses;
+  for (const std::size_t i : Thinning(cells.size(), kPoses).indices) poses.push_back(workspace.pose(cells[i]));
+
+  double reach = std::numbers::pi;  // of a rotation; of a length twice the workspace's largest extent
+  if (workspace.held.coordinate != 3) {
+    reach = 0;
+    for (const WorkspaceAxis& axis : workspace.axes)
+      if (axis.coordinate != 3) reach = std::fmax(reach, 2 * (axis.upper - axis.lower));
+  }
+  const auto any_feasible = [&](double value) {
+    return std::ranges::any_of(poses, [&](Pose<double> pose) {
+      double* const coordinate[] = {&pose.x, &pose.y, &pose.z, &pose.angle};
+      *coordinate[workspace.held.coordinate] = value;
+      return views.mechanism.inspect(view.parameters, pose, views.mode, views.limits).feasible;
+    });
+  };
+  std::array<double, 2> range = {workspace.held.lower, workspace.held.lower};
+  for (const int side : {0, 1})
+    for (int k = 1; k <= kSteps; ++k) {
+      const double value = workspace.held.lower + (side ? k : -k) * reach / kSteps;
+      if (!any_feasible(value)) break;
+      range[static_cast<std::size_t>(side)] = value;
+    }
+  return range;
+}
+
+Views no_views(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
+               const std::vector<NamedMotion>& motions) {
+  const MechanismInfo& info = mechanism.info();
+  return {
+      mechanism, page_plan(plan), survey_limits(info, plan.limits), mode.empty() ? info.modes.front() : mode, motions,
+      {}};
+}
+
+void add_view(Views& views, const std::string& name, const std::vector<double>& parameters) {
+  View view{name, parameters, {}};
+  try {
+    view.workspace = workspace_fields(views.mechanism, parameters, views.plan, views.mode);
+    view.held_range = held_range(views, view);
+    if (!(view.workspace->volume > 0)) {
+      view.workspace.reset();
+      view.problem = "it has no feasible pose";
+    }
+  } catch (const std::exception& error) {  // not a mechanism, a mass that is not positive, ...
+    view.workspace.reset();
+    view.problem = error.what();
+  }
+  views.designs.push_back(std::move(view));
+}
+
+}  // namespace
+
+Views views_of(const PageStudy& page) {
+  const StudyContents& contents = page.contents;
+  const ProblemParts& parts = page.study->problem->parts();
+  Views views = no_views(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions);
+  if (contents.best.row >= 0) {
+    const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
+    const auto design = stage.table.design(static_cast<std::size_t>(contents.best.row));
+    const bool one = contents.problem.objectives.size() < 2;
+    add_view(views,
+             !one             ? "compromise"
+             : contents.final ? "best"
+                              : "best so far",
+             page.study->problem->parameters(design));
+  }
+  if (page.study->baseline) add_view(views, "baseline", *page.study->baseline);
+  return views;
+}
+
+Views views_of(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
+               const std::vector<NamedMotion>& motions, const std::pair<std::string, std::vector<double>>& design) {
+  Views views = no_views(mechanism, plan, mode, motions);
+  add_view(views, design.first, design.second);
+  return views;
+}
+
+}  // namespace pkm

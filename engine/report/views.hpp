@@ -1,0 +1,43 @@
+// Designs to be looked at: what the sections on workspace, mechanism, coupling and motions are made of.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/report/page_study.hpp"
+#include "engine/report/workspace_fields.hpp"
+
+namespace pkm {
+
+/// A design with its workspace.
+struct View {
+  std::string name;                          ///< "best", "baseline"
+  std::vector<double> parameters;            ///< all of the mechanism's
+  std::optional<WorkspaceFields> workspace;  ///< none: the design has none, see `problem`
+  std::array<double, 2> held_range{};        ///< of the held coordinate, where poses of the workspace stay feasible
+  std::string problem = {};                  ///< why there is no workspace, in a sentence
+};
+
+/// Designs of one mechanism, under the same plan.
+struct Views {
+  const Mechanism& mechanism;
+  SurveyPlan plan;   ///< of voxels, few enough for a page
+  LimitSpec limits;  ///< of poses
+  std::string mode;
+  std::vector<NamedMotion> motions;
+  std::vector<View> designs;
+};
+
+/// The best design of a study (the compromise where there are several objectives) and its baseline, evaluated again.
+/// @param page  of a study that this program can read
+Views views_of(const PageStudy& page);
+
+/// One design, without a study's results.
+/// @param plan    as of a study
+/// @param mode    one of MechanismInfo::modes
+/// @param design  its name, and all of the mechanism's parameters
+Views views_of(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
+               const std::vector<NamedMotion>& motions, const std::pair<std::string, std::vector<double>>& design);
+
+}  // namespace pkm

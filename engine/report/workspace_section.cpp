@@ -1,0 +1,111 @@
+#include <nlohmann/json.hpp>
+
+#include "engine/report/isosurface.hpp"
+#include "engine/report/json_text.hpp"
+#include "engine/report/packed.hpp"
+#include "engine/report/sections.hpp"
+
+namespace pkm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The values of a field in feasible cells, in their order.
+std::vector<double> of_feasible(const WorkspaceFields& workspace, const WorkspaceField& field) {
+  const std::vector<double>& feasible = workspace.field("feasible").values;
+  std::vector<double> values;
+  for (std::size_t cell = 0; cell < feasible.size(); ++cell)
+    if (feasible[cell] > 0) values.push_back(field.values[cell]);
+  return values;
+}
+
+/// Vertices by coordinate, each with the feasible cell next to it: its number among the feasible ones.
+Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
+  const Isosurface found = isosurface(workspace, margin);
+  const std::vector<double>& feasible = workspace.field("feasible").values;
+  std::vector<std::int64_t> number(feasible.size(), 0), cells, corners;
+  for (std::size_t cell = 1; cell < feasible.size(); ++cell) number[cell] = number[cell - 1] + (feasible[cell - 1] > 0);
+  for (const std::size_t cell : found.cell) cells.push_back(number[cell]);
+  for (const auto& triangle : found.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  Json vertices = Json::array();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const auto& vertex : found.vertices) values.push_back(vertex[axis]);
+    vertices.push_back(packed_levels(values));
+  }
+  return {{"vertices", vertices}, {"cells", packed_integers(cells)}, {"triangles", packed_integers(corners)}};
+}
+
+Json axis_data(const WorkspaceAxis& axis) {
+  return {{"name", axis.name}, {"unit", axis.unit}, {"coordinate", axis.coordinate}};
+}
+
+Json workspace(const std::string& name, const WorkspaceFields& found, const PoseMargin* margin) {
+  Json json = {{"name", name}, {"axes", Json::array()}, {"held", axis_data(found.held)}};
+  for (const WorkspaceAxis& axis : found.axes) {
+    json["axes"].push_back(axis_data(axis));
+    json["axes"].back().update({{"lower", axis.lower}, {"upper", axis.upper}, {"cells", axis.cells}});
+  }
+  json["held"].update({{"value", found.held.lower}, {"note", found.held_note}});
+  json["volume"] = found.volume;
+  json["volume_unit"] = found.volume_unit;
+  const std::vector<double>& feasible = found.field("feasible").values;
+  json["feasible"] = packed_bits(std::vector<std::uint8_t>(feasible.begin(), feasible.end()));
+  json["fields"] = Json::array();
+  for (const WorkspaceField& field : found.fields)
+    if (field.name != "feasible")
+      json["fields"].push_back({{"name", field.name},
+                                {"unit", field.unit},
+                                {"meaning", field.meaning},
+                                {"values", packed_levels(of_feasible(found, field))}});
+  json["surface"] = surface(found, margin);
+  return json;
+}
+
+/// All that a file's own map says: which cells of the best design are feasible.
+WorkspaceFields fields_of(const MapRecord& map, const DesignRecord& best, const std::string& volume_unit) {
+  WorkspaceFields found;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string& name = map.axes[i];
+    const int coordinate = map.units[i] == "rad" ? 3 : name == "x" ? 0 : name == "y" ? 1 : 2;
+    found.axes[i] = {coordinate, name, map.units[i], map.voxels.lower[i], map.voxels.upper[i], map.voxels.cells[i]};
+  }
+  found.held.coordinate = -1;  // the map does not say
+  found.volume = best.volume;
+  found.volume_unit = volume_unit;
+  std::vector<double> margin;
+  for (const std::uint8_t feasible : map.voxels.feasible) margin.push_back(feasible ? 1 : -1);
+  found.fields.push_back({"feasible", "1", "", {map.voxels.feasible.begin(), map.voxels.feasible.end()}});
+  found.fields.push_back({"margin", "1", "", std::move(margin)});
+  return found;
+}
+
+}  // namespace
+
+std::string workspace_data(const Views& views) {
+  const SurveyPlan& plan = views.plan;
+  Json json = {
+      {"column",
+       views.mechanism.info().coordinates[static_cast<std::size_t>(sweep_of(views.mechanism.info(), plan).column)]},
+      {"designs", Json::array()},
+      {"problems", Json::array()}};
+  for (const View& view : views.designs) {
+    if (!view.workspace) {
+      json["problems"].push_back("The design “" + view.name + "” is not shown: " + view.problem + ".");
+      continue;
+    }
+    const PoseMargin margin(views.mechanism, view.parameters, plan.limits);
+    json["designs"].push_back(workspace(view.name, *view.workspace, &margin));
+  }
+  return json_text(json);
+}
+
+std::string workspace_data(const StudyContents& contents) {
+  if (!contents.final || !contents.final->map || !contents.final->best) return "";
+  const FinalRecord& final = *contents.final;
+  Json design = workspace("best", fields_of(*final.map, *final.best, final.volume_unit), nullptr);
+  design["fields"].clear();  // the margin is only made up for the surface
+  return json_text(Json{{"column", final.map->axes[2]}, {"designs", {design}}, {"problems", Json::array()}});
+}
+
+}  // namespace pkm

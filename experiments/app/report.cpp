@@ -1,0 +1,73 @@
+// pkmopt report: what studies found, as one HTML page.
+
+#include <filesystem>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/core/team.hpp"
+#include "engine/report/html_page.hpp"
+#include "engine/storage/safe_file.hpp"
+#include "engine/storage/study_file.hpp"
+#include "engine/study/run_study.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/running.hpp"
+#include "experiments/app/version.hpp"
+
+namespace pkm {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> files;
+  std::string output;
+  bool force = false;
+  int threads = 0;
+};
+
+PageStudy page_study(const std::string& file, const Catalogues& catalogues) {
+  PageStudy page{std::filesystem::path(file).filename().string(), read_study(file), {}};
+  try {
+    page.study = study_of(page.contents, catalogues);
+  } catch (const std::exception& error) {
+    page.unreadable = error.what();
+    std::cerr << "pkmopt: note: " << file << ": this program cannot read the study's text, so what would have to be "
+              << "evaluated again is left out (" << error.what() << ")\n";
+  }
+  return page;
+}
+
+void report(const ReportArguments& arguments, const Catalogues& catalogues) {
+  const std::string output =
+      arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
+  if (!arguments.force && std::filesystem::exists(output))
+    throw StorageError(output + " exists already; overwrite it with --force");
+  Team team(arguments.threads);
+  const LentTeam lent(team);
+  std::vector<PageStudy> studies;
+  for (const std::string& file : arguments.files) studies.push_back(page_study(file, catalogues));
+  const std::string page = html_page(page_data(studies, program_words()));
+  replace_file(output, page);
+  char size[32];
+  std::snprintf(size, sizeof size, "%.1f MB", 1e-6 * static_cast<double>(page.size()));
+  std::cout << output << ": " << size << '\n';
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command = app.add_subcommand("report", "Writes what studies found as one HTML page with plots.");
+  command->add_option("files", arguments->files, "Study files; several are also compared")
+      ->required()
+      ->type_name("F.h5");
+  command->add_option("-o,--output", arguments->output, "The page (default: the first file's stem + .html)")
+      ->type_name("R.html");
+  command->add_flag("--force", arguments->force, "Overwrite the page if it exists");
+  add_threads(*command, arguments->threads);
+  command->footer(
+      "The page opens from disk and needs no network. What a study file does not hold is evaluated again.\n"
+      "Example: pkmopt report paper-problem.h5");
+  command->callback([arguments, &session] { report(*arguments, session.catalogues); });
+}
+
+}  // namespace pkm

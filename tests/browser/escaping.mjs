@@ -1,0 +1,56 @@
+// What a study file says is text, wherever the page shows it.
+import assert from "node:assert/strict";
+import { copyFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import { folderOf, Page, pkmopt, reportOf } from "./page.mjs";
+
+const folder = folderOf("escaping"), toml = path.join(folder, "escaping.toml");
+const evil = "<script>alert(1)</script>", image = "<img src=x onerror=alert(2)>", bold = "<b>%{y} &amp; 50%</b>";
+writeFileSync(toml, `# </script><script>alert(3)</script> <!-- <script> \u2028 \u2029
+[study]
+name = "${evil}"
+[mechanism]
+type = "4ppa-2par"
+[variables]
+a = { min = 0.15, max = 0.3 }
+b = { min = 0.7, max = 1.5 }
+[baseline]
+a = 0.2
+[[motion]]
+name = "${image}"
+type = "points"
+points = [{ x = 0.4, y = 1.25, z = -1.0, theta = 0 }, { z = -0.95 }]
+time = 0.5
+[[objective]]
+type = "workspace-ratio"
+[[constraint]]
+type = "rail-length"
+[[reference]]
+name = "${bold}"
+design = { a = 0.2 }
+[[stage]]
+optimiser = "ga"
+population = 8
+generations = 3
+`);
+const { file } = reportOf(toml, folder);
+const html = path.join(folder, "both.html"), copy = path.join(folder, image + ".h5");
+copyFileSync(file, copy);
+pkmopt("report", file, copy, "--output", html, "--force");
+const page = await Page.open(html);
+await page.drawAll();
+assert.equal(await page.page.title(), `${evil}, ${evil} – pkmopt`);
+assert.equal(await page.text("h1"), evil);
+assert.equal(await page.page.locator("main script, main img, header script, header img").count(), 0);
+const everything = await page.text();
+for (const text of [evil, image, bold]) assert.ok(everything.includes(text), text);
+assert.ok((await page.text("#comparison")).includes(evil));
+const { studies: [study] } = await page.data();
+assert.ok(study.summary.origin.toml.includes("</script><script>alert(3)</script> <!-- <script> \u2028 \u2029"));
+const legend = await page.page.locator("#comparison .plot .legendtext").first().textContent();
+assert.equal(legend, evil);
+const hover = await page.hover("comparison");
+assert.ok(hover.includes(evil), `hover: ${hover}`);
+await page.screenshot(folder, "escaping");
+await page.close();
+console.log("names of a study are shown as text");

@@ -1,0 +1,58 @@
+// Studies that are not finished, and one whose text this program cannot read.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, rmSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import { folderOf, Page, pkmopt } from "./page.mjs";
+
+const folder = folderOf("unfinished");
+
+/** Starts a long study and ends it by a signal once its file is there. */
+async function endedBy(signal) {
+  const toml = path.join(folder, signal + ".toml"), file = path.join(folder, signal + ".h5");
+  writeFileSync(toml, `[mechanism]
+type = "4ppa-2par"
+[variables]
+a = { min = 0.15, max = 0.3 }
+b = { min = 0.7, max = 1.5 }
+[baseline]
+a = 0.2
+[checkpoint]
+every = 0
+[[objective]]
+type = "workspace-ratio"
+[[stage]]
+optimiser = "ga"
+population = 50
+generations = 100000
+`);
+  rmSync(file, { force: true });
+  const child = spawn(process.env.PKMOPT, ["run", toml, "--output", file, "--quiet"], { stdio: "ignore" });
+  const ended = new Promise((resolve) => child.on("exit", resolve));
+  const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+  while (!existsSync(file)) await pause(5);
+  await pause(100);
+  child.kill(signal);
+  await ended;
+  return file;
+}
+
+for (const [signal, words] of [["SIGINT", "interrupted"], ["SIGKILL", "still running"]]) {
+  const file = await endedBy(signal), html = path.join(folder, signal + ".html");
+  pkmopt("report", file, "--output", html, "--force");
+  const page = await Page.open(html);
+  await page.drawAll();
+  assert.ok((await page.text("#summary")).includes(words), words);
+  assert.ok((await page.sections()).includes("mechanism"));
+  await page.close();
+}
+
+const html = path.join(folder, "unreadable.html");
+pkmopt("report", path.join(process.env.BROWSER_DATA, "schema-3.h5"), "--output", html, "--force");
+const page = await Page.open(html);
+await page.drawAll();
+assert.match(await page.text("#summary"), /cannot read the study's text/);
+assert.deepEqual(await page.sections(), ["summary", "workspace", "convergence", "populations"]);
+await page.screenshot(folder, "unreadable");
+await page.close();
+console.log("interrupted, running and unreadable studies have their reports");

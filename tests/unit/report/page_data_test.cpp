@@ -1,0 +1,187 @@
+// What the page is given: packed columns, text that cannot break out, sections with the file's numbers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/report/html_page.hpp"
+#include "engine/report/json_text.hpp"
+#include "engine/report/packed.hpp"
+#include "engine/report/sections.hpp"
+#include "engine/report/standing.hpp"
+#include "engine/report/thinning.hpp"
+#include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/storage/sample_study.hpp"
+
+namespace pkm {
+namespace {
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+std::string base64_of(const std::string& text) {
+  return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+std::shared_ptr<const Mechanism> mechanism_called(const std::string& name) {
+  for (const auto& mechanism : all_mechanisms())
+    if (mechanism->info().name == name) return mechanism;
+  throw std::out_of_range(name);
+}
+
+/// The sample study as a page is given it when its text cannot be read.
+PageStudy sample_page() { return {"sample.h5", test::sample_study(), {}, "why"}; }
+
+TEST(Packed, Base64IsThatOfTheStandard) {
+  EXPECT_EQ(base64_of(""), "");
+  EXPECT_EQ(base64_of("f"), "Zg==");
+  EXPECT_EQ(base64_of("fo"), "Zm8=");
+  EXPECT_EQ(base64_of("foo"), "Zm9v");
+  EXPECT_EQ(base64_of("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64_of("\xff\xfe"), "//4=");
+}
+
+TEST(Packed, IntegersTakeAsFewBytesAsTheyNeed) {
+  EXPECT_EQ(packed_integers(std::vector<std::int64_t>{1, 65535}), "u16:AQD//w==");
+  EXPECT_EQ(packed_integers(std::vector<std::int64_t>{1, 65536}), "u32:AQAAAAAAAQA=");
+}
+
+TEST(Packed, LevelsKeepTheEndsAndWhatIsMissing) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(packed_levels(std::vector<double>{-1, 3, none, 1}),
+            "q16:-1:3:" + base64_of({"\x00\x00\xfe\xff\xff\xff\xff\x7f", 8}));
+  EXPECT_EQ(packed_levels(std::vector<double>{none}), "q16:0:0:" + base64_of("\xff\xff"));
+  EXPECT_EQ(packed_bits(std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0, 1}), "bits:" + base64_of("\x01\x01"));
+}
+
+TEST(JsonText, CannotEndTheElementThatHoldsIt) {
+  const std::string nasty = "</script><!-- \xe2\x80\xa8 \xff";
+  const std::string text = json_text(json(nasty));
+  EXPECT_THAT(text, Not(HasSubstr("<")));
+  EXPECT_TRUE(std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; }));
+  EXPECT_EQ(json::parse(text), "</script><!-- \xe2\x80\xa8 \xef\xbf\xbd");
+  EXPECT_EQ(json_object({{"a", "1"}, {"left_out", ""}, {"b", "[2]"}}), "{\"a\":1,\"b\":[2]}");
+}
+
+TEST(Thinning, KeepsFirstAndLast) {
+  EXPECT_THAT(Thinning(0, 3).indices, IsEmpty());
+  EXPECT_THAT(Thinning(1, 3).indices, ElementsAre(0));
+  EXPECT_THAT(Thinning(3, 3).indices, ElementsAre(0, 1, 2));
+  EXPECT_THAT(Thinning(6, 3).indices, ElementsAre(0, 3, 5));
+  const Thinning many(1001, 101);
+  EXPECT_EQ(many.every, 10u);
+  EXPECT_EQ(many.indices.size(), 101u);
+  EXPECT_EQ(many.indices.back(), 1000u);
+}
+
+TEST(Standing, GainsAreOfTheBaselinesSizeInTheObjectivesDirection) {
+  EXPECT_EQ(gain_over(-2, -1, Direction::maximise)->percent, 50);
+  EXPECT_FALSE(gain_over(-2, -1, Direction::maximise)->worse);
+  EXPECT_TRUE(gain_over(2, 3, Direction::minimise)->worse);
+  EXPECT_FALSE(gain_over(2, 2, Direction::minimise)->worse);
+  EXPECT_FALSE(gain_over(0, 1, Direction::maximise));
+  EXPECT_FALSE(gain_over(1, std::nan(""), Direction::maximise));
+  EXPECT_EQ(most_broken(std::vector<double>{0.1, -0.1, std::nan(""), -0.2}), 3u);
+  EXPECT_EQ(most_broken(std::vector<double>{0.1, std::nan("")}), std::nullopt);
+}
+
+TEST(PageData, SummaryHasTheFilesNumbers) {
+  const PageStudy page = sample_page();
+  const json summary = json::parse(summary_data(page));
+  const FinalRecord& final = *page.contents.final;
+  EXPECT_EQ(summary["unreadable"], "why");
+  EXPECT_EQ(summary["state"], "interrupted");
+  EXPECT_EQ(summary["origin"]["seed"], "18364758544493064720");  // more digits than a number of the page has
+  const json& table = summary["table"];
+  EXPECT_EQ(table["columns"][0]["name"], "best");
+  EXPECT_EQ(table["columns"][1]["name"], "baseline");
+  EXPECT_EQ(table["columns"][1]["reason"], "does not assemble");
+  EXPECT_EQ(table["rows"][0]["values"], json({final.best->parameters[0], final.baseline->parameters[0]}));
+  EXPECT_EQ(table["rows"][2]["name"], "workspace-ratio");
+  EXPECT_EQ(table["rows"][2]["values"], json({final.best->objectives[0], final.baseline->objectives[0]}));
+  EXPECT_DOUBLE_EQ(table["rows"][2]["gain"]["percent"], 100);
+  EXPECT_EQ(table["rows"][3]["name"], "workspace-ratio, exact");
+  EXPECT_EQ(table["rows"][3]["values"], json({final.best_exact->objectives[0], nullptr}));
+  EXPECT_EQ(summary["stages"][0]["outcomes"],
+            json({{"feasible", 3}, {"infeasible", 3}, {"rejected", 3}, {"failed", 3}}));
+}
+
+TEST(PageData, ConvergenceIsBestSoFarAndThePopulationsQuartiles) {
+  StudyContents contents = test::sample_study();
+  StageRecord& stage = contents.stages[0];
+  contents.stages.resize(1);
+  std::fill(stage.table.status.begin(), stage.table.status.end(), Status::feasible);
+  for (std::size_t row = 0; row < stage.table.size(); ++row) stage.table.objectives[row] = static_cast<double>(row % 5);
+  stage.table.status[4] = Status::infeasible;  // with the largest value
+  const json found = json::parse(convergence_data(contents))[0]["generations"];
+  EXPECT_EQ(found["evaluations"], json({4, 8, 12}));
+  const json& objective = found["objectives"][0];  // 0 1 2 3 | (4) 0 1 2 | 3 4 0 1
+  EXPECT_EQ(objective["best"], json({3.0, 3.0, 4.0}));
+  EXPECT_EQ(objective["median"], json({1.5, 1.0, 2.0}));
+  EXPECT_EQ(objective["lower"], json({0.75, 0.5, 0.75}));
+  EXPECT_EQ(objective["upper"], json({2.25, 1.5, 3.25}));
+}
+
+TEST(PageData, SectionsWithoutAnythingToShowAreLeftOut) {
+  StudyContents contents = test::sample_study();
+  contents.final.reset();
+  contents.stages.clear();
+  contents.best = {};
+  const json page = json::parse(page_data({{"empty.h5", contents, {}, "why"}}, "pkmopt"));
+  const json& study = page["studies"][0];
+  for (const char* const section :
+       {"convergence", "populations", "front", "workspace", "mechanism", "coupling", "motions"})
+    EXPECT_FALSE(study.contains(section)) << section;
+  EXPECT_TRUE(study["summary"]["table"].is_null());
+  EXPECT_EQ(study["summary"]["evaluations"], 0);
+}
+
+TEST(PageData, TheFilesOwnMapServesWhereTheTextCannotBeRead) {
+  const json page = json::parse(page_data({sample_page()}, "pkmopt 1"));
+  EXPECT_EQ(page["program"], "pkmopt 1");
+  const json& study = page["studies"][0];
+  EXPECT_EQ(study["name"], "Größe, 4PPa-2PaR <b>");
+  const json& design = study["workspace"]["designs"][0];
+  EXPECT_EQ(design["feasible"], packed_bits(std::vector<std::uint8_t>{0, 1, 1, 0, 1, 0}));
+  EXPECT_THAT(design["fields"], IsEmpty());
+  EXPECT_FALSE(study.contains("mechanism"));
+}
+
+TEST(PageData, ADesignHasAWorkspaceItsLinksAndItsCoupling) {
+  const auto mechanism = mechanism_called("3crr-r-cru");
+  const std::vector<double> nominal = test::nominal(mechanism->info());
+  const Views views =
+      views_of(*mechanism, test::plan(mechanism->info(), Method::voxels, 6), "", {}, {"nominal", nominal});
+  ASSERT_EQ(views.designs[0].problem, "");
+  EXPECT_LT(views.designs[0].held_range[0], 0);  // it can turn both ways
+  EXPECT_GT(views.designs[0].held_range[1], 0);
+  const json study = json::parse(page_data(views, "pkmopt"))["studies"][0];
+  EXPECT_EQ(study["design"]["parameters"].size(), nominal.size());
+  EXPECT_EQ(study["workspace"]["designs"][0]["volume"], views.designs[0].workspace->volume);
+  const json& drawn = study["mechanism"]["designs"][0];
+  EXPECT_EQ(drawn["coordinates"][3]["values"].size(), 7u);
+  EXPECT_GT(drawn["links"].size(), 10u);
+  EXPECT_LT(drawn["ends"], 2 * drawn["links"].size());  // joined links share their ends
+  EXPECT_EQ(study["coupling"]["designs"][0]["indices"].size(), 5u);
+  EXPECT_FALSE(study.contains("motions"));
+}
+
+TEST(PageData, ADesignThatIsNoneIsSaidSo) {
+  const auto mechanism = mechanism_called("4ppa-2par");
+  std::vector<double> parameters(mechanism->info().parameters.size(), 0.0);
+  const Views views =
+      views_of(*mechanism, test::plan(mechanism->info(), Method::columns), "", {}, {"nothing", parameters});
+  const json workspace = json::parse(workspace_data(views));
+  EXPECT_THAT(workspace["designs"], IsEmpty());
+  EXPECT_THAT(workspace["problems"][0].get<std::string>(), HasSubstr("“nothing” is not shown: "));
+  EXPECT_EQ(mechanism_data(views), "");
+}
+
+}  // namespace
+}  // namespace pkm
