@@ -1,7 +1,6 @@
 #include "engine/report/isosurface.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "engine/core/team.hpp"
