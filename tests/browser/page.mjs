@@ -116,5 +116,10 @@ export class Page {
     return "";
   }
 
-  async screenshot(folder, name) { await this.page.screenshot({ path: path.join(folder, name + ".png"), fullPage: true }); }
+  /** Each section on a picture of its own: Chromium repeats itself in pictures of whole long pages. */
+  async screenshot(folder, name) {
+    await this.page.addStyleTag({ content: "#bar { position: static !important; }" });  // else it stands over them
+    for (const section of await this.page.locator("main > section").all())
+      await section.screenshot({ path: path.join(folder, `${name}-${await section.getAttribute("id")}.png`) });
+  }
 }

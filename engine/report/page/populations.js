@@ -91,10 +91,10 @@ function showPopulations(study, section) {
       return {
         data: [{
           type: "parcoords", line: { color: rows.map((r) => cz.values[r]), colorscale: timeColours, cmin, cmax },
-          dimensions: axes.map((c) => ({ label: label(c.name), range: c.lower !== undefined && Number.isFinite(c.lower) && Number.isFinite(c.upper) && c.lower !== null && c.upper !== null ? [c.lower, c.upper] : rangeOf(c.values), values: rows.map((r) => c.values[r]), tickformat: ".4~g" })),
+          dimensions: axes.map((c) => ({ label: axisName(c.name, c.unit), range: c.lower !== undefined && Number.isFinite(c.lower) && Number.isFinite(c.upper) && c.lower !== null && c.upper !== null ? [c.lower, c.upper] : rangeOf(c.values), values: rows.map((r) => c.values[r]), tickformat: ".4~g" })),
           labelangle: -22, labelfont: { size: 12 }, tickfont: { size: 11 }, rangefont: { size: 1, color: "rgba(0,0,0,0)" }, unselected: { line: { color: colour("line"), opacity: 0.3 } },
         }],
-        layout: { margin: { l: 48, r: 48, t: 92, b: 24 } },
+        layout: { margin: { l: 48, r: 96, t: 104, b: 24 } },
       };
     },
   });
