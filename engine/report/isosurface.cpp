@@ -78,7 +78,7 @@ class Builder {
       inside += corner[direction].margin > 0;
     }
     if (inside == 0 || inside == 8) return;
-    // Along the axes in each of their six orders from the first corner to the last; every second order is left-handed.
+    // Along the axes in each of their six orders from the first corner to the last; the last three are left-handed.
     static constexpr std::array<std::array<std::size_t, 2>, 6> kPaths = {
         {{1, 3}, {2, 6}, {4, 5}, {1, 5}, {2, 3}, {4, 6}}};
     for (std::size_t path = 0; path < 6; ++path)
