@@ -39,7 +39,7 @@ for (let i = 0; i < 3; ++i) {
   await page.page.waitForFunction(() => window.Plotly);
   seconds.push(page.seconds + (performance.now() - begin) / 1000);
   if (i === 0) {
-    await page.drawAll();
+    await page.draw();
     assert.match(await page.text("#populations .lead"), /every 10th generation of 1001/);
   }
   await page.close();

@@ -15,7 +15,7 @@ const expected = {
 const { file, html } = reportOf(path.join(studies, name + ".toml"), folder);
 const page = await Page.open(html);
 assert.deepEqual(await page.sections(), expected);
-await page.drawAll();
+await page.draw();
 
 // Values: the page's table against `pkmopt show`, generations' best against the file.
 const shown = JSON.parse(pkmopt("show", file, "--json")), { studies: [study] } = await page.data();
@@ -35,7 +35,7 @@ if (study.problem.objectives.length === 1) assert.deepEqual(study.convergence[0]
 const lengths = study.convergence[0].generations.number.length;
 assert.equal(lengths, inFile.length);
 
-await page.screenshot(folder, "1280-light");
+await page.screenshots(folder, "1280-light");
 
 // Hovering shows values with units.
 const unit = { "4ppa-2par": "rad", "3crr-r-cru": "generation", "quadrupteron": "m²", "2t1r-p-hybrid": "m³" }[name];
@@ -59,7 +59,7 @@ assert.ok(sliders >= 6, `${sliders} sliders`);
 
 await page.page.setViewportSize({ width: 1920, height: 1080 });
 await page.page.click("#theme");
-await page.drawAll();
-await page.screenshot(folder, "1920-dark");
+await page.draw();
+await page.screenshots(folder, "1920-dark");
 await page.close();
 console.log(`${name}: ${expected.length} sections, ${compared} values as in the file, ${sliders} sliders`);

@@ -54,10 +54,10 @@ export class Page {
   sections() { return this.page.locator("main > section").evaluateAll((list) => list.map((section) => section.id)); }
   text(selector = "main") { return this.page.locator(selector).innerText(); }
 
-  /** Draws every plot, and checks that each has something to show. */
-  async drawAll() {
-    await this.page.evaluate(() => window.report.drawAll());
-    const empty = await this.page.locator(".plot").evaluateAll((plots) => plots.flatMap((plot) => {
+  /** Draws every plot, or those of one section, and checks that each has something to show. */
+  async draw(section) {
+    await this.page.evaluate((id) => window.report.draw(id), section);
+    const empty = await this.page.locator((section ? "#" + section : "main") + " .plot").evaluateAll((plots) => plots.flatMap((plot) => {
       const numbers = (values) => (values ? Array.from(values).flat().filter((value) => Number.isFinite(value) || typeof value === "string").length : 0);
       const shown = (plot.data || []).some((trace) => numbers(trace.x) + numbers(trace.z) + (trace.dimensions || []).reduce((sum, d) => sum + numbers(d.values), 0) > 0);
       return shown && plot.querySelector("svg.main-svg") ? [] : [plot.closest("section").id + ": " + plot.parentElement.innerText.slice(0, 60)];
@@ -116,10 +116,11 @@ export class Page {
     return "";
   }
 
-  /** Each section on a picture of its own: Chromium repeats itself in pictures of whole long pages. */
-  async screenshot(folder, name) {
-    await this.page.addStyleTag({ content: "#bar { position: static !important; }" });  // else it stands over them
-    for (const section of await this.page.locator("main > section").all())
-      await section.screenshot({ path: path.join(folder, `${name}-${await section.getAttribute("id")}.png`) });
+  /** A picture of each section, without the bar that stays on top. */
+  async screenshots(folder, name, sections) {
+    const style = await this.page.addStyleTag({ content: "#bar { position: static !important; }" });
+    for (const section of sections ?? await this.sections())
+      await this.page.locator("#" + section).screenshot({ path: path.join(folder, `${name}-${section}.png`) });
+    await style.evaluate((node) => node.remove());
   }
 }

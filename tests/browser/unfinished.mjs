@@ -41,7 +41,7 @@ for (const [signal, words] of [["SIGINT", "interrupted"], ["SIGKILL", "still run
   const file = await endedBy(signal), html = path.join(folder, signal + ".html");
   pkmopt("report", file, "--output", html, "--force");
   const page = await Page.open(html);
-  await page.drawAll();
+  await page.draw("convergence");
   assert.ok((await page.text("#summary")).includes(words), words);
   assert.ok((await page.sections()).includes("mechanism"));
   await page.close();
@@ -50,9 +50,9 @@ for (const [signal, words] of [["SIGINT", "interrupted"], ["SIGKILL", "still run
 const html = path.join(folder, "unreadable.html");
 pkmopt("report", path.join(process.env.BROWSER_DATA, "schema-3.h5"), "--output", html, "--force");
 const page = await Page.open(html);
-await page.drawAll();
+await page.draw();
 assert.match(await page.text("#summary"), /cannot read the study's text/);
 assert.deepEqual(await page.sections(), ["summary", "workspace", "convergence", "populations"]);
-await page.screenshot(folder, "unreadable");
+await page.screenshots(folder, "unreadable", ["summary"]);
 await page.close();
 console.log("interrupted, running and unreadable studies have their reports");

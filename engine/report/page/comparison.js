@@ -4,7 +4,7 @@ function studyColour(i) { return seriesColours[i % seriesColours.length]; }
 
 function comparisonTable(studies) {
   const table = element("table");
-  table.append(element("thead", "", element("tr", "", ...["study", "mechanism", "objective", "best", "gain over baseline", "evaluations", "time", "seed", "state", "revision"].map((text, i) => element("th", i < 3 ? "text" : "", text)))));
+  table.append(element("thead", "", element("tr", "", ...["study", "mechanism", "objective", "best", "gain over baseline", "evaluations", "time", "seed", "state"].map((text, i) => element("th", i < 3 ? "text" : "", text)))));
   const body = element("tbody");
   studies.forEach((study, s) => {
     const { summary, problem } = study;
@@ -15,7 +15,7 @@ function comparisonTable(studies) {
       const first = k === 0;
       body.append(element("tr", "", element("td", "text", ...(first ? [key, study.name] : [])), element("td", "text", first ? problem.mechanism : ""), element("td", "text", row ? row.name : "–"),
                           element("td", "", row ? quantity(row.values[0], row.unit, 10) : "–"), element("td", "", row ? gainText(row.gain) : ""),
-                          ...[summary.evaluations.toLocaleString("en-GB"), duration(summary.seconds), summary.origin.seed, summary.state, summary.origin.revision].map((text) => element("td", "", first ? text : ""))));
+                          ...[summary.evaluations.toLocaleString("en-GB"), duration(summary.seconds), summary.origin.seed, summary.state].map((text) => element("td", "", first ? text : ""))));
     });
   });
   table.append(body);
@@ -51,7 +51,7 @@ function showComparison(studies, section) {
         make: () => ({
           data: those.map(({ study, i, k }) => ({ type: "scatter", mode: "lines", ...bestCurve(study, k), name: label(study.name), line: { color: studyColour(i), width: 2.5, shape: "hv" },
                                                   hovertemplate: `%{y:.7g} ${label(unitText(objective.unit))}<br>after %{x} evaluations<extra>${label(study.name)}</extra>` })),
-          layout: { xaxis: axis("evaluations", { type: "log" }), yaxis: axis(axisName(objective.name, objective.unit)), legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" } },
+          layout: { xaxis: axis("evaluations", { type: "log", tickangle: 0, nticks: 5 }), yaxis: axis(axisName(objective.name, objective.unit)), legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" } },
         }),
       });
   }

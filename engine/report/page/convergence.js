@@ -107,11 +107,11 @@ function showConvergence(study, section) {
   const against = buttons(controls, "against", ["evaluations", "generations"], 0, () => list.forEach((plot) => plot.update()));
   study.problem.objectives.forEach((objective, k) => {
     list.push(addPlot(grid, {
-      title: objective.name, caption: objective.meaning, size: study.problem.objectives.length > 1 ? "half" : "", height: 420,
+      title: objective.name, caption: objective.meaning, size: study.problem.objectives.length > 1 ? "half" : "", height: 430,
       make() {
         const axes = axisOf();
         return { data: objectiveTraces(axes, k, objective),
-                 layout: { xaxis: xaxis(), yaxis: axis(axisName(objective.name, objective.unit), objectiveRange(axes, k)), ...stageMarks(axes), legend: { orientation: "h", x: 0, y: -0.16, yanchor: "top" } } };
+                 layout: { xaxis: xaxis(), yaxis: axis(axisName(objective.name, objective.unit), objectiveRange(axes, k)), ...stageMarks(axes), legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" } } };
       },
     }));
   });

@@ -68,5 +68,5 @@ function showReport(report) {
   themeButton(document.getElementById("theme"));
   showStudy(report, report.studies[0]);
   const loaded = loadPlotly();
-  window.report = { ...report, drawAll: () => loaded.then(drawAllPlots) };  // for readers that are programs
+  window.report = { ...report, draw: (section) => loaded.then(() => drawPlots(section)) };  // for readers that are programs
 }

@@ -90,9 +90,11 @@ function forgetPlots() {
   }
 }
 
-function drawAllPlots() {
-  for (const plot of plots) plot.draw();
-  return Promise.all(plots.map((plot) => plot.done));
+/** Draws the plots of a section, or all, whether they are in view or not. */
+function drawPlots(section) {
+  const meant = plots.filter((plot) => !section || plot.node.closest("section").id === section);
+  for (const plot of meant) plot.draw();
+  return Promise.all(meant.map((plot) => plot.done));
 }
 
 function themeButton(button) {

@@ -115,7 +115,7 @@ function holdingBack(study) {
     panel.append(simpleTable(["active", "", "gain if moved"],
                              optimality.active.map((a) => [a.name, a.kind, rateText(a.multiplier, objective, a.unit)])));
   const rates = optimality.sensitivities.filter((s) => s.as_built !== 0 || s.reoptimised);
-  panel.append(simpleTable(["sensitivity of " + objective.name, "as built", "reoptimised"],
+  panel.append(simpleTable(["sensitivity", "as built", "reoptimised"],
                            rates.map((s) => [s.name, rateText(s.as_built, objective, s.unit), s.reoptimised === null ? "varies" : rateText(s.reoptimised, objective, s.unit)])));
   return panel;
 }
