@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12 packages), builds everything and runs every test; the last lines are CTest's.
-# In this order: formatting; a Clang build with address and undefined-behaviour sanitizers; another whose thread sanitizer
-# watches the tests that use threads; the release build by GCC. Warnings are errors in all three builds.
+# In this order: formatting; a Clang build with address and undefined-behaviour sanitizers, in which every header is
+# compiled on its own, too; the release build by GCC, in which a thread sanitizer watches the team. Warnings are errors in
+# both builds.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source experiments/debian-packages.sh
@@ -27,8 +28,6 @@ step "packages" pkm_install_missing "${pkm_build_packages[@]}" "${pkm_test_packa
 step "formatting" check_format
 step "build with address and undefined-behaviour sanitizers" build asan
 step "its tests" ctest --preset asan
-step "build with the thread sanitizer" build tsan
-step "its tests" ctest --preset tsan
 step "release build" build ci
 
 printf '== so far\n'
