@@ -7,12 +7,14 @@
 
 #include "engine/core/team.hpp"
 #include "engine/report/html_page.hpp"
+#include "engine/report/page_parts.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/version.hpp"
+#include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {
 namespace {
@@ -39,8 +41,11 @@ PageStudy page_study(const std::string& file, const Catalogues& catalogues) {
 void report(const ReportArguments& arguments, const Catalogues& catalogues) {
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
-  if (!arguments.force && std::filesystem::exists(output))
-    throw StorageError(output + " exists already; overwrite it with --force");
+  refuse_existing({output}, arguments.force);
+  for (const std::string& file : arguments.files)
+    if (std::error_code none; std::filesystem::equivalent(file, output, none))
+      throw ConfigError({"", 0, "--output"}, output, "another file than the study's own");
+  page_parts();  // or say at once that there are none
   Team team(arguments.threads);
   const LentTeam lent(team);
   std::vector<PageStudy> studies;

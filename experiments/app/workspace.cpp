@@ -6,6 +6,7 @@
 
 #include "engine/core/team.hpp"
 #include "engine/report/html_page.hpp"
+#include "engine/report/page_parts.hpp"
 #include "engine/report/workspace_export.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/storage/safe_file.hpp"
@@ -159,6 +160,7 @@ int workspace(const Catalogues& catalogues, const WorkspaceArguments& arguments)
   for (const std::string& file : {arguments.csv, arguments.html})
     if (!file.empty()) files.push_back(file);
   refuse_existing(files, arguments.force);
+  if (!arguments.html.empty()) page_parts();  // or say at once that there are none
   Team team(arguments.threads);
   const LentTeam lent(team);
   const SurveyPlan plan = plan_of(target, arguments);

@@ -4,9 +4,14 @@ import { copyFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { folderOf, Page, pkmopt, reportOf } from "./page.mjs";
 
-const folder = folderOf("escaping"), toml = path.join(folder, "escaping.toml");
-const evil = "<script>alert(1)</script>", image = "<img src=x onerror=alert(2)>", bold = "<b>%{y} &amp; 50%</b>";
-writeFileSync(toml, `# </script><script>alert(3)</script> <!-- <script> \u2028 \u2029
+const folder = folderOf("escaping"),
+  toml = path.join(folder, "escaping.toml");
+const evil = "<script>alert(1)</script>",
+  image = "<img src=x onerror=alert(2)>",
+  bold = "<b>%{y} &amp; 50%</b>";
+writeFileSync(
+  toml,
+  `# </script><script>alert(3)</script> <!-- <script> \u2028 \u2029
 [study]
 name = "${evil}"
 [mechanism]
@@ -32,9 +37,11 @@ design = { a = 0.2 }
 optimiser = "ga"
 population = 8
 generations = 3
-`);
+`,
+);
 const { file } = reportOf(toml, folder);
-const html = path.join(folder, "both.html"), copy = path.join(folder, image + ".h5");
+const html = path.join(folder, "both.html"),
+  copy = path.join(folder, image + ".h5");
 copyFileSync(file, copy);
 pkmopt("report", file, copy, "--output", html, "--force");
 const page = await Page.open(html);
@@ -45,7 +52,9 @@ assert.equal(await page.page.locator("main script, main img, header script, head
 const everything = await page.text();
 for (const text of [evil, image, bold]) assert.ok(everything.includes(text), text);
 assert.ok((await page.text("#comparison")).includes(evil));
-const { studies: [study] } = await page.data();
+const {
+  studies: [study],
+} = await page.data();
 assert.ok(study.summary.origin.toml.includes("</script><script>alert(3)</script> <!-- <script> \u2028 \u2029"));
 const legend = await page.page.locator("#comparison .plot .legendtext").first().textContent();
 assert.equal(legend, evil);

@@ -4,8 +4,11 @@ import { statSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { folderOf, Page, reportOf } from "./page.mjs";
 
-const folder = folderOf("large"), toml = path.join(folder, "large.toml");
-writeFileSync(toml, `[mechanism]
+const folder = folderOf("large"),
+  toml = path.join(folder, "large.toml");
+writeFileSync(
+  toml,
+  `[mechanism]
 type = "4ppa-2par"
 [variables]
 a   = { min = 0.15, max = 0.95 }
@@ -27,11 +30,13 @@ type = "rail-length"
 optimiser = "ga"
 population = 200
 generations = 1000
-`);
+`,
+);
 const { html } = reportOf(toml, folder);
 const megabytes = statSync(html).size / 1e6;
 assert.ok(megabytes < 12, `${megabytes} MB`);
-const readable = [], seconds = [];  // of several, because the machine may be busy with something else
+const readable = [],
+  seconds = []; // of several, because the machine may be busy with something else
 for (let i = 0; i < 3; ++i) {
   const page = await Page.open(html);
   readable.push(page.seconds);
@@ -45,4 +50,6 @@ for (let i = 0; i < 3; ++i) {
   await page.close();
 }
 assert.ok(Math.min(...seconds) < 3, `opened in ${seconds.join(", ")} s`);
-console.log(`${megabytes.toFixed(1)} MB, readable in ${Math.min(...readable).toFixed(2)} s, with plots in ${Math.min(...seconds).toFixed(2)} s`);
+console.log(
+  `${megabytes.toFixed(1)} MB, readable in ${Math.min(...readable).toFixed(2)} s, with plots in ${Math.min(...seconds).toFixed(2)} s`,
+);

@@ -5,11 +5,12 @@ import { execFileSync } from "node:child_process";
 import path from "node:path";
 import { folderOf, Page, pkmopt, reportOf, studies } from "./page.mjs";
 
-const name = process.argv[2], folder = folderOf(name);
+const name = process.argv[2],
+  folder = folderOf(name);
 const expected = {
   "4ppa-2par": ["summary", "workspace", "mechanism", "coupling", "motions", "convergence", "populations"],
   "3crr-r-cru": ["summary", "workspace", "mechanism", "coupling", "motions", "convergence", "populations"],
-  "quadrupteron": ["summary", "workspace", "mechanism", "coupling", "convergence", "front", "populations"],
+  quadrupteron: ["summary", "workspace", "mechanism", "coupling", "convergence", "front", "populations"],
   "2t1r-p-hybrid": ["summary", "workspace", "mechanism", "motions", "convergence", "populations"],
 }[name];
 const { file, html } = reportOf(path.join(studies, name + ".toml"), folder);
@@ -18,27 +19,50 @@ assert.deepEqual(await page.sections(), expected);
 await page.draw();
 
 // Values: the page's table against `pkmopt show`, generations' best against the file.
-const shown = JSON.parse(pkmopt("show", file, "--json")), { studies: [study] } = await page.data();
+const shown = JSON.parse(pkmopt("show", file, "--json")),
+  {
+    studies: [study],
+  } = await page.data();
 const inTable = (kind, key) => study.summary.table.rows.find((row) => row.kind === kind && row.name === key).values[0];
 let compared = 0;
-for (const [kind, values] of [["variable", shown.best.design], ["objective", shown.best.objectives], ["constraint", shown.best.constraints], ["report", shown.best.reports]])
-  for (const [key, value] of Object.entries(values)) { assert.equal(inTable(kind, key), value, key); ++compared; }
+for (const [kind, values] of [
+  ["variable", shown.best.design],
+  ["objective", shown.best.objectives],
+  ["constraint", shown.best.constraints],
+  ["report", shown.best.reports],
+])
+  for (const [key, value] of Object.entries(values)) {
+    assert.equal(inTable(kind, key), value, key);
+    ++compared;
+  }
 assert.ok(compared >= 4);
 const text = await page.text("#summary");
-for (const value of Object.values(shown.best.design)) assert.ok(text.includes(String(Number(value.toPrecision(10)))), `${value} is not in the summary`);
-const inFile = JSON.parse(execFileSync("/usr/bin/python3", ["-c", `
+for (const value of Object.values(shown.best.design))
+  assert.ok(text.includes(String(Number(value.toPrecision(10)))), `${value} is not in the summary`);
+const inFile = JSON.parse(
+  execFileSync(
+    "/usr/bin/python3",
+    [
+      "-c",
+      `
 import h5py, json, sys
 with h5py.File(sys.argv[1], "r") as f:
     stage = f["stages/1"]
-    print(json.dumps(list(stage["evaluations/objective"][:, 0][stage["generations/best_row"][:]])))`, file], { encoding: "utf8" }));
-if (study.problem.objectives.length === 1) assert.deepEqual(study.convergence[0].generations.objectives[0].best, inFile);
+    print(json.dumps(list(stage["evaluations/objective"][:, 0][stage["generations/best_row"][:]])))`,
+      file,
+    ],
+    { encoding: "utf8" },
+  ),
+);
+if (study.problem.objectives.length === 1)
+  assert.deepEqual(study.convergence[0].generations.objectives[0].best, inFile);
 const lengths = study.convergence[0].generations.number.length;
 assert.equal(lengths, inFile.length);
 
 await page.screenshots(folder, "1280-light");
 
 // Hovering shows values with units.
-const unit = { "4ppa-2par": "rad", "3crr-r-cru": "generation", "quadrupteron": "m²", "2t1r-p-hybrid": "m³" }[name];
+const unit = { "4ppa-2par": "rad", "3crr-r-cru": "generation", quadrupteron: "m²", "2t1r-p-hybrid": "m³" }[name];
 const curve = await page.hover("convergence");
 assert.ok(/\d/.test(curve) && curve.includes(unit), `hover over the convergence: “${curve}”`);
 const surface = await page.hover("workspace");
@@ -54,12 +78,15 @@ const linked = await page.page.evaluate(async () => {
 assert.equal(linked, 1);
 
 let sliders = 0;
-for (const section of ["workspace", "mechanism", "populations", ...(expected.includes("coupling") ? ["coupling"] : [])]) sliders += await page.moveSliders(section);
+for (const section of ["workspace", "mechanism", "populations", ...(expected.includes("coupling") ? ["coupling"] : [])])
+  sliders += await page.moveSliders(section);
 assert.ok(sliders >= 6, `${sliders} sliders`);
 
+// Wide and dark, where the sliders have left it.
 await page.page.setViewportSize({ width: 1920, height: 1080 });
 await page.page.click("#theme");
-await page.draw();
-await page.screenshots(folder, "1920-dark");
+const dark = ["summary", "workspace", "mechanism", "convergence"];
+for (const section of dark) await page.draw(section);
+await page.screenshots(folder, "1920-dark", dark);
 await page.close();
 console.log(`${name}: ${expected.length} sections, ${compared} values as in the file, ${sliders} sliders`);

@@ -16,12 +16,15 @@ export function folderOf(name) {
   return folder;
 }
 
-export function pkmopt(...parameters) { return execFileSync(PKMOPT, parameters, { encoding: "utf8", maxBuffer: 1e9 }); }
+export function pkmopt(...parameters) {
+  return execFileSync(PKMOPT, parameters, { encoding: "utf8", maxBuffer: 1e9 });
+}
 
 /** Runs a study and writes its report; returns both files. */
 export function reportOf(toml, folder) {
   const name = path.basename(toml, ".toml");
-  const file = path.join(folder, name + ".h5"), html = path.join(folder, name + ".html");
+  const file = path.join(folder, name + ".h5"),
+    html = path.join(folder, name + ".html");
   pkmopt("run", toml, "--output", file, "--force", "--quiet");
   pkmopt("report", file, "--output", html, "--force");
   return { file, html };
@@ -36,57 +39,113 @@ export class Page {
     });
     const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: scheme });
     const self = Object.assign(new Page(), { browser, page, complaints: [] });
-    page.on("console", (message) => { if (message.type() === "error") self.complaints.push("console: " + message.text()); });
+    page.on("console", (message) => {
+      if (message.type() === "error") self.complaints.push("console: " + message.text());
+    });
     page.on("pageerror", (error) => self.complaints.push("error: " + error.stack));
-    page.on("dialog", (dialog) => { self.complaints.push("dialog: " + dialog.message()); dialog.dismiss(); });
-    page.on("request", (request) => { if (!/^(data|blob):/.test(request.url()) && request.url() !== pathToFileURL(html).href) self.complaints.push("request: " + request.url()); });
+    page.on("dialog", (dialog) => {
+      self.complaints.push("dialog: " + dialog.message());
+      dialog.dismiss();
+    });
+    page.on("request", (request) => {
+      if (!/^(data|blob):/.test(request.url()) && request.url() !== pathToFileURL(html).href)
+        self.complaints.push("request: " + request.url());
+    });
     const begin = performance.now();
     await page.goto(pathToFileURL(html).href);
-    await page.waitForFunction(() => window.report, null, { timeout: 20000 }).catch(() => self.complaints.push("no report"));
+    await page
+      .waitForFunction(() => window.report, null, { timeout: 20000 })
+      .catch(() => self.complaints.push("no report"));
     self.seconds = (performance.now() - begin) / 1000;
     self.isFine();
     return self;
   }
 
-  isFine() { assert.deepEqual(this.complaints, []); }
-  async close() { this.isFine(); await this.browser.close(); }
-  data() { return this.page.evaluate(() => ({ program: window.report.program, studies: window.report.studies.map(({ workspace, mechanism, populations, ...small }) => small) })); }
-  sections() { return this.page.locator("main > section").evaluateAll((list) => list.map((section) => section.id)); }
-  text(selector = "main") { return this.page.locator(selector).innerText(); }
+  isFine() {
+    assert.deepEqual(this.complaints, []);
+  }
+  async close() {
+    this.isFine();
+    await this.browser.close();
+  }
+  data() {
+    return this.page.evaluate(() => ({
+      program: window.report.program,
+      studies: window.report.studies.map(({ workspace, mechanism, populations, ...small }) => small),
+    }));
+  }
+  sections() {
+    return this.page.locator("main > section").evaluateAll((list) => list.map((section) => section.id));
+  }
+  text(selector = "main") {
+    return this.page.locator(selector).innerText();
+  }
 
   /** Draws every plot, or those of one section, and checks that each has something to show. */
   async draw(section) {
     await this.page.evaluate((id) => window.report.draw(id), section);
-    const empty = await this.page.locator((section ? "#" + section : "main") + " .plot").evaluateAll((plots) => plots.flatMap((plot) => {
-      const numbers = (values) => (values ? Array.from(values).flat().filter((value) => Number.isFinite(value) || typeof value === "string").length : 0);
-      const shown = (plot.data || []).some((trace) => numbers(trace.x) + numbers(trace.z) + (trace.dimensions || []).reduce((sum, d) => sum + numbers(d.values), 0) > 0);
-      return shown && plot.querySelector("svg.main-svg") ? [] : [plot.closest("section").id + ": " + plot.parentElement.innerText.slice(0, 60)];
-    }));
+    const empty = await this.page.locator((section ? "#" + section : "main") + " .plot").evaluateAll((plots) =>
+      plots.flatMap((plot) => {
+        const numbers = (values) =>
+          values
+            ? Array.from(values)
+                .flat()
+                .filter((value) => Number.isFinite(value) || typeof value === "string").length
+            : 0;
+        const shown = (plot.data || []).some(
+          (trace) =>
+            numbers(trace.x) +
+              numbers(trace.z) +
+              (trace.dimensions || []).reduce((sum, d) => sum + numbers(d.values), 0) >
+            0,
+        );
+        return shown && plot.querySelector("svg.main-svg")
+          ? []
+          : [plot.closest("section").id + ": " + plot.parentElement.innerText.slice(0, 60)];
+      }),
+    );
     assert.deepEqual(empty, [], "plots without anything in them");
     this.isFine();
   }
 
   /** The drawn data of a section's plots, in short. */
   drawn(section) {
-    return this.page.evaluate((id) => [...document.querySelectorAll(`#${id} .plot`)].map((plot) => {
-      let hash = 0;
-      for (const trace of plot.data || [])
-        for (const values of [trace.x, trace.y, trace.z, trace.intensity, ...(trace.dimensions || []).map((d) => d.values)])
-          for (const value of Array.from(values || []).flat()) hash = (hash * 31 + Math.round(1e6 * (Number(value) || 0))) % 2147483647;
-      return hash;
-    }), section);
+    return this.page.evaluate(
+      (id) =>
+        [...document.querySelectorAll(`#${id} .plot`)].map((plot) => {
+          let hash = 0;
+          for (const trace of plot.data || [])
+            for (const values of [
+              trace.x,
+              trace.y,
+              trace.z,
+              trace.intensity,
+              ...(trace.dimensions || []).map((d) => d.values),
+            ])
+              for (const value of Array.from(values || []).flat())
+                hash = (hash * 31 + Math.round(1e6 * (Number(value) || 0))) % 2147483647;
+          return hash;
+        }),
+      section,
+    );
   }
 
   /** Moves every slider of a section to another value: what is drawn must change. */
   async moveSliders(section) {
     const sliders = this.page.locator(`#${section} input[type=range]`);
     let moved = 0;
-    for (let i = 0; i < await sliders.count(); ++i) {
+    for (let i = 0; i < (await sliders.count()); ++i) {
       const slider = sliders.nth(i);
       const { value, max } = await slider.evaluate((input) => ({ value: Number(input.value), max: Number(input.max) }));
       if (max === 0) continue;
       const before = await this.drawn(section);
-      await slider.evaluate((input, to) => { input.value = to; input.dispatchEvent(new Event("input", { bubbles: true })); }, value > max / 2 ? Math.floor(max / 3) : Math.ceil(2 * max / 3));
+      await slider.evaluate(
+        (input, to) => {
+          input.value = to;
+          input.dispatchEvent(new Event("input", { bubbles: true }));
+        },
+        value > max / 2 ? Math.floor(max / 3) : Math.ceil((2 * max) / 3),
+      );
       assert.notDeepEqual(await this.drawn(section), before, `slider ${i + 1} of ${section} changes nothing`);
       ++moved;
     }
@@ -99,12 +158,20 @@ export class Page {
     const plot = this.page.locator(`#${section} .plot`).first();
     await plot.scrollIntoViewIfNeeded();
     const places = await plot.evaluate((node, source) => {
-      const box = node.getBoundingClientRect(), layout = node._fullLayout;
+      const box = node.getBoundingClientRect(),
+        layout = node._fullLayout;
       const scene = layout.scene;
-      if (scene) return [0.5, 0.45, 0.55, 0.4, 0.6].map((share) => [box.left + share * box.width * 0.9, box.top + share * box.height]);
-      const chosen = node.data[eval(source)(node.data)], size = layout._size;
-      return Array.from(chosen.x, (x, i) => [x, chosen.y[i]]).filter(([, y]) => y !== null && !Number.isNaN(y)).reverse()
-          .map(([x, y]) => [box.left + size.l + layout.xaxis.d2p(x), box.top + size.t + layout.yaxis.d2p(y)]);
+      if (scene)
+        return [0.5, 0.45, 0.55, 0.4, 0.6].map((share) => [
+          box.left + share * box.width * 0.9,
+          box.top + share * box.height,
+        ]);
+      const chosen = node.data[eval(source)(node.data)],
+        size = layout._size;
+      return Array.from(chosen.x, (x, i) => [x, chosen.y[i]])
+        .filter(([, y]) => y !== null && !Number.isNaN(y))
+        .reverse()
+        .map(([x, y]) => [box.left + size.l + layout.xaxis.d2p(x), box.top + size.t + layout.yaxis.d2p(y)]);
     }, trace.toString());
     for (const [x, y] of places.slice(0, 12)) {
       await this.page.mouse.move(x - 3, y - 3);
@@ -119,7 +186,7 @@ export class Page {
   /** A picture of each section, without the bar that stays on top. */
   async screenshots(folder, name, sections) {
     const style = await this.page.addStyleTag({ content: "#bar { position: static !important; }" });
-    for (const section of sections ?? await this.sections())
+    for (const section of sections ?? (await this.sections()))
       await this.page.locator("#" + section).screenshot({ path: path.join(folder, `${name}-${section}.png`) });
     await style.evaluate((node) => node.remove());
   }

@@ -9,8 +9,11 @@ const folder = folderOf("unfinished");
 
 /** Starts a long study and ends it by a signal once its file is there. */
 async function endedBy(signal) {
-  const toml = path.join(folder, signal + ".toml"), file = path.join(folder, signal + ".h5");
-  writeFileSync(toml, `[mechanism]
+  const toml = path.join(folder, signal + ".toml"),
+    file = path.join(folder, signal + ".h5");
+  writeFileSync(
+    toml,
+    `[mechanism]
 type = "4ppa-2par"
 [variables]
 a = { min = 0.15, max = 0.3 }
@@ -25,7 +28,8 @@ type = "workspace-ratio"
 optimiser = "ga"
 population = 50
 generations = 100000
-`);
+`,
+  );
   rmSync(file, { force: true });
   const child = spawn(process.env.PKMOPT, ["run", toml, "--output", file, "--quiet"], { stdio: "ignore" });
   const ended = new Promise((resolve) => child.on("exit", resolve));
@@ -37,8 +41,12 @@ generations = 100000
   return file;
 }
 
-for (const [signal, words] of [["SIGINT", "interrupted"], ["SIGKILL", "still running"]]) {
-  const file = await endedBy(signal), html = path.join(folder, signal + ".html");
+for (const [signal, words] of [
+  ["SIGINT", "interrupted"],
+  ["SIGKILL", "still running"],
+]) {
+  const file = await endedBy(signal),
+    html = path.join(folder, signal + ".html");
   pkmopt("report", file, "--output", html, "--force");
   const page = await Page.open(html);
   await page.draw("convergence");

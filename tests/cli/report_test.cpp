@@ -42,6 +42,8 @@ TEST_F(ReportProgram, IsCalledLikeTheStudyAndOverwritesNothingUnasked) {
   EXPECT_THAT(output_, HasSubstr("study.html exists already; overwrite it with --force"));
   EXPECT_EQ(run({"report", "study.h5", "--force", "--threads", "1"}), 0) << output_;
   EXPECT_EQ(slurp("study.html"), page) << "the same on any number of threads";
+  EXPECT_EQ(run({"report", "study.h5", "-o", "./study.h5", "--force"}), 2);
+  EXPECT_THAT(output_, HasSubstr("another file than the study's own"));
 }
 
 TEST_F(ReportProgram, DamagedAndMissingFilesAreSaidInOneSentence) {

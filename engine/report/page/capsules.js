@@ -3,10 +3,14 @@
 /** The outline of a capsule seen along an axis: two half circles around the ends (one circle where they coincide). */
 function capsuleOutline([x0, y0], [x1, y1], radius, points = 10) {
   const along = Math.atan2(y1 - y0, x1 - x0);
-  const x = [], y = [];
-  for (const [cx, cy, begin] of [[x0, y0, along + Math.PI / 2], [x1, y1, along - Math.PI / 2]])
+  const x = [],
+    y = [];
+  for (const [cx, cy, begin] of [
+    [x0, y0, along + Math.PI / 2],
+    [x1, y1, along - Math.PI / 2],
+  ])
     for (let k = 0; k <= points; ++k) {
-      const angle = begin + Math.PI * k / points;
+      const angle = begin + (Math.PI * k) / points;
       x.push(cx + radius * Math.cos(angle));
       y.push(cy + radius * Math.sin(angle));
     }
@@ -24,27 +28,43 @@ function anyAcross([x, y, z]) {
 
 /** Adds a capsule to a mesh { x, y, z, i, j, k, text }: rings from one pole to the other. */
 function addCapsule(mesh, from, to, radius, text, sides = 12) {
-  const span = to.map((value, c) => value - from[c]), length = Math.hypot(...span);
+  const span = to.map((value, c) => value - from[c]),
+    length = Math.hypot(...span);
   const axis = length > 1e-12 ? span.map((value) => value / length) : [0, 0, 1];
-  const u = anyAcross(axis), v = [axis[1] * u[2] - axis[2] * u[1], axis[2] * u[0] - axis[0] * u[2], axis[0] * u[1] - axis[1] * u[0]];
-  const rings = [[from, -75], [from, -40], [from, 0], [to, 0], [to, 40], [to, 75]];
+  const u = anyAcross(axis),
+    v = [axis[1] * u[2] - axis[2] * u[1], axis[2] * u[0] - axis[0] * u[2], axis[0] * u[1] - axis[1] * u[0]];
+  const rings = [
+    [from, -75],
+    [from, -40],
+    [from, 0],
+    [to, 0],
+    [to, 40],
+    [to, 75],
+  ];
   const first = mesh.x.length;
   for (const [centre, latitude] of rings) {
-    const out = radius * Math.cos(latitude * Math.PI / 180), lift = radius * Math.sin(latitude * Math.PI / 180);
+    const out = radius * Math.cos((latitude * Math.PI) / 180),
+      lift = radius * Math.sin((latitude * Math.PI) / 180);
     for (let s = 0; s < sides; ++s) {
-      const angle = 2 * Math.PI * s / sides, cos = out * Math.cos(angle), sin = out * Math.sin(angle);
+      const angle = (2 * Math.PI * s) / sides,
+        cos = out * Math.cos(angle),
+        sin = out * Math.sin(angle);
       ["x", "y", "z"].forEach((name, c) => mesh[name].push(centre[c] + lift * axis[c] + cos * u[c] + sin * v[c]));
       mesh.text.push(text);
     }
   }
-  const poles = [[from, -1, 0], [to, 1, rings.length - 1]].map(([centre, side, ring]) => {
+  const poles = [
+    [from, -1, 0],
+    [to, 1, rings.length - 1],
+  ].map(([centre, side, ring]) => {
     ["x", "y", "z"].forEach((name, c) => mesh[name].push(centre[c] + side * radius * axis[c]));
     mesh.text.push(text);
     return [mesh.x.length - 1, first + ring * sides];
   });
   for (let ring = 0; ring + 1 < rings.length; ++ring)
     for (let s = 0; s < sides; ++s) {
-      const a = first + ring * sides + s, b = first + ring * sides + (s + 1) % sides;
+      const a = first + ring * sides + s,
+        b = first + ring * sides + ((s + 1) % sides);
       mesh.i.push(a, b);
       mesh.j.push(b, b + sides);
       mesh.k.push(a + sides, a + sides);
@@ -53,6 +73,6 @@ function addCapsule(mesh, from, to, radius, text, sides = 12) {
     for (let s = 0; s < sides; ++s) {
       mesh.i.push(pole);
       mesh.j.push(ring + s);
-      mesh.k.push(ring + (s + 1) % sides);
+      mesh.k.push(ring + ((s + 1) % sides));
     }
 }

@@ -1,18 +1,31 @@
 // The cells of a workspace: which are feasible, their fields, cuts through them. Angles are shown in degrees.
 
-function shownUnit(unit) { return unit === "rad" ? "deg" : unit; }
-function shownScale(unit) { return unit === "rad" ? 180 / Math.PI : 1; }
-function axisTitle(axis) { return axisName(axis.name, shownUnit(axis.unit)); }
+function shownUnit(unit) {
+  return unit === "rad" ? "deg" : unit;
+}
+function shownScale(unit) {
+  return unit === "rad" ? 180 / Math.PI : 1;
+}
+function axisTitle(axis) {
+  return axisName(axis.name, shownUnit(axis.unit));
+}
 function shownValue(value, axis, count = 4) {
   const shown = value * shownScale(axis.unit);
-  return quantity(Math.abs(shown) < 1e-9 ? 0 : shown, shownUnit(axis.unit), count);  // rounding of a middle is 0
+  return quantity(Math.abs(shown) < 1e-9 ? 0 : shown, shownUnit(axis.unit), count); // rounding of a middle is 0
 }
 
 /** "dci_1" as people say it. */
 function fieldTitle(name, joints) {
   const limb = /^dci_(\d)$/.exec(name);
   if (limb) return "DCI of limb " + limb[1] + (joints ? " (" + joints[limb[1] - 1] + ")" : "");
-  return { dci_worst: "largest DCI", conditioning: "conditioning", margin: "least margin", inertia_condition: "conditioning of inertia" }[name] || name;
+  return (
+    {
+      dci_worst: "largest DCI",
+      conditioning: "conditioning",
+      margin: "least margin",
+      inertia_condition: "conditioning of inertia",
+    }[name] || name
+  );
 }
 
 /** The packed workspace of one design, unpacked. */
@@ -30,8 +43,12 @@ class Cells {
     const [x, y, z] = packed.surface.vertices.map(unpack);
     this.surface = { at: [x, y, z], cells: unpack(packed.surface.cells), triangles: unpack(packed.surface.triangles) };
   }
-  centre(axis, k) { return this.axes[axis].lower + (k + 0.5) * this.axes[axis].step; }
-  centres(axis) { return Array.from({ length: this.axes[axis].cells }, (_, k) => this.centre(axis, k)); }
+  centre(axis, k) {
+    return this.axes[axis].lower + (k + 0.5) * this.axes[axis].step;
+  }
+  centres(axis) {
+    return Array.from({ length: this.axes[axis].cells }, (_, k) => this.centre(axis, k));
+  }
   /** The layer that holds a value; -1 outside. */
   layer(axis, value) {
     const k = Math.floor((value - this.axes[axis].lower) / this.axes[axis].step);
@@ -40,22 +57,27 @@ class Cells {
   /** A field on a cut: rows along `up`, columns along `across`; null where there is none. */
   cut(field, fixed, layer, across, up) {
     const values = this.values.get(field);
-    return Array.from({ length: this.axes[up].cells }, (_, j) => Array.from({ length: this.axes[across].cells }, (_, i) => {
-      if (layer < 0) return null;
-      const number = this.number[layer * this.strides[fixed] + i * this.strides[across] + j * this.strides[up]];
-      if (number < 0) return null;
-      const value = values ? values[number] : 1;
-      return Number.isFinite(value) ? value : null;
-    }));
+    return Array.from({ length: this.axes[up].cells }, (_, j) =>
+      Array.from({ length: this.axes[across].cells }, (_, i) => {
+        if (layer < 0) return null;
+        const number = this.number[layer * this.strides[fixed] + i * this.strides[across] + j * this.strides[up]];
+        if (number < 0) return null;
+        const value = values ? values[number] : 1;
+        return Number.isFinite(value) ? value : null;
+      }),
+    );
   }
   /** Length of the feasible cells along an axis. */
   lengths(along, across, up) {
     const { cells, step } = this.axes[along];
-    return Array.from({ length: this.axes[up].cells }, (_, j) => Array.from({ length: this.axes[across].cells }, (_, i) => {
-      let sum = 0;
-      for (let k = 0; k < cells; ++k) sum += this.feasible[k * this.strides[along] + i * this.strides[across] + j * this.strides[up]];
-      return sum ? sum * step : null;
-    }));
+    return Array.from({ length: this.axes[up].cells }, (_, j) =>
+      Array.from({ length: this.axes[across].cells }, (_, i) => {
+        let sum = 0;
+        for (let k = 0; k < cells; ++k)
+          sum += this.feasible[k * this.strides[along] + i * this.strides[across] + j * this.strides[up]];
+        return sum ? sum * step : null;
+      }),
+    );
   }
 }
 
@@ -67,13 +89,16 @@ function drawingOrder(axes) {
 
 /** What both designs' pictures span, in shown units: the feasible cells and a little room. */
 function sharedRange(designs, axis) {
-  const [low, high] = feasibleRange(designs, axis), { unit, step } = designs[0].axes[axis];
+  const [low, high] = feasibleRange(designs, axis),
+    { unit, step } = designs[0].axes[axis];
   const room = 1.2 * step + 0.02 * (high - low);
   return [(low - room) * shownScale(unit), (high + room) * shownScale(unit)];
 }
 
 /** Range of a field over all designs. */
-function fieldRange(designs, field) { return rangeOf(designs.flatMap((d) => rangeOf(d.values.get(field) || []))); }
+function fieldRange(designs, field) {
+  return rangeOf(designs.flatMap((d) => rangeOf(d.values.get(field) || [])));
+}
 
 /** Axes of a plane, to scale where both are lengths. */
 function planeAxes(designs, across, up) {
@@ -81,23 +106,60 @@ function planeAxes(designs, across, up) {
   const toScale = h.unit === v.unit && h.unit === "m";
   return {
     xaxis: axis(axisTitle(h), { range: sharedRange(designs, across), zeroline: false, constrain: "domain" }),
-    yaxis: axis(axisTitle(v), { range: sharedRange(designs, up), zeroline: false, ...(toScale ? { scaleanchor: "x", constrain: "domain" } : {}) }),
+    yaxis: axis(axisTitle(v), {
+      range: sharedRange(designs, up),
+      zeroline: false,
+      ...(toScale ? { scaleanchor: "x", constrain: "domain" } : {}),
+    }),
   };
 }
 
 /** A field on a plane: cells in colour, and contour lines where there is room for them. */
-function planeTraces(design, matrix, across, up, { range, title, unit, lines = true, bar = true, colours = fieldColours }) {
+function planeTraces(
+  design,
+  matrix,
+  across,
+  up,
+  { range, title, unit, lines = true, bar = true, colours = fieldColours },
+) {
   const [h, v] = [design.axes[across], design.axes[up]];
-  const x = design.centres(across).map((value) => value * shownScale(h.unit)), y = design.centres(up).map((value) => value * shownScale(v.unit));
+  const x = design.centres(across).map((value) => value * shownScale(h.unit)),
+    y = design.centres(up).map((value) => value * shownScale(v.unit));
   const text = unitText(unit);
-  const traces = [{
-    type: "heatmap", x, y, z: matrix, colorscale: colours, zmin: range[0], zmax: range[1], showscale: bar, hoverongaps: false, colorbar: colourBar(axisName(title, unit)),
-    hovertemplate: `${label(h.name)} %{x:.4g} ${label(unitText(shownUnit(h.unit)))}<br>${label(v.name)} %{y:.4g} ${label(unitText(shownUnit(v.unit)))}<br>${label(title)} %{z:.4g}${text ? " " + label(text) : ""}<extra></extra>`,
-  }];
+  const traces = [
+    {
+      type: "heatmap",
+      x,
+      y,
+      z: matrix,
+      colorscale: colours,
+      zmin: range[0],
+      zmax: range[1],
+      showscale: bar,
+      hoverongaps: false,
+      colorbar: colourBar(axisName(title, unit)),
+      hovertemplate: `${label(h.name)} %{x:.4g} ${label(unitText(shownUnit(h.unit)))}<br>${label(v.name)} %{y:.4g} ${label(unitText(shownUnit(v.unit)))}<br>${label(title)} %{z:.4g}${text ? " " + label(text) : ""}<extra></extra>`,
+    },
+  ];
   if (lines && range[1] > range[0])
     traces.push({
-      type: "contour", x, y, z: matrix, showscale: false, hoverinfo: "skip", autocontour: true, ncontours: 9, colorscale: [[0, "#ffffff"], [1, "#ffffff"]],
-      zmin: range[0], zmax: range[1], contours: { coloring: "lines", showlabels: true, labelfont: { size: 11, color: "#ffffff" } }, line: { width: 1 }, connectgaps: false,
+      type: "contour",
+      x,
+      y,
+      z: matrix,
+      showscale: false,
+      hoverinfo: "skip",
+      autocontour: true,
+      ncontours: 9,
+      colorscale: [
+        [0, "#ffffff"],
+        [1, "#ffffff"],
+      ],
+      zmin: range[0],
+      zmax: range[1],
+      contours: { coloring: "lines", showlabels: true, labelfont: { size: 11, color: "#ffffff" } },
+      line: { width: 1 },
+      connectgaps: false,
     });
   return traces;
 }
@@ -106,7 +168,11 @@ function planeTraces(design, matrix, across, up, { range, title, unit, lines = t
 function feasibleRange(designs, axis) {
   const ranges = designs.map((design) => {
     design.extents ??= [0, 1, 2].map((k) => {
-      const used = design.feasible.reduce((set, feasible, cell) => (feasible ? set.add(Math.floor(cell / design.strides[k]) % design.axes[k].cells) : set), new Set());
+      const used = design.feasible.reduce(
+        (set, feasible, cell) =>
+          feasible ? set.add(Math.floor(cell / design.strides[k]) % design.axes[k].cells) : set,
+        new Set(),
+      );
       return [design.centre(k, Math.min(...used)), design.centre(k, Math.max(...used))];
     });
     return design.extents[axis];
@@ -119,30 +185,42 @@ function feasibleRange(designs, axis) {
  * @returns { fixed, across, up, value, layer(design) }, always as they are set
  */
 function cutControls(parent, designs, changed) {
-  const first = designs[0], order = drawingOrder(first.axes);
+  const first = designs[0],
+    order = drawingOrder(first.axes);
   const names = order.map((k) => first.axes[k].name);
   const rotation = order.findIndex((k) => first.axes[k].coordinate === 3);
   const steps = 41;
   let place = (steps - 1) / 2;
   const cut = {
     fixed: order[rotation >= 0 ? rotation : 2],
-    get across() { return order.filter((k) => k !== cut.fixed)[0]; },
-    get up() { return order.filter((k) => k !== cut.fixed)[1]; },
+    get across() {
+      return order.filter((k) => k !== cut.fixed)[0];
+    },
+    get up() {
+      return order.filter((k) => k !== cut.fixed)[1];
+    },
     get value() {
       const [low, high] = feasibleRange(designs, cut.fixed);
-      return low + (high - low) * place / (steps - 1);
+      return low + ((high - low) * place) / (steps - 1);
     },
     layer: (design) => design.layer(cut.fixed, cut.value),
   };
   choice(parent, "cut at", names, order.indexOf(cut.fixed), (k) => {
     cut.fixed = order[k];
-    where.set(place = (steps - 1) / 2);
+    where.set((place = (steps - 1) / 2));
     changed();
   });
-  const where = slider(parent, "", steps, place, () => shownValue(cut.value, first.axes[cut.fixed]), (k) => {
-    place = k;
-    changed();
-  });
+  const where = slider(
+    parent,
+    "",
+    steps,
+    place,
+    () => shownValue(cut.value, first.axes[cut.fixed]),
+    (k) => {
+      place = k;
+      changed();
+    },
+  );
   where.node.querySelector("input").setAttribute("aria-label", "where to cut");
   return cut;
 }

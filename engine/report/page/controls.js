@@ -8,8 +8,13 @@ function slider(parent, name, count, start, text, changed) {
   const shown = element("output", "", text(start));
   const control = {
     node: element("label", "control slider", element("span", "label", name), input, shown),
-    get value() { return Number(input.value); },
-    set(value) { input.value = value; shown.textContent = text(Number(input.value)); },
+    get value() {
+      return Number(input.value);
+    },
+    set(value) {
+      input.value = value;
+      shown.textContent = text(Number(input.value));
+    },
   };
   input.addEventListener("input", () => {
     changed(control.value);
@@ -25,7 +30,9 @@ function choice(parent, name, options, start, changed) {
   options.forEach((option, i) => select.append(new Option(option, i, false, i === start)));
   const control = {
     node: element("label", "control", name, select),
-    get value() { return Number(select.value); },
+    get value() {
+      return Number(select.value);
+    },
   };
   select.addEventListener("change", () => changed(control.value));
   parent.append(control.node);

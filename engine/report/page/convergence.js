@@ -12,22 +12,47 @@ function stageAxis(stages, byGeneration) {
       if (!byGeneration) return offset + evaluation;
       const g = evaluations.findIndex((end) => evaluation <= end);
       if (g < 0) return offset + all - 1;
-      const before = g ? evaluations[g - 1] : 0, from = g ? number[g - 1] : number[g] - 1;
-      return offset + from + (number[g] - from) * (evaluation - before) / (evaluations[g] - before);
+      const before = g ? evaluations[g - 1] : 0,
+        from = g ? number[g - 1] : number[g] - 1;
+      return offset + from + ((number[g] - from) * (evaluation - before)) / (evaluations[g] - before);
     };
-    return { stage, offset, end: begin, place, x: byGeneration ? number.map((g) => offset + g) : evaluations.map((e) => offset + e) };
+    return {
+      stage,
+      offset,
+      end: begin,
+      place,
+      x: byGeneration ? number.map((g) => offset + g) : evaluations.map((e) => offset + e),
+    };
   });
 }
 
 /** What separates the stages, and their names above the plot. */
 function stageMarks(axes) {
-  const shapes = [], annotations = [];
+  const shapes = [],
+    annotations = [];
   for (const { stage, offset } of axes) {
     if (axes.length < 2) break;
     if (offset > 0)
-      shapes.push({ type: "line", x0: offset, x1: offset, yref: "paper", y0: 0, y1: 1, line: { color: colour("muted"), width: 1, dash: "dot" } });
-    annotations.push({ x: offset, xanchor: "left", yref: "paper", y: 1, yanchor: "bottom", showarrow: false, xshift: 2,
-                       text: stage.stage + ". " + label(stage.optimiser), font: { size: 12, color: colour("muted") } });
+      shapes.push({
+        type: "line",
+        x0: offset,
+        x1: offset,
+        yref: "paper",
+        y0: 0,
+        y1: 1,
+        line: { color: colour("muted"), width: 1, dash: "dot" },
+      });
+    annotations.push({
+      x: offset,
+      xanchor: "left",
+      yref: "paper",
+      y: 1,
+      yanchor: "bottom",
+      showarrow: false,
+      xshift: 2,
+      text: stage.stage + ". " + label(stage.optimiser),
+      font: { size: 12, color: colour("muted") },
+    });
   }
   return { shapes, annotations, margin: { l: 12, r: 12, t: 28, b: 12 } };
 }
@@ -39,31 +64,93 @@ function objectiveTraces(axes, k, objective) {
   axes.forEach(({ stage, x, place }, i) => {
     const { best, median, lower, upper } = stage.generations.objectives[k];
     const number = stage.generations.number;
-    const common = { x, legendgroup: "", showlegend: i === 0, mode: number.length > 1 ? "lines" : "markers", type: "scatter", customdata: number };
+    const common = {
+      x,
+      legendgroup: "",
+      showlegend: i === 0,
+      mode: number.length > 1 ? "lines" : "markers",
+      type: "scatter",
+      customdata: number,
+    };
     const hover = (what) => `${what} %{y:.7g}${unit}<br>generation %{customdata}<extra></extra>`;
     const hasSpread = median.some((value) => value !== null);
     if (hasSpread && !stage.starts)
-      traces.push({ ...common, y: lower, line: { width: 0 }, showlegend: false, hoverinfo: "skip", legendgroup: "spread" },
-                  { ...common, y: upper, line: { width: 0 }, fill: "tonexty", fillcolor: faded(medianInk, 0.25), name: "middle half of the population", legendgroup: "spread", hoverinfo: "skip" },
-                  { ...common, y: median, name: "median", legendgroup: "median", line: { color: medianInk, width: 1.5 }, hovertemplate: hover("median") });
+      traces.push(
+        { ...common, y: lower, line: { width: 0 }, showlegend: false, hoverinfo: "skip", legendgroup: "spread" },
+        {
+          ...common,
+          y: upper,
+          line: { width: 0 },
+          fill: "tonexty",
+          fillcolor: faded(medianInk, 0.25),
+          name: "middle half of the population",
+          legendgroup: "spread",
+          hoverinfo: "skip",
+        },
+        {
+          ...common,
+          y: median,
+          name: "median",
+          legendgroup: "median",
+          line: { color: medianInk, width: 1.5 },
+          hovertemplate: hover("median"),
+        },
+      );
     if (stage.trace) {
       for (const feasible of [true, false]) {
         const points = stage.trace.points.filter((point) => point.feasible === feasible);
         if (points.length)
-          traces.push({ type: "scatter", mode: "markers", x: points.map((p) => place(p.evaluation)), y: points.map((p) => p.objectives[k]),
-                        customdata: points.map((p) => p.evaluation), name: feasible ? "solver, feasible" : "solver, infeasible", legendgroup: "solver" + feasible,
-                        showlegend: !traces.some((t) => t.legendgroup === "solver" + feasible),
-                        marker: { size: 5, color: feasible ? seriesColours[5] : colour("muted"), symbol: feasible ? "circle" : "circle-open" },
-                        hovertemplate: `%{y:.7g}${unit}<br>evaluation %{customdata} of the stage<extra>${feasible ? "feasible" : "infeasible"}</extra>` });
+          traces.push({
+            type: "scatter",
+            mode: "markers",
+            x: points.map((p) => place(p.evaluation)),
+            y: points.map((p) => p.objectives[k]),
+            customdata: points.map((p) => p.evaluation),
+            name: feasible ? "solver, feasible" : "solver, infeasible",
+            legendgroup: "solver" + feasible,
+            showlegend: !traces.some((t) => t.legendgroup === "solver" + feasible),
+            marker: {
+              size: 5,
+              color: feasible ? seriesColours[5] : colour("muted"),
+              symbol: feasible ? "circle" : "circle-open",
+            },
+            hovertemplate: `%{y:.7g}${unit}<br>evaluation %{customdata} of the stage<extra>${feasible ? "feasible" : "infeasible"}</extra>`,
+          });
       }
-      for (const [end, symbol, name] of [["begin", "triangle-right-open", "start begins"], ["end", "diamond", "start ends with"]])
-        traces.push({ type: "scatter", mode: "markers", name, legendgroup: end, showlegend: !traces.some((t) => t.legendgroup === end),
-                      x: stage.starts.map((s) => place(end === "end" ? s.last : s.begin.evaluation)), y: stage.starts.map((s) => s[end].objectives[k]),
-                      customdata: stage.starts.map((s) => [label(s.origin), label(s.stop), s[end].feasible ? "feasible" : "infeasible"]),
-                      marker: { size: 10, symbol, color: seriesColours[1], line: { width: 1.5, color: end === "begin" ? seriesColours[1] : colour("panel") } },
-                      hovertemplate: `%{y:.7g}${unit}, %{customdata[2]}<br>%{customdata[0]}${end === "end" ? "<br>%{customdata[1]}" : ""}<extra>${name}</extra>` });
+      for (const [end, symbol, name] of [
+        ["begin", "triangle-right-open", "start begins"],
+        ["end", "diamond", "start ends with"],
+      ])
+        traces.push({
+          type: "scatter",
+          mode: "markers",
+          name,
+          legendgroup: end,
+          showlegend: !traces.some((t) => t.legendgroup === end),
+          x: stage.starts.map((s) => place(end === "end" ? s.last : s.begin.evaluation)),
+          y: stage.starts.map((s) => s[end].objectives[k]),
+          customdata: stage.starts.map((s) => [
+            label(s.origin),
+            label(s.stop),
+            s[end].feasible ? "feasible" : "infeasible",
+          ]),
+          marker: {
+            size: 10,
+            symbol,
+            color: seriesColours[1],
+            line: { width: 1.5, color: end === "begin" ? seriesColours[1] : colour("panel") },
+          },
+          hovertemplate: `%{y:.7g}${unit}, %{customdata[2]}<br>%{customdata[0]}${end === "end" ? "<br>%{customdata[1]}" : ""}<extra>${name}</extra>`,
+        });
     }
-    traces.push({ ...common, y: best, name: "best so far", legendgroup: "best", line: { color: bestInk, width: 2.5, shape: "hv" }, hovertemplate: hover("best") });
+    traces.push({
+      ...common,
+      y: best,
+      name: "best so far",
+      legendgroup: "best",
+      line: { color: bestInk, width: 2.5, shape: "hv" },
+      hovertemplate: hover("best"),
+    });
   });
   return traces;
 }
@@ -74,72 +161,176 @@ function curve(axes, key, name, ink, more = {}) {
   for (const { stage, x } of axes) {
     const y = stage.generations[key];
     if (!y || !y.some((value) => value !== null) || stage.starts) continue;
-    traces.push({ type: "scatter", mode: y.length > 1 ? "lines" : "markers", x, y, customdata: stage.generations.number, name, legendgroup: key,
-                  showlegend: traces.length === 0, line: { color: ink, width: 2 },
-                  hovertemplate: `${name} %{y:.4g}<br>generation %{customdata}<extra></extra>`, ...more });
+    traces.push({
+      type: "scatter",
+      mode: y.length > 1 ? "lines" : "markers",
+      x,
+      y,
+      customdata: stage.generations.number,
+      name,
+      legendgroup: key,
+      showlegend: traces.length === 0,
+      line: { color: ink, width: 2 },
+      hovertemplate: `${name} %{y:.4g}<br>generation %{customdata}<extra></extra>`,
+      ...more,
+    });
   }
   return traces;
 }
 
 /** Room for the starts' extreme values must not flatten everything else: the axis follows best and quartiles. */
 function objectiveRange(axes, k) {
-  const values = axes.flatMap(({ stage }) => {
-    const { best, lower, upper } = stage.generations.objectives[k];
-    return [...best, ...(stage.starts ? stage.starts.filter((s) => s.end.feasible).map((s) => s.end.objectives[k]) : [...lower, ...upper])];
-  }).filter((value) => value !== null);
+  const values = axes
+    .flatMap(({ stage }) => {
+      const { best, lower, upper } = stage.generations.objectives[k];
+      return [
+        ...best,
+        ...(stage.starts
+          ? stage.starts.filter((s) => s.end.feasible).map((s) => s.end.objectives[k])
+          : [...lower, ...upper]),
+      ];
+    })
+    .filter((value) => value !== null);
   if (!values.length) return {};
-  const low = Math.min(...values), high = Math.max(...values), room = 0.06 * (high - low) || 0.05 * Math.abs(high) || 1;
+  const low = Math.min(...values),
+    high = Math.max(...values),
+    room = 0.06 * (high - low) || 0.05 * Math.abs(high) || 1;
   return { range: [low - room, high + room] };
 }
 
 function showConvergence(study, section) {
   const stages = study.convergence;
-  const thinned = stages.filter((stage) => stage.generations.every > 1)
-      .map((stage) => `every ${ordinal(stage.generations.every)} generation of ${stage.generations.all} of stage ${stage.stage} is shown`);
-  section.append(element("p", "lead", "Best design so far, and the population behind it: its median and its middle half, of feasible designs only." +
-                                      (thinned.length ? " To keep the page small, " + thinned.join("; ") + "." : "")));
+  const thinned = stages
+    .filter((stage) => stage.generations.every > 1)
+    .map(
+      (stage) =>
+        `every ${ordinal(stage.generations.every)} generation of ${stage.generations.all} of stage ${stage.stage} is shown`,
+    );
+  section.append(
+    element(
+      "p",
+      "lead",
+      "Best design so far, and the population behind it: its median and its middle half, of feasible designs only." +
+        (thinned.length ? " To keep the page small, " + thinned.join("; ") + "." : ""),
+    ),
+  );
   const controls = element("div", "controls");
   const grid = element("div", "grid");
   section.append(controls, grid);
   const list = [];
   const axisOf = () => stageAxis(stages, against.value === 1);
-  const xaxis = (more = {}) => axis(against.value === 1 ? "generation" : "evaluations", { rangemode: "tozero", ...more });
-  const against = buttons(controls, "against", ["evaluations", "generations"], 0, () => list.forEach((plot) => plot.update()));
+  const xaxis = (more = {}) =>
+    axis(against.value === 1 ? "generation" : "evaluations", { rangemode: "tozero", ...more });
+  const against = buttons(controls, "against", ["evaluations", "generations"], 0, () =>
+    list.forEach((plot) => plot.update()),
+  );
   study.problem.objectives.forEach((objective, k) => {
-    list.push(addPlot(grid, {
-      title: objective.name, caption: objective.meaning, size: study.problem.objectives.length > 1 ? "half" : "", height: 430,
-      make() {
-        const axes = axisOf();
-        return { data: objectiveTraces(axes, k, objective),
-                 layout: { xaxis: xaxis(), yaxis: axis(axisName(objective.name, objective.unit), objectiveRange(axes, k)), ...stageMarks(axes), legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" } } };
-      },
-    }));
+    list.push(
+      addPlot(grid, {
+        title: objective.name,
+        caption: objective.meaning,
+        size: study.problem.objectives.length > 1 ? "half" : "",
+        height: 430,
+        make() {
+          const axes = axisOf();
+          return {
+            data: objectiveTraces(axes, k, objective),
+            layout: {
+              xaxis: xaxis(),
+              yaxis: axis(axisName(objective.name, objective.unit), objectiveRange(axes, k)),
+              ...stageMarks(axes),
+              legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
+            },
+          };
+        },
+      }),
+    );
   });
   if (stages.some((stage) => !stage.starts))
-    list.push(addPlot(grid, {
-      title: "Feasible share and diversity", caption: "Of the population: which part is feasible, and how far apart its designs are (1: as a uniform sample).", size: "half", height: 320,
-      make() {
-        const axes = axisOf();
-        return { data: [...curve(axes, "feasible_share", "feasible share", seriesColours[0]), ...curve(axes, "diversity", "diversity", seriesColours[1])],
-                 layout: { xaxis: xaxis(), yaxis: axis("share, diversity [1]", { rangemode: "tozero" }), legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" }, ...stageMarks(axes) } };
-      },
-    }));
+    list.push(
+      addPlot(grid, {
+        title: "Feasible share and diversity",
+        caption:
+          "Of the population: which part is feasible, and how far apart its designs are (1: as a uniform sample).",
+        size: "half",
+        height: 320,
+        make() {
+          const axes = axisOf();
+          return {
+            data: [
+              ...curve(axes, "feasible_share", "feasible share", seriesColours[0]),
+              ...curve(axes, "diversity", "diversity", seriesColours[1]),
+            ],
+            layout: {
+              xaxis: xaxis(),
+              yaxis: axis("share, diversity [1]", { rangemode: "tozero" }),
+              legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" },
+              ...stageMarks(axes),
+            },
+          };
+        },
+      }),
+    );
   if (stages.some((stage) => stage.generations.hypervolume))
-    list.push(addPlot(grid, {
-      title: "Hypervolume of the front", caption: "What the trade-off encloses with its reference corner, and how evenly the population lies on it (spread, 0: evenly).", size: "half", height: 320,
+    list.push(
+      addPlot(grid, {
+        title: "Hypervolume of the front",
+        caption:
+          "What the trade-off encloses with its reference corner, and how evenly the population lies on it (spread, 0: evenly).",
+        size: "half",
+        height: 320,
+        make() {
+          const axes = axisOf();
+          return {
+            data: [
+              ...curve(axes, "hypervolume", "hypervolume", seriesColours[0]),
+              ...curve(axes, "spread", "spread", seriesColours[1], { yaxis: "y2" }),
+              ...curve(axes, "igd_plus", "IGD+", seriesColours[2], { yaxis: "y2" }),
+            ],
+            layout: {
+              xaxis: xaxis(),
+              yaxis: axis("hypervolume"),
+              yaxis2: axis("spread, IGD+ [1]", {
+                overlaying: "y",
+                side: "right",
+                rangemode: "tozero",
+                showgrid: false,
+              }),
+              legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" },
+              ...stageMarks(axes),
+            },
+          };
+        },
+      }),
+    );
+  list.push(
+    addPlot(grid, {
+      title: "Evaluations in time",
+      caption: "Wall time of the study at the end of each generation.",
+      size: "half",
+      height: 320,
       make() {
         const axes = axisOf();
-        return { data: [...curve(axes, "hypervolume", "hypervolume", seriesColours[0]), ...curve(axes, "spread", "spread", seriesColours[1], { yaxis: "y2" }), ...curve(axes, "igd_plus", "IGD+", seriesColours[2], { yaxis: "y2" })],
-                 layout: { xaxis: xaxis(), yaxis: axis("hypervolume"), yaxis2: axis("spread, IGD+ [1]", { overlaying: "y", side: "right", rangemode: "tozero", showgrid: false }), legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" }, ...stageMarks(axes) } };
+        const data = axes.map(({ stage, x }, i) => ({
+          type: "scatter",
+          mode: x.length > 1 ? "lines" : "markers",
+          x,
+          y: stage.generations.seconds,
+          name: stage.stage + ". " + label(stage.optimiser),
+          line: { color: seriesColours[i % seriesColours.length], width: 2 },
+          customdata: stage.generations.number,
+          hovertemplate: "%{y:.4g} s<br>generation %{customdata}<extra></extra>",
+        }));
+        return {
+          data,
+          layout: {
+            xaxis: xaxis(),
+            yaxis: axis("wall time [s]", { rangemode: "tozero" }),
+            legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" },
+            ...stageMarks(axes),
+          },
+        };
       },
-    }));
-  list.push(addPlot(grid, {
-    title: "Evaluations in time", caption: "Wall time of the study at the end of each generation.", size: "half", height: 320,
-    make() {
-      const axes = axisOf();
-      const data = axes.map(({ stage, x }, i) => ({ type: "scatter", mode: x.length > 1 ? "lines" : "markers", x, y: stage.generations.seconds, name: stage.stage + ". " + label(stage.optimiser), line: { color: seriesColours[i % seriesColours.length], width: 2 }, customdata: stage.generations.number,
-                                                     hovertemplate: "%{y:.4g} s<br>generation %{customdata}<extra></extra>" }));
-      return { data, layout: { xaxis: xaxis(), yaxis: axis("wall time [s]", { rangemode: "tozero" }), legend: { orientation: "h", x: 0, y: -0.22, yanchor: "top" }, ...stageMarks(axes) } };
-    },
-  }));
+    }),
+  );
 }

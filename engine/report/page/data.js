@@ -11,15 +11,22 @@ function unpack(packed) {
   const parts = packed.split(":");
   const bytes = bytesOf(parts[parts.length - 1]);
   switch (parts[0]) {
-    case "f32": return new Float32Array(bytes.buffer);
-    case "u16": return new Uint16Array(bytes.buffer);
-    case "u32": return new Uint32Array(bytes.buffer);
-    case "u8": return bytes;
-    case "bits": return Uint8Array.from({ length: 8 * bytes.length }, (_, i) => (bytes[i >> 3] >> (i & 7)) & 1);
+    case "f32":
+      return new Float32Array(bytes.buffer);
+    case "u16":
+      return new Uint16Array(bytes.buffer);
+    case "u32":
+      return new Uint32Array(bytes.buffer);
+    case "u8":
+      return bytes;
+    case "bits":
+      return Uint8Array.from({ length: 8 * bytes.length }, (_, i) => (bytes[i >> 3] >> (i & 7)) & 1);
     case "q16": {
-      const lower = Number(parts[1]), upper = Number(parts[2]);
-      return Float64Array.from(new Uint16Array(bytes.buffer),
-                               (level) => (level === 65535 ? NaN : lower + (upper - lower) * level / 65534));
+      const lower = Number(parts[1]),
+        upper = Number(parts[2]);
+      return Float64Array.from(new Uint16Array(bytes.buffer), (level) =>
+        level === 65535 ? NaN : lower + ((upper - lower) * level) / 65534,
+      );
     }
   }
   throw new Error("unknown kind of packed column: " + parts[0]);

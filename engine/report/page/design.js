@@ -4,5 +4,16 @@ function showDesign(study, section) {
   const { mechanism, title, name, parameters } = study.design;
   section.append(element("h1", "", mechanism), element("p", "facts", title), element("p", "facts", name));
   const rows = parameters.map((p) => [p.name, quantity(p.value, p.unit, 10), p.meaning]);
-  section.append(element("div", "panel", element("details", "", element("summary", "", count(rows.length, "parameter")), simpleTable(["parameter", "value", "meaning"], rows))));
+  section.append(
+    element(
+      "div",
+      "panel",
+      element(
+        "details",
+        "",
+        element("summary", "", count(rows.length, "parameter")),
+        simpleTable(["parameter", "value", "meaning"], rows),
+      ),
+    ),
+  );
 }

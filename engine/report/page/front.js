@@ -16,22 +16,58 @@ function frontTraces(study, x, y, byColour) {
   const third = objectives.length > 2 ? byColour : -1;
   const all = fronts.flatMap((front) => front.points.map((point) => point.objectives[third]));
   const traces = fronts.map((front, f) => ({
-    type: "scatter", mode: "markers", name: `stage ${front.stage}, ${label(front.optimiser)}`,
-    x: front.points.map((p) => p.objectives[x]), y: front.points.map((p) => p.objectives[y]),
-    text: front.points.map((p) => frontPoint(study, front, p)), hovertemplate: "%{text}<extra></extra>",
-    marker: { size: f ? 9 : 7, symbol: frontSymbols[f % frontSymbols.length], opacity: 0.9, line: { width: f ? 1 : 0, color: colour("ink") },
-              ...(third >= 0 ? { color: front.points.map((p) => p.objectives[third]), colorscale: fieldColours, cmin: Math.min(...all), cmax: Math.max(...all), showscale: f === 0, colorbar: colourBar(axisName(objectives[third].name, objectives[third].unit)) }
-                             : { color: seriesColours[f] }) },
+    type: "scatter",
+    mode: "markers",
+    name: `stage ${front.stage}, ${label(front.optimiser)}`,
+    x: front.points.map((p) => p.objectives[x]),
+    y: front.points.map((p) => p.objectives[y]),
+    text: front.points.map((p) => frontPoint(study, front, p)),
+    hovertemplate: "%{text}<extra></extra>",
+    marker: {
+      size: f ? 9 : 7,
+      symbol: frontSymbols[f % frontSymbols.length],
+      opacity: 0.9,
+      line: { width: f ? 1 : 0, color: colour("ink") },
+      ...(third >= 0
+        ? {
+            color: front.points.map((p) => p.objectives[third]),
+            colorscale: fieldColours,
+            cmin: Math.min(...all),
+            cmax: Math.max(...all),
+            showscale: f === 0,
+            colorbar: colourBar(axisName(objectives[third].name, objectives[third].unit)),
+          }
+        : { color: seriesColours[f] }),
+    },
   }));
-  for (const [key, name, size, ink] of [["knee", "knee", 17, "#d55e00"], ["compromise", "compromise", 23, "#cc79a7"]]) {
+  for (const [key, name, size, ink] of [
+    ["knee", "knee", 17, "#d55e00"],
+    ["compromise", "compromise", 23, "#cc79a7"],
+  ]) {
     const marked = fronts.flatMap((front) => front.points.filter((p) => p[key]).map((p) => [front, p]));
     if (marked.length)
-      traces.push({ type: "scatter", mode: "markers", name, x: marked.map(([, p]) => p.objectives[x]), y: marked.map(([, p]) => p.objectives[y]), hoverinfo: "skip",
-                    marker: { size, symbol: "circle-open", color: ink, line: { width: 2.5, color: ink } } });
+      traces.push({
+        type: "scatter",
+        mode: "markers",
+        name,
+        x: marked.map(([, p]) => p.objectives[x]),
+        y: marked.map(([, p]) => p.objectives[y]),
+        hoverinfo: "skip",
+        marker: { size, symbol: "circle-open", color: ink, line: { width: 2.5, color: ink } },
+      });
   }
   if (baseline)
-    traces.push({ type: "scatter", mode: "markers", name: "baseline", x: [baseline[x]], y: [baseline[y]], marker: { size: 12, symbol: "x", color: colour("ink") },
-                  hovertemplate: objectives.map((o, k) => label(o.name + " = " + quantity(baseline[k], o.unit))).join("<br>") + "<extra>baseline</extra>" });
+    traces.push({
+      type: "scatter",
+      mode: "markers",
+      name: "baseline",
+      x: [baseline[x]],
+      y: [baseline[y]],
+      marker: { size: 12, symbol: "x", color: colour("ink") },
+      hovertemplate:
+        objectives.map((o, k) => label(o.name + " = " + quantity(baseline[k], o.unit))).join("<br>") +
+        "<extra>baseline</extra>",
+    });
   return traces;
 }
 
@@ -48,7 +84,13 @@ function namedPoints(study) {
       });
       if (point.knee) marks.push("knee");
       if (point.compromise) marks.push("compromise");
-      if (marks.length) rows.push([front.stage + " / " + (i + 1), marks.join(", "), ...point.objectives.map((v) => digits(v)), ...point.design.map((v) => digits(v))]);
+      if (marks.length)
+        rows.push([
+          front.stage + " / " + (i + 1),
+          marks.join(", "),
+          ...point.objectives.map((v) => digits(v)),
+          ...point.design.map((v) => digits(v)),
+        ]);
     });
   }
   const name = (each) => each.name + (unitText(each.unit) ? " [" + unitText(each.unit) + "]" : "");
@@ -58,17 +100,31 @@ function namedPoints(study) {
 function showFront(study, section) {
   const { objectives } = study.problem;
   const sizes = study.front.fronts.map((front) => `${count(front.points.length, "design")} of stage ${front.stage}`);
-  section.append(element("p", "lead", sizes.join(", ") + ". To leave a knee in any direction costs more than it gains; the compromise is nearest to the best of all objectives."));
-  const controls = element("div", "controls"), grid = element("div", "grid");
+  section.append(
+    element(
+      "p",
+      "lead",
+      sizes.join(", ") +
+        ". To leave a knee in any direction costs more than it gains; the compromise is nearest to the best of all objectives.",
+    ),
+  );
+  const controls = element("div", "controls"),
+    grid = element("div", "grid");
   const names = objectives.map((o) => o.name);
   section.append(controls, grid);
   const redraw = () => plot.update();
-  const x = choice(controls, "across", names, 0, redraw), y = choice(controls, "up", names, 1, redraw);
+  const x = choice(controls, "across", names, 0, redraw),
+    y = choice(controls, "up", names, 1, redraw);
   const third = names.length > 2 ? choice(controls, "colour", names, 2, redraw) : { value: -1 };
   const plot = addPlot(grid, {
     height: 520,
-    make: () => ({ data: frontTraces(study, x.value, y.value, third.value),
-                   layout: { xaxis: axis(axisName(names[x.value], objectives[x.value].unit)), yaxis: axis(axisName(names[y.value], objectives[y.value].unit)) } }),
+    make: () => ({
+      data: frontTraces(study, x.value, y.value, third.value),
+      layout: {
+        xaxis: axis(axisName(names[x.value], objectives[x.value].unit)),
+        yaxis: axis(axisName(names[y.value], objectives[y.value].unit)),
+      },
+    }),
   });
   grid.append(element("div", "panel", element("h3", "", "Designs worth naming"), namedPoints(study)));
 }

@@ -21,21 +21,27 @@ function sectionOf(page, id, title) {
   return section;
 }
 
+let markContents = () => {}; // the link of the section in view
+addEventListener("scroll", () => markContents(), { passive: true });
+
 function showContents(list) {
   const links = list.map(({ id, title }) => {
     const link = element("a", "", title);
     link.href = "#" + id;
     return link;
   });
-  document.getElementById("contents").replaceChildren(
-      element("ol", "", ...links.map((link) => element("li", "", link))));
-  const mark = () => {
+  document
+    .getElementById("contents")
+    .replaceChildren(element("ol", "", ...links.map((link) => element("li", "", link))));
+  markContents = () => {
     const tops = list.map(({ id }) => document.getElementById(id).getBoundingClientRect().top);
-    const here = Math.max(0, tops.findLastIndex((top) => top < innerHeight / 3));
+    const here = Math.max(
+      0,
+      tops.findLastIndex((top) => top < innerHeight / 3),
+    );
     links.forEach((link, i) => link.classList.toggle("here", i === here));
   };
-  addEventListener("scroll", mark, { passive: true });
-  mark();
+  markContents();
 }
 
 function showStudy(report, study) {
@@ -52,7 +58,10 @@ function showStudy(report, study) {
     shown.push({ id, title });
     show(study, sectionOf(page, id, id === "summary" || id === "design" ? "" : title));
   }
-  const files = report.studies.map((each) => each.file).filter(Boolean).join(", ");
+  const files = report.studies
+    .map((each) => each.file)
+    .filter(Boolean)
+    .join(", ");
   page.append(element("footer", "", "Made by " + report.program + (files ? " from " + files : "") + "."));
   showContents(shown);
 }
@@ -61,12 +70,16 @@ function showReport(report) {
   const chooser = document.getElementById("chooser");
   document.title = report.studies.map((study) => study.name).join(", ") + " – pkmopt";
   if (report.studies.length > 1)
-    choice(chooser, "study", report.studies.map((study) => study.name + " (" + study.file + ")"), 0,
-           (i) => showStudy(report, report.studies[i]));
-  else
-    chooser.append(element("span", "title", report.studies[0].name));
+    choice(
+      chooser,
+      "study",
+      report.studies.map((study) => study.name + " (" + study.file + ")"),
+      0,
+      (i) => showStudy(report, report.studies[i]),
+    );
+  else chooser.append(element("span", "title", report.studies[0].name));
   themeButton(document.getElementById("theme"));
   showStudy(report, report.studies[0]);
   const loaded = loadPlotly();
-  window.report = { ...report, draw: (section) => loaded.then(() => drawPlots(section)) };  // for readers that are programs
+  window.report = { ...report, draw: (section) => loaded.then(() => drawPlots(section)) }; // for readers that are programs
 }

@@ -9,42 +9,6 @@ function partColour(part, parts) {
   return ["#56b4e9", "#d55e00", "#b8a000"][others.indexOf(part) % 3];
 }
 
-/** One design at all stored poses. */
-class Poses {
-  constructor(packed) {
-    Object.assign(this, packed);
-    this.drawn = unpack(packed.drawn);
-    this.reason = unpack(packed.reason);
-    this.at = packed.at.map(unpack);
-    this.positions = packed.positions.map(unpack);
-    this.conditioning = unpack(packed.conditioning);
-    this.parts = [...new Set(packed.links.map((link) => link.part))];
-    this.counts = packed.coordinates.map((c) => c.values.length);
-    this.number = new Int32Array(this.reason.length).fill(-1);  // among the drawn ones
-    let count = 0;
-    for (let pose = 0; pose < this.number.length; ++pose) if (this.drawn[pose]) this.number[pose] = count++;
-  }
-  /** Places of the sliders at a pose, and back. */
-  places(pose) {
-    const places = [];
-    for (let c = 3; c >= 0; pose = Math.floor(pose / this.counts[c--])) places.unshift(pose % this.counts[c]);
-    return places;
-  }
-  pose(places) { return places.reduce((pose, place, c) => pose * this.counts[c] + place, 0); }
-  values(places) { return places.map((place, c) => this.coordinates[c].values[place]); }
-  /** The links that can be drawn at a pose: all, or those of the frame where it does not assemble. */
-  linksAt(pose) {
-    const number = Math.max(this.number[pose], 0), assembles = this.number[pose] >= 0;
-    const end = (e) => this.at.map((column) => column[number * this.ends + e]);
-    return this.links.filter((link) => assembles || link.part === "frame").map((link) => ({ ...link, from: end(link.from), to: end(link.to) }));
-  }
-  /** What all poses together span, per axis. */
-  span() {
-    const radius = Math.max(...this.links.map((link) => link.radius));
-    return this.at.map((column) => { const [low, high] = rangeOf(column); return [low - 1.5 * radius, high + 1.5 * radius]; });
-  }
-}
-
 /** Cells of the workspace that are feasible at a rotation, as booleans seen along an axis; null where it does not show. */
 function workspaceShadow(cells, rotation, h, v) {
   const find = (coordinate) => cells.axes.findIndex((axis) => axis.coordinate === coordinate);
@@ -54,8 +18,13 @@ function workspaceShadow(cells, rotation, h, v) {
   if (turning >= 0 && layer < 0) return null;
   const third = [0, 1, 2].find((k) => k !== across && k !== up);
   const layers = turning >= 0 ? [layer] : Array.from({ length: cells.axes[third].cells }, (_, k) => k);
-  const z = Array.from({ length: cells.axes[up].cells }, (_, j) => Array.from({ length: cells.axes[across].cells }, (_, i) =>
-      layers.some((k) => cells.feasible[k * cells.strides[third] + i * cells.strides[across] + j * cells.strides[up]]) ? 1 : null));
+  const z = Array.from({ length: cells.axes[up].cells }, (_, j) =>
+    Array.from({ length: cells.axes[across].cells }, (_, i) =>
+      layers.some((k) => cells.feasible[k * cells.strides[third] + i * cells.strides[across] + j * cells.strides[up]])
+        ? 1
+        : null,
+    ),
+  );
   return { x: cells.centres(across), y: cells.centres(up), z };
 }
 
@@ -63,12 +32,34 @@ function flatTraces(poses, pose, cells, rotation, [h, v]) {
   const traces = [];
   const shadow = cells && workspaceShadow(cells, rotation, h, v);
   if (shadow)
-    traces.push({ type: "heatmap", ...shadow, colorscale: [[0, "#56b4e9"], [1, "#56b4e9"]], showscale: false, opacity: 0.28, hoverinfo: "skip" });
+    traces.push({
+      type: "heatmap",
+      ...shadow,
+      colorscale: [
+        [0, "#56b4e9"],
+        [1, "#56b4e9"],
+      ],
+      showscale: false,
+      opacity: 0.28,
+      hoverinfo: "skip",
+    });
   const seen = new Set();
   for (const link of poses.linksAt(pose)) {
     const ink = partColour(link.part, poses.parts);
-    traces.push({ type: "scatter", mode: "lines", ...capsuleOutline([link.from[h], link.from[v]], [link.to[h], link.to[v]], link.radius), fill: "toself", fillcolor: faded(ink, 0.75), line: { color: ink, width: 1 },
-                  name: label(link.part), legendgroup: link.part, showlegend: !seen.has(link.part), hoveron: "fills", hoverinfo: "text", text: label(link.part + ": " + link.name) });
+    traces.push({
+      type: "scatter",
+      mode: "lines",
+      ...capsuleOutline([link.from[h], link.from[v]], [link.to[h], link.to[v]], link.radius),
+      fill: "toself",
+      fillcolor: faded(ink, 0.75),
+      line: { color: ink, width: 1 },
+      name: label(link.part),
+      legendgroup: link.part,
+      showlegend: !seen.has(link.part),
+      hoveron: "fills",
+      hoverinfo: "text",
+      text: label(link.part + ": " + link.name),
+    });
     seen.add(link.part);
   }
   return traces;
@@ -76,20 +67,35 @@ function flatTraces(poses, pose, cells, rotation, [h, v]) {
 
 /** The workspace in the room: its surface, or at the rotation a layer of cells where the platform's plane is. */
 function solidWorkspace(cells, rotation, held) {
-  const look = { type: "mesh3d", color: "#56b4e9", opacity: 0.22, hoverinfo: "skip", name: "workspace", showlegend: true };
+  const look = {
+    type: "mesh3d",
+    color: "#56b4e9",
+    opacity: 0.22,
+    hoverinfo: "skip",
+    name: "workspace",
+    showlegend: true,
+  };
   const turning = cells.axes.findIndex((axis) => axis.coordinate === 3);
   if (turning < 0) {
-    const { at, triangles } = cells.surface, order = [0, 1, 2].map((c) => cells.axes.findIndex((axis) => axis.coordinate === c));
+    const { at, triangles } = cells.surface,
+      order = [0, 1, 2].map((c) => cells.axes.findIndex((axis) => axis.coordinate === c));
     const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
     return { ...look, x: at[order[0]], y: at[order[1]], z: at[order[2]], i: corner(0), j: corner(1), k: corner(2) };
   }
-  const layer = cells.layer(turning, rotation), mesh = { x: [], y: [], z: [], i: [], j: [], k: [] };
-  const [a, b] = [0, 1, 2].filter((k) => k !== turning), names = ["x", "y", "z"];
+  const layer = cells.layer(turning, rotation),
+    mesh = { x: [], y: [], z: [], i: [], j: [], k: [] };
+  const [a, b] = [0, 1, 2].filter((k) => k !== turning),
+    names = ["x", "y", "z"];
   for (let p = 0; layer >= 0 && p < cells.axes[a].cells; ++p)
     for (let q = 0; q < cells.axes[b].cells; ++q) {
       if (!cells.feasible[layer * cells.strides[turning] + p * cells.strides[a] + q * cells.strides[b]]) continue;
       const first = mesh.x.length;
-      for (const [da, db] of [[0, 0], [1, 0], [1, 1], [0, 1]]) {
+      for (const [da, db] of [
+        [0, 0],
+        [1, 0],
+        [1, 1],
+        [0, 1],
+      ]) {
         mesh[names[cells.axes[a].coordinate]].push(cells.axes[a].lower + (p + da) * cells.axes[a].step);
         mesh[names[cells.axes[b].coordinate]].push(cells.axes[b].lower + (q + db) * cells.axes[b].step);
         mesh[names[cells.held.coordinate]].push(held);
@@ -107,8 +113,16 @@ function solidTraces(poses, pose, cells, values) {
     if (!meshes.has(link.part)) meshes.set(link.part, { x: [], y: [], z: [], i: [], j: [], k: [], text: [] });
     addCapsule(meshes.get(link.part), link.from, link.to, link.radius, label(link.part + ": " + link.name));
   }
-  const traces = [...meshes].map(([part, mesh]) => ({ type: "mesh3d", ...mesh, color: partColour(part, poses.parts), name: label(part), showlegend: true, hovertemplate: "%{text}<extra></extra>",
-                                                      lighting: { ambient: 0.6, diffuse: 0.6, specular: 0.15, roughness: 0.7 }, lightposition: { x: 1e4, y: -2e4, z: 3e4 } }));
+  const traces = [...meshes].map(([part, mesh]) => ({
+    type: "mesh3d",
+    ...mesh,
+    color: partColour(part, poses.parts),
+    name: label(part),
+    showlegend: true,
+    hovertemplate: "%{text}<extra></extra>",
+    lighting: { ambient: 0.6, diffuse: 0.6, specular: 0.15, roughness: 0.7 },
+    lightposition: { x: 1e4, y: -2e4, z: 3e4 },
+  }));
   const around = cells && solidWorkspace(cells, values[3], values[cells.held.coordinate]);
   return around ? [...traces, around] : traces;
 }
@@ -120,51 +134,122 @@ function showMechanism(study, section) {
     const found = study.workspace?.designs.find((design) => design.name === name);
     return found ? (found.cells ??= new Cells(found)) : null;
   };
-  section.append(element("p", "lead", `Drawn to scale in working mode ${mode}. The sliders step through stored poses; blue is where the platform can go` +
-                                      " at this rotation."));
-  const controls = element("div", "controls panel"), grid = element("div", "grid");
+  section.append(
+    element(
+      "p",
+      "lead",
+      `Drawn to scale in working mode ${mode}. The sliders step through stored poses; blue is where the platform can go` +
+        " at this rotation.",
+    ),
+  );
+  const controls = element("div", "controls panel"),
+    grid = element("div", "grid");
   section.append(grid);
   grid.append(controls);
-  let poses, places, sliders, plots = [];
-  const verdict = element("p", "verdict"), readout = element("div", "readout");
+  let poses,
+    places,
+    sliders,
+    plots = [];
+  const verdict = element("p", "verdict"),
+    readout = element("div", "readout");
   const now = () => poses.pose(places);
   const tell = () => {
-    const pose = now(), number = poses.number[pose], reason = poses.reasons[poses.reason[pose]];
+    const pose = now(),
+      number = poses.number[pose],
+      reason = poses.reasons[poses.reason[pose]];
     verdict.className = "verdict " + (reason ? "worse" : "better");
-    verdict.textContent = (reason ? (number < 0 ? "Does not assemble: " : "Not feasible: ") + reason : "Feasible") + ".";
-    readout.replaceChildren(...(number < 0 ? [] : [...poses.joints.map((joint, i) => [joint, quantity(poses.positions[i][number], "m", 5)]), ["conditioning", digits(poses.conditioning[number], 4)]])
-        .map(([name, value]) => element("div", "", element("span", "", name + " "), element("b", "", value))));
+    verdict.textContent =
+      (reason ? (number < 0 ? "Does not assemble: " : "Not feasible: ") + reason : "Feasible") + ".";
+    readout.replaceChildren(
+      ...(number < 0
+        ? []
+        : [
+            ...poses.joints.map((joint, i) => [joint, quantity(poses.positions[i][number], "m", 5)]),
+            ["conditioning", digits(poses.conditioning[number], 4)],
+          ]
+      ).map(([name, value]) => element("div", "", element("span", "", name + " "), element("b", "", value))),
+    );
   };
-  const moved = () => { tell(); plots.forEach((plot) => plot.update()); };
+  const moved = () => {
+    tell();
+    plots.forEach((plot) => plot.update());
+  };
   const choose = (i) => {
     poses = all[i];
     places = poses.places(poses.start);
     sliders?.forEach((control) => control.node.remove());
-    sliders = poses.coordinates.map((coordinate, c) => slider(controls, coordinate.name, coordinate.values.length, places[c],
-        (k) => shownValue(coordinate.values[k], coordinate), (k) => { places[c] = k; moved(); }));
+    sliders = poses.coordinates.map((coordinate, c) =>
+      slider(
+        controls,
+        coordinate.name,
+        coordinate.values.length,
+        places[c],
+        (k) => shownValue(coordinate.values[k], coordinate),
+        (k) => {
+          places[c] = k;
+          moved();
+        },
+      ),
+    );
     moved();
   };
-  if (all.length > 1) buttons(controls, "design", all.map((design) => design.name), 0, choose);
+  if (all.length > 1)
+    buttons(
+      controls,
+      "design",
+      all.map((design) => design.name),
+      0,
+      choose,
+    );
   choose(0);
-  const span = () => all.map((design) => design.span()).reduce((a, b) => a.map(([low, high], c) => [Math.min(low, b[c][0]), Math.max(high, b[c][1])]));
+  const span = () =>
+    all
+      .map((design) => design.span())
+      .reduce((a, b) => a.map(([low, high], c) => [Math.min(low, b[c][0]), Math.max(high, b[c][1])]));
   const [xs, ys, zs] = span();
   const [width, depth, height] = [xs, ys, zs].map(([low, high]) => high - low);
   const slim = Math.max(depth, height) > 1.6 * width;
   const column = element("div", "half column" + (slim ? " abreast" : ""));
-  const flat = (title, h, v, names, ranges) => addPlot(column, {
-    title, height: slim ? 694 : 312,
-    make: () => ({
-      data: flatTraces(poses, now(), cellsOf(poses.name), poses.values(places)[3], [h, v]),
-      layout: { xaxis: axis(axisName(names[0], "m"), { range: ranges[0], zeroline: false, constrain: "domain" }), yaxis: axis(axisName(names[1], "m"), { range: ranges[1], scaleanchor: "x", constrain: "domain", zeroline: false }), showlegend: false },
-    }),
-  });
+  const flat = (title, h, v, names, ranges) =>
+    addPlot(column, {
+      title,
+      height: slim ? 694 : 312,
+      make: () => ({
+        data: flatTraces(poses, now(), cellsOf(poses.name), poses.values(places)[3], [h, v]),
+        layout: {
+          xaxis: axis(axisName(names[0], "m"), { range: ranges[0], zeroline: false, constrain: "domain" }),
+          yaxis: axis(axisName(names[1], "m"), {
+            range: ranges[1],
+            scaleanchor: "x",
+            constrain: "domain",
+            zeroline: false,
+          }),
+          showlegend: false,
+        },
+      }),
+    });
   const room = addPlot(grid, {
-    title: "In space", size: "half", height: 694,
+    title: "In space",
+    size: "half",
+    height: 694,
     make() {
       const most = Math.max(width, depth, height);
-      return { data: solidTraces(poses, now(), cellsOf(poses.name), poses.values(places)),
-               layout: { uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 }, legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
-                         scene: { xaxis: sceneAxis("x [m]", xs), yaxis: sceneAxis("y [m]", ys), zaxis: sceneAxis("z [m]", zs), aspectmode: "manual", aspectratio: { x: 1.35 * width / most, y: 1.35 * depth / most, z: 1.35 * height / most }, camera: { eye: { x: 1.1, y: -1.45, z: 0.75 } } } } };
+      return {
+        data: solidTraces(poses, now(), cellsOf(poses.name), poses.values(places)),
+        layout: {
+          uirevision: "camera",
+          margin: { l: 0, r: 0, t: 0, b: 0 },
+          legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
+          scene: {
+            xaxis: sceneAxis("x [m]", xs),
+            yaxis: sceneAxis("y [m]", ys),
+            zaxis: sceneAxis("z [m]", zs),
+            aspectmode: "manual",
+            aspectratio: { x: (1.35 * width) / most, y: (1.35 * depth) / most, z: (1.35 * height) / most },
+            camera: { eye: { x: 1.1, y: -1.45, z: 0.75 } },
+          },
+        },
+      };
     },
   });
   grid.append(column);

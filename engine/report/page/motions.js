@@ -1,26 +1,46 @@
 // What the study's motions ask of the drives: positions, speeds, forces and power against time.
 
 const motionColumns = [
-  ["positions", "Positions of the joints", "position", "m"], ["speeds", "Speeds", "speed", "m/s"],
-  ["forces", "Drive forces", "force", "N"], ["power", "Power of the drives", "power", "W"],
+  ["positions", "Positions of the joints", "position", "m"],
+  ["speeds", "Speeds", "speed", "m/s"],
+  ["forces", "Drive forces", "force", "N"],
+  ["power", "Power of the drives", "power", "W"],
 ];
 
 /** How an array of sums that cancel is told: what is rounding beside the rest is 0. */
-function beside(value, size) { return Math.abs(value) < 1e-9 * Math.abs(size) ? 0 : value; }
+function beside(value, size) {
+  return Math.abs(value) < 1e-9 * Math.abs(size) ? 0 : value;
+}
 
-function timesOf(motion) { return Array.from({ length: motion.samples }, (_, k) => motion.duration * k / (motion.samples - 1)); }
+function timesOf(motion) {
+  return Array.from({ length: motion.samples }, (_, k) => (motion.duration * k) / (motion.samples - 1));
+}
 
 function motionTraces(motion, joints, key, unit) {
   const time = timesOf(motion);
-  return motion.designs.flatMap((design, d) => (design[key] || []).map((packed, i) => ({
-    type: "scatter", mode: "lines", x: time, y: unpack(packed), name: label(joints[i]), legendgroup: joints[i], showlegend: d === 0,
-    line: { color: limbColours[i], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" }, hovertemplate: `%{y:.4g} ${label(unit)} at %{x:.4g} s<extra>${label(joints[i] + ", " + design.name)}</extra>`,
-  })));
+  return motion.designs.flatMap((design, d) =>
+    (design[key] || []).map((packed, i) => ({
+      type: "scatter",
+      mode: "lines",
+      x: time,
+      y: unpack(packed),
+      name: label(joints[i]),
+      legendgroup: joints[i],
+      showlegend: d === 0,
+      line: { color: limbColours[i], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" },
+      hovertemplate: `%{y:.4g} ${label(unit)} at %{x:.4g} s<extra>${label(joints[i] + ", " + design.name)}</extra>`,
+    })),
+  );
 }
 
 function conditioningAlong(motion) {
   return motion.designs.map((design, d) => ({
-    type: "scatter", mode: "lines", x: timesOf(motion), y: unpack(design.conditioning), name: label(design.name), line: { color: seriesColours[d], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" },
+    type: "scatter",
+    mode: "lines",
+    x: timesOf(motion),
+    y: unpack(design.conditioning),
+    name: label(design.name),
+    line: { color: seriesColours[d], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" },
     hovertemplate: `%{y:.4f} at %{x:.4g} s<extra>${label(design.name)}</extra>`,
   }));
 }
@@ -28,21 +48,40 @@ function conditioningAlong(motion) {
 function posesAlong(motion, coordinates) {
   const time = timesOf(motion);
   return motion.designs[0].poses.map((packed, c) => ({
-    type: "scatter", mode: "lines", x: time, y: Array.from(unpack(packed), (value) => (c === 3 ? value * 180 / Math.PI : value)), name: label(coordinates[c]), yaxis: c === 3 ? "y2" : "y",
-    line: { color: seriesColours[c], width: 2, dash: c === 3 ? "dot" : "solid" }, hovertemplate: `%{y:.4g} ${c === 3 ? "deg" : "m"} at %{x:.4g} s<extra>${label(coordinates[c])}</extra>`,
+    type: "scatter",
+    mode: "lines",
+    x: time,
+    y: Array.from(unpack(packed), (value) => (c === 3 ? (value * 180) / Math.PI : value)),
+    name: label(coordinates[c]),
+    yaxis: c === 3 ? "y2" : "y",
+    line: { color: seriesColours[c], width: 2, dash: c === 3 ? "dot" : "solid" },
+    hovertemplate: `%{y:.4g} ${c === 3 ? "deg" : "m"} at %{x:.4g} s<extra>${label(coordinates[c])}</extra>`,
   }));
 }
 
 function motionSummary(motion, joints) {
-  const rows = [], head = ["design", "", ...joints, "all"];
+  const rows = [],
+    head = ["design", "", ...joints, "all"];
   for (const { name, summary } of motion.designs) {
-    const add = (title, values, unit, total) => values && rows.push([name, title, ...values.map((v) => quantity(v, unit, 4)), total === undefined || total === null ? "" : quantity(total, unit, 4)]);
+    const add = (title, values, unit, total) =>
+      values &&
+      rows.push([
+        name,
+        title,
+        ...values.map((v) => quantity(v, unit, 4)),
+        total === undefined || total === null ? "" : quantity(total, unit, 4),
+      ]);
     add("peak speed", summary.peak_speed, "m/s");
     add("peak force", summary.peak_force, "N");
     add("root mean square of force", summary.rms_force, "N");
     add("peak power", summary.peak_power, "W", summary.peak_total_power);
     if (summary.energy !== undefined) {
-      rows.push([name, "energy, braking giving back", ...joints.map(() => ""), quantity(beside(summary.energy, summary.energy_drawn), "J", 4)]);
+      rows.push([
+        name,
+        "energy, braking giving back",
+        ...joints.map(() => ""),
+        quantity(beside(summary.energy, summary.energy_drawn), "J", 4),
+      ]);
       rows.push([name, "energy drawn", ...joints.map(() => ""), quantity(summary.energy_drawn, "J", 4)]);
     }
   }
@@ -54,15 +93,27 @@ function obstacles(motion) {
   return motion.designs.flatMap(({ name, reasons }) => {
     const broken = reasons.map((reason, k) => [reason, k]).filter(([reason]) => reason);
     if (!broken.length) return [];
-    const at = (k) => digits(motion.duration * k / (motion.samples - 1), 3) + " s";
-    return [`The design “${name}” cannot follow: ${count(broken.length, "sample")} of ${motion.samples} not feasible, first at ${at(broken[0][1])}: ${broken[0][0]}.`];
+    const at = (k) => digits((motion.duration * k) / (motion.samples - 1), 3) + " s";
+    return [
+      `The design “${name}” cannot follow: ${count(broken.length, "sample")} of ${motion.samples} not feasible, first at ${at(broken[0][1])}: ${broken[0][0]}.`,
+    ];
   });
 }
 
 function showMotions(study, section) {
   const { motions, joints, coordinates } = study.motions;
-  section.append(element("p", "lead", "Exact speeds and accelerations of the joints" + (motions[0].designs.some((d) => d.forces) ? ", and the forces and power that they take" : "") + ". The best design in solid lines, the baseline dashed."));
-  const controls = element("div", "controls"), grid = element("div", "grid"), notes = element("div");
+  section.append(
+    element(
+      "p",
+      "lead",
+      "Exact speeds and accelerations of the joints" +
+        (motions[0].designs.some((d) => d.forces) ? ", and the forces and power that they take" : "") +
+        ". The best design in solid lines, the baseline dashed.",
+    ),
+  );
+  const controls = element("div", "controls"),
+    grid = element("div", "grid"),
+    notes = element("div");
   section.append(controls, notes, grid);
   const table = element("div", "panel");
   const plots = [];
@@ -71,16 +122,59 @@ function showMotions(study, section) {
     notes.replaceChildren(...obstacles(motion()).map((text) => element("p", "warning", text)));
     table.replaceChildren(element("h3", "", "In numbers"), motionSummary(motion(), joints));
   };
-  const which = motions.length > 1 ? choice(controls, "motion", motions.map((m) => m.name), 0, () => { tell(); plots.forEach((plot) => plot.update()); }) : { value: 0 };
+  const which =
+    motions.length > 1
+      ? choice(
+          controls,
+          "motion",
+          motions.map((m) => m.name),
+          0,
+          () => {
+            tell();
+            plots.forEach((plot) => plot.update());
+          },
+        )
+      : { value: 0 };
   tell();
-  plots.push(addPlot(grid, { title: "The motion" + (motions.length > 1 ? "" : ", " + motions[0].name), size: "half", height: 360,
-    make: () => ({ data: posesAlong(motion(), coordinates), layout: { xaxis: axis("time [s]"), yaxis: axis("position [m]"), yaxis2: axis(axisName(coordinates[3], "deg"), { overlaying: "y", side: "right", showgrid: false }) } }) }));
+  plots.push(
+    addPlot(grid, {
+      title: "The motion" + (motions.length > 1 ? "" : ", " + motions[0].name),
+      size: "half",
+      height: 360,
+      make: () => ({
+        data: posesAlong(motion(), coordinates),
+        layout: {
+          xaxis: axis("time [s]"),
+          yaxis: axis("position [m]"),
+          yaxis2: axis(axisName(coordinates[3], "deg"), { overlaying: "y", side: "right", showgrid: false }),
+        },
+      }),
+    }),
+  );
   for (const [key, title, name, unit] of motionColumns) {
     if (!motions.some((m) => m.designs.some((d) => d[key]))) continue;
-    plots.push(addPlot(grid, { title, size: "half", height: 360,
-      make: () => ({ data: motionTraces(motion(), joints, key, unit), layout: { xaxis: axis("time [s]"), yaxis: axis(axisName(name, unit)) } }) }));
+    plots.push(
+      addPlot(grid, {
+        title,
+        size: "half",
+        height: 360,
+        make: () => ({
+          data: motionTraces(motion(), joints, key, unit),
+          layout: { xaxis: axis("time [s]"), yaxis: axis(axisName(name, unit)) },
+        }),
+      }),
+    );
   }
-  plots.push(addPlot(grid, { title: "Conditioning", size: "half", height: 360,
-    make: () => ({ data: conditioningAlong(motion()), layout: { xaxis: axis("time [s]"), yaxis: axis("inverse condition number [1]", { rangemode: "tozero" }) } }) }));
+  plots.push(
+    addPlot(grid, {
+      title: "Conditioning",
+      size: "half",
+      height: 360,
+      make: () => ({
+        data: conditioningAlong(motion()),
+        layout: { xaxis: axis("time [s]"), yaxis: axis("inverse condition number [1]", { rangemode: "tozero" }) },
+      }),
+    }),
+  );
   grid.append(table);
 }

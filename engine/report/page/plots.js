@@ -1,8 +1,8 @@
 // Plots: drawn when they come into view, in the colours of the theme, and drawn again when it changes.
 
-const limbColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7"];          // Okabe and Ito: told apart by everybody
+const limbColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7"]; // Okabe and Ito: told apart by everybody
 const seriesColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
-const fieldColours = "Cividis";                                            // perceptually uniform
+const fieldColours = "Cividis"; // perceptually uniform
 const timeColours = "Viridis";
 
 const plots = [];
@@ -10,21 +10,29 @@ let plotlyIsThere = false;
 
 /** Plotly takes a second to compile: by then the page can be read. */
 function loadPlotly() {
-  return new Promise((resolve) => requestAnimationFrame(() => setTimeout(() => {
-    document.head.append(element("script", "", document.getElementById("plotly").textContent));
-    plotlyIsThere = true;
-    for (const plot of plots) toBeSeen.observe(plot.node);
-    resolve();
-  })));
+  return new Promise((resolve) =>
+    requestAnimationFrame(() =>
+      setTimeout(() => {
+        document.head.append(element("script", "", document.getElementById("plotly").textContent));
+        plotlyIsThere = true;
+        for (const plot of plots) toBeSeen.observe(plot.node);
+        resolve();
+      }),
+    ),
+  );
 }
 
-const toBeSeen = new IntersectionObserver((entries) => {
-  for (const entry of entries)
-    if (entry.isIntersecting) plots.find((plot) => plot.node === entry.target)?.draw();
-}, { rootMargin: "400px" });
+const toBeSeen = new IntersectionObserver(
+  (entries) => {
+    for (const entry of entries) if (entry.isIntersecting) plots.find((plot) => plot.node === entry.target)?.draw();
+  },
+  { rootMargin: "400px" },
+);
 
 function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  return getComputedStyle(document.documentElement)
+    .getPropertyValue("--" + name)
+    .trim();
 }
 
 /** A colour of "#rrggbb" made transparent. */
@@ -35,8 +43,15 @@ function faded(hex, alpha) {
 
 function axis(title, more = {}) {
   return {
-    title: { text: title, standoff: 8 }, automargin: true, gridcolor: colour("grid"), linecolor: colour("line"),
-    zerolinecolor: colour("line"), ticks: "outside", tickcolor: colour("line"), tickmode: "auto", ...more,
+    title: { text: title, standoff: 8 },
+    automargin: true,
+    gridcolor: colour("grid"),
+    linecolor: colour("line"),
+    zerolinecolor: colour("line"),
+    ticks: "outside",
+    tickcolor: colour("line"),
+    tickmode: "auto",
+    ...more,
   };
 }
 
@@ -46,9 +61,11 @@ function colourBar(title) {
 
 function layoutOf(more) {
   return {
-    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: "rgba(0,0,0,0)",
     font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
-    margin: { l: 12, r: 12, t: 12, b: 12 }, hovermode: "closest",
+    margin: { l: 12, r: 12, t: 12, b: 12 },
+    hovermode: "closest",
     hoverlabel: { bgcolor: colour("panel"), bordercolor: colour("line"), font: { color: colour("ink"), size: 13 } },
     legend: { orientation: "h", x: 0, y: 1.02, xanchor: "left", yanchor: "bottom" },
     colorway: seriesColours,
@@ -59,23 +76,42 @@ function layoutOf(more) {
 /**
  * Adds a panel with a plot to `parent`.
  * @param options  title, caption, size (a class: "half"), height [px], make: () => ({ data, layout })
- * @returns { panel, node, update() }; update() draws anew what has been drawn
+ * @returns { panel, node, update(), .. }; update() draws anew what has been drawn
  */
 function addPlot(parent, { title, caption, size = "", height = 380, make }) {
   const node = element("div", "plot");
   node.style.height = height + "px";
-  const panel = element("div", "panel " + size, title ? element("h3", "", title) : null,
-                        caption ? element("p", "caption", caption) : null, node);
+  const panel = element(
+    "div",
+    "panel " + size,
+    title ? element("h3", "", title) : null,
+    caption ? element("p", "caption", caption) : null,
+    node,
+  );
   parent.append(panel);
   const plot = {
-    panel, node, drawn: false,
-    draw() { if (!plot.drawn) plot.update(true); },
+    panel,
+    node,
+    drawn: false,
+    draw() {
+      if (!plot.drawn) plot.update(true);
+    },
+    /** Anew once it is in view. */
+    drawAgain() {
+      if (!plot.drawn) return;
+      plot.drawn = false;
+      toBeSeen.unobserve(node);
+      toBeSeen.observe(node);
+    },
     update(first = false) {
       if (!first && !plot.drawn) return;
       plot.drawn = true;
       const { data, layout } = make();
-      plot.done = Plotly.react(node, data, layoutOf(layout),
-                               { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"] });
+      plot.done = Plotly.react(node, data, layoutOf(layout), {
+        responsive: true,
+        displaylogo: false,
+        modeBarButtonsToRemove: ["select2d", "lasso2d"],
+      });
     },
   };
   plots.push(plot);
@@ -104,14 +140,15 @@ function themeButton(button) {
     const dark = chosen === null ? system.matches : chosen === "dark";
     document.documentElement.dataset.theme = dark ? "dark" : "light";
     button.textContent = dark ? "☀ Light" : "☾ Dark";
-    for (const plot of plots) plot.update();
+    for (const plot of plots) plot.drawAgain();
   };
   button.addEventListener("click", () => {
     chosen = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
     show();
   });
   system.addEventListener("change", show);
-  addEventListener("beforeprint", () => {  // paper is white
+  addEventListener("beforeprint", () => {
+    // paper is white
     document.documentElement.dataset.theme = "light";
     for (const plot of plots) if (plotlyIsThere) plot.update(true);
   });

@@ -7,19 +7,38 @@ function gainText(gain) {
 }
 
 function card(name, value, unit, ...notes) {
-  return element("div", "card", element("div", "name", name),
-                 element("div", "value", value, unitText(unit) ? element("small", "", unitText(unit)) : null),
-                 element("div", "note", ...notes));
+  return element(
+    "div",
+    "card",
+    element("div", "name", name),
+    element("div", "value", value, unitText(unit) ? element("small", "", unitText(unit)) : null),
+    element("div", "note", ...notes),
+  );
 }
 
 function headline(study) {
   const { summary, problem } = study;
   const state = element("span", "state " + summary.state, summary.state);
-  return element("div", "", element("h1", "", study.name),
-                 element("p", "facts", problem.mechanism + (problem.title ? " – " + problem.title : "")),
-                 element("p", "facts", state, "  " + [
-                   count(summary.evaluations, "evaluation"), duration(summary.seconds), "seed " + summary.origin.seed,
-                   summary.origin.machine].filter(Boolean).join(" · ")));
+  return element(
+    "div",
+    "",
+    element("h1", "", study.name),
+    element("p", "facts", problem.mechanism + (problem.title ? " – " + problem.title : "")),
+    element(
+      "p",
+      "facts",
+      state,
+      "  " +
+        [
+          count(summary.evaluations, "evaluation"),
+          duration(summary.seconds),
+          "seed " + summary.origin.seed,
+          summary.origin.machine,
+        ]
+          .filter(Boolean)
+          .join(" · "),
+    ),
+  );
 }
 
 function cards(study) {
@@ -28,12 +47,22 @@ function cards(study) {
   for (const row of table ? table.rows : []) {
     if (row.kind !== "objective") continue;
     const baseline = table.columns.findIndex((column) => column.name === "baseline");
-    const against = baseline >= 0 && row.values[baseline] !== null
-                        ? " beside the baseline's " + quantity(row.values[baseline], row.unit) : "";
-    list.append(card(row.name, digits(row.values[0]), row.unit, ...(row.gain ? [gainText(row.gain), against] : [row.meaning])));
+    const against =
+      baseline >= 0 && row.values[baseline] !== null
+        ? " beside the baseline's " + quantity(row.values[baseline], row.unit)
+        : "";
+    list.append(
+      card(row.name, digits(row.values[0]), row.unit, ...(row.gain ? [gainText(row.gain), against] : [row.meaning])),
+    );
   }
-  list.append(card("volume of work", study.summary.evaluations.toLocaleString("en-GB"), "evaluations",
-                   "in " + count(stages.length, "stage") + ": " + stages.map((stage) => stage.optimiser).join(", then ")));
+  list.append(
+    card(
+      "volume of work",
+      study.summary.evaluations.toLocaleString("en-GB"),
+      "evaluations",
+      "in " + count(stages.length, "stage") + ": " + stages.map((stage) => stage.optimiser).join(", then "),
+    ),
+  );
   return list;
 }
 
@@ -44,7 +73,12 @@ function designTable({ columns, rows }) {
   for (const column of columns) head.append(element("th", "", column.name));
   if (gains) head.append(element("th", "", "gain"));
   table.append(element("thead", "", head));
-  const titles = { variable: "variables", objective: "objectives", report: "reports", constraint: "margins of constraints (≥ 0 holds)" };
+  const titles = {
+    variable: "variables",
+    objective: "objectives",
+    report: "reports",
+    constraint: "margins of constraints (≥ 0 holds)",
+  };
   let kind = "";
   const body = element("tbody");
   for (const row of rows) {
@@ -57,7 +91,10 @@ function designTable({ columns, rows }) {
     const name = element("td", "text", row.name);
     name.title = row.meaning;
     const line = element("tr", "", name, element("td", "unit", unitText(row.unit)));
-    for (const value of row.values) line.append(element("td", value < 0 && row.kind === "constraint" ? "worse" : "", value === null ? "" : digits(value, 10)));
+    for (const value of row.values)
+      line.append(
+        element("td", value < 0 && row.kind === "constraint" ? "worse" : "", value === null ? "" : digits(value, 10)),
+      );
     if (gains) line.append(element("td", "", gainText(row.gain)));
     body.append(line);
   }
@@ -71,19 +108,34 @@ function remarks(study) {
   const columns = summary.table ? summary.table.columns : [];
   for (const column of columns)
     if (!column.reference && (column.status !== "feasible" || column.reason))
-      list.push(["warning", "The design “" + column.name + "” is " + column.status + (column.reason ? ": " + column.reason : "") + "."]);
+      list.push([
+        "warning",
+        "The design “" + column.name + "” is " + column.status + (column.reason ? ": " + column.reason : "") + ".",
+      ]);
   if (summary.state !== "finished")
-    list.push(["warning", "The study is " + (summary.state === "running" ? "still running, or was killed" : "interrupted") +
-                          ": this is what its file held when the report was made."]);
+    list.push([
+      "warning",
+      "The study is " +
+        (summary.state === "running" ? "still running, or was killed" : "interrupted") +
+        ": this is what its file held when the report was made.",
+    ]);
   if (summary.evaluations === 0) list.push(["warning", "Nothing has been evaluated yet."]);
-  if (summary.touches_box) list.push(["warning", "Feasible cells of the best design touch the box; a larger box may hold more workspace."]);
-  if (!summary.reproducible) list.push(["warning", "The clock ended a start, so another run with this seed may end elsewhere."]);
-  if (summary.unreadable) list.push(["warning", "This program cannot read the study's text, so what would have to be evaluated again is left out: " + summary.unreadable]);
+  if (summary.touches_box)
+    list.push(["warning", "Feasible cells of the best design touch the box; a larger box may hold more workspace."]);
+  if (!summary.reproducible)
+    list.push(["warning", "The clock ended a start, so another run with this seed may end elsewhere."]);
+  if (summary.unreadable)
+    list.push([
+      "warning",
+      "This program cannot read the study's text, so what would have to be evaluated again is left out: " +
+        summary.unreadable,
+    ]);
   for (const note of summary.notes) list.push(["", note]);
   return list.map(([kind, text]) => element("li", kind, text));
 }
 
-function perStep(unit) {  // what an engineer thinks in
+function perStep(unit) {
+  // what an engineer thinks in
   if (unit === "m") return [1e-3, "mm"];
   if (unit === "rad") return [Math.PI / 180, "deg"];
   return [1, unit];
@@ -97,8 +149,18 @@ function rateText(value, objective, unit) {
 /** A table of text; columns that hold numbers are set to the right. */
 function simpleTable(head, rows) {
   const isText = head.map((_, i) => rows.some((row) => row[i] && !/^[−+\d∞–]/.test(row[i])));
-  const table = element("table", "", element("thead", "", element("tr", "", ...head.map((text, i) => element("th", isText[i] ? "text" : "", text)))));
-  table.append(element("tbody", "", ...rows.map((row) => element("tr", "", ...row.map((cell, i) => element("td", isText[i] ? "text" : "", cell))))));
+  const table = element(
+    "table",
+    "",
+    element("thead", "", element("tr", "", ...head.map((text, i) => element("th", isText[i] ? "text" : "", text)))),
+  );
+  table.append(
+    element(
+      "tbody",
+      "",
+      ...rows.map((row) => element("tr", "", ...row.map((cell, i) => element("td", isText[i] ? "text" : "", cell)))),
+    ),
+  );
   return element("div", "scroll", table);
 }
 
@@ -109,14 +171,33 @@ function holdingBack(study) {
   else if (active) panel.append(element("p", "caption", "No bound and no constraint is active."));
   if (!optimality) return active ? panel : null;
   const objective = study.problem.objectives[0];
-  panel.append(element("p", "caption", "First-order optimality " + digits(optimality.optimality, 2) +
-                                       ": the gradient that is left once the active ones are allowed for."));
+  panel.append(
+    element(
+      "p",
+      "caption",
+      "First-order optimality " +
+        digits(optimality.optimality, 2) +
+        ": the gradient that is left once the active ones are allowed for.",
+    ),
+  );
   if (optimality.active.length)
-    panel.append(simpleTable(["active", "", "gain if moved"],
-                             optimality.active.map((a) => [a.name, a.kind, rateText(a.multiplier, objective, a.unit)])));
+    panel.append(
+      simpleTable(
+        ["active", "", "gain if moved"],
+        optimality.active.map((a) => [a.name, a.kind, rateText(a.multiplier, objective, a.unit)]),
+      ),
+    );
   const rates = optimality.sensitivities.filter((s) => s.as_built !== 0 || s.reoptimised);
-  panel.append(simpleTable(["sensitivity", "as built", "reoptimised"],
-                           rates.map((s) => [s.name, rateText(s.as_built, objective, s.unit), s.reoptimised === null ? "varies" : rateText(s.reoptimised, objective, s.unit)])));
+  panel.append(
+    simpleTable(
+      ["sensitivity", "as built", "reoptimised"],
+      rates.map((s) => [
+        s.name,
+        rateText(s.as_built, objective, s.unit),
+        s.reoptimised === null ? "varies" : rateText(s.reoptimised, objective, s.unit),
+      ]),
+    ),
+  );
   return panel;
 }
 
@@ -135,27 +216,44 @@ function timeSpent({ stages, seconds }) {
       part.title = count(number, outcome + " evaluation");
       bar.append(part);
     }
-    bars.append(element("span", "", (i + 1) + ". " + stage.optimiser), bar,
-                element("span", "", duration(stage.seconds)));
+    bars.append(element("span", "", i + 1 + ". " + stage.optimiser), bar, element("span", "", duration(stage.seconds)));
   }
   const kinds = Object.keys(outcomeColours).filter((outcome) => stages.some((stage) => stage.outcomes[outcome]));
   const rows = stages.map((stage, i) => [
-    (i + 1) + ". " + stage.optimiser, stage.evaluations.toLocaleString("en-GB"),
-    ...kinds.map((outcome) => stage.outcomes[outcome].toLocaleString("en-GB")), duration(stage.evaluating)]);
-  const ends = stages.map((stage, i) => element("li", "", `stage ${i + 1}, ${stage.optimiser}: ` +
-      (stage.starts ? count(stage.starts, "start") : count(stage.generations, "generation")) + (stage.stop ? ", ended: " + stage.stop : "")));
+    i + 1 + ". " + stage.optimiser,
+    stage.evaluations.toLocaleString("en-GB"),
+    ...kinds.map((outcome) => stage.outcomes[outcome].toLocaleString("en-GB")),
+    duration(stage.evaluating),
+  ]);
+  const ends = stages.map((stage, i) =>
+    element(
+      "li",
+      "",
+      `stage ${i + 1}, ${stage.optimiser}: ` +
+        (stage.starts ? count(stage.starts, "start") : count(stage.generations, "generation")) +
+        (stage.stop ? ", ended: " + stage.stop : ""),
+    ),
+  );
   const legend = element("p", "caption", "Bars: wall time, shared by how the evaluations ended: ");
   for (const outcome of kinds) {
     const key = element("span", "", "■ ");
     key.style.color = outcomeColours[outcome];
     legend.append(key, outcome + "  ");
   }
-  return element("div", "panel half stretch", element("h3", "", "Where the time went"),
-                 element("p", "caption", duration(seconds) + " of wall time in all."), bars, legend,
-                 simpleTable(["", "evaluations", ...kinds, "time of all threads"], rows), element("ul", "plain ends", ...ends));
+  return element(
+    "div",
+    "panel half stretch",
+    element("h3", "", "Where the time went"),
+    element("p", "caption", duration(seconds) + " of wall time in all."),
+    bars,
+    legend,
+    simpleTable(["", "evaluations", ...kinds, "time of all threads"], rows),
+    element("ul", "plain ends", ...ends),
+  );
 }
 
-function word(text) {  // of a shell
+function word(text) {
+  // of a shell
   return /^[\w./+-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 }
 
@@ -169,15 +267,29 @@ function howToRepeat(study) {
   const commands = ["pkmopt run " + word(toml) + " --seed " + origin.seed + " --output " + word(study.file)];
   for (const extension of origin.extensions)
     commands.push("pkmopt resume " + word(study.file) + " --" + extension.limit + " " + extension.value);
-  const panel = element("div", "panel", element("h3", "", "How to repeat it"),
-    element("p", "caption", [origin.version && "pkmopt " + origin.version, origin.revision && "revision " + origin.revision,
-      origin.created && "begun " + origin.created, origin.updated && "last written " + origin.updated].filter(Boolean).join(", ") +
-      ". The same seed gives the same bits, on any number of threads."),
+  const panel = element(
+    "div",
+    "panel",
+    element("h3", "", "How to repeat it"),
+    element(
+      "p",
+      "caption",
+      [
+        origin.version && "pkmopt " + origin.version,
+        origin.revision && "revision " + origin.revision,
+        origin.created && "begun " + origin.created,
+        origin.updated && "last written " + origin.updated,
+      ]
+        .filter(Boolean)
+        .join(", ") + ". The same seed gives the same bits, on any number of threads.",
+    ),
     element("pre", "", commands.join("\n")),
-    details("The study's text, " + toml, origin.toml));
+    details("The study's text, " + toml, origin.toml),
+  );
   if (origin.resolved) panel.append(details("The problem with every default spelled out", origin.resolved));
   for (const [i, stage] of study.summary.stages.entries())
-    if (stage.options.length) panel.append(details("Options of stage " + (i + 1) + ", " + stage.optimiser, stage.options.join("\n")));
+    if (stage.options.length)
+      panel.append(details("Options of stage " + (i + 1) + ", " + stage.optimiser, stage.options.join("\n")));
   return panel;
 }
 
@@ -189,6 +301,8 @@ function showSummary(study, section) {
   const grid = element("div", "grid");
   if (notes.length) grid.style.marginTop = "16px";
   if (table) grid.append(element("div", "panel", element("h3", "", "Designs"), designTable(table)));
-  grid.append(...[holdingBack(study), stages.length ? timeSpent(study.summary) : null, howToRepeat(study)].filter(Boolean));
+  grid.append(
+    ...[holdingBack(study), stages.length ? timeSpent(study.summary) : null, howToRepeat(study)].filter(Boolean),
+  );
   section.append(grid);
 }

@@ -46,7 +46,8 @@ function count(number, one, many = one + "s") {
 }
 
 function ordinal(number) {
-  const tens = number % 100, ones = number % 10;
+  const tens = number % 100,
+    ones = number % 10;
   return number + (tens > 10 && tens < 14 ? "th" : ones === 1 ? "st" : ones === 2 ? "nd" : ones === 3 ? "rd" : "th");
 }
 

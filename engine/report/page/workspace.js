@@ -8,18 +8,47 @@ function surfaceTrace(design, field, range, order, more = {}) {
   const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
   const intensity = values ? Array.from(cells, (cell) => values[cell]) : undefined;
   const axes = order.map((k) => design.axes[k]);
-  const template = axes.map((a, i) => `${label(a.name)} %{${"xyz"[i]}:.4g} ${label(unitText(shownUnit(a.unit)))}`).join("<br>");
+  const template = axes
+    .map((a, i) => `${label(a.name)} %{${"xyz"[i]}:.4g} ${label(unitText(shownUnit(a.unit)))}`)
+    .join("<br>");
   return {
-    type: "mesh3d", x: shown[0], y: shown[1], z: shown[2], i: corner(0), j: corner(1), k: corner(2), name: design.name,
-    ...(values ? { intensity, cmin: range[0], cmax: range[1], colorscale: fieldColours, colorbar: colourBar(axisName(fieldTitle(field), info.unit === "mixed" ? "1" : info.unit)),
-                   text: intensity.map((value) => label(fieldTitle(field)) + " " + digits(value, 4)) } : { color: seriesColours[0], text: "" }),
+    type: "mesh3d",
+    x: shown[0],
+    y: shown[1],
+    z: shown[2],
+    i: corner(0),
+    j: corner(1),
+    k: corner(2),
+    name: design.name,
+    ...(values
+      ? {
+          intensity,
+          cmin: range[0],
+          cmax: range[1],
+          colorscale: fieldColours,
+          colorbar: colourBar(axisName(fieldTitle(field), info.unit === "mixed" ? "1" : info.unit)),
+          text: intensity.map((value) => label(fieldTitle(field)) + " " + digits(value, 4)),
+        }
+      : { color: seriesColours[0], text: "" }),
     hovertemplate: template + (values ? "<br>%{text}" : "") + "<extra></extra>",
-    lighting: { ambient: 0.72, diffuse: 0.5, specular: 0.08, roughness: 0.9, fresnel: 0.05 }, lightposition: { x: 1e4, y: -2e4, z: 3e4 }, flatshading: false, ...more,
+    lighting: { ambient: 0.72, diffuse: 0.5, specular: 0.08, roughness: 0.9, fresnel: 0.05 },
+    lightposition: { x: 1e4, y: -2e4, z: 3e4 },
+    flatshading: false,
+    ...more,
   };
 }
 
 function sceneAxis(title, range) {
-  return { title: { text: title, font: { size: 12 } }, tickfont: { size: 11 }, gridcolor: colour("line"), zeroline: false, showbackground: false, showspikes: false, color: colour("ink"), ...(range ? { range } : {}) };
+  return {
+    title: { text: title, font: { size: 12 } },
+    tickfont: { size: 11 },
+    gridcolor: colour("line"),
+    zeroline: false,
+    showbackground: false,
+    showspikes: false,
+    color: colour("ink"),
+    ...(range ? { range } : {}),
+  };
 }
 
 /** Axes of a scene over workspaces, to scale where all are lengths. */
@@ -27,10 +56,16 @@ function workspaceScene(designs, order) {
   const axes = order.map((k) => designs[0].axes[k]);
   const ranges = order.map((k) => sharedRange(designs, k));
   const toScale = axes.every((a) => a.unit === "m");
-  const extents = ranges.map(([low, high]) => high - low), most = Math.max(...extents);
+  const extents = ranges.map(([low, high]) => high - low),
+    most = Math.max(...extents);
   return {
-    xaxis: sceneAxis(axisTitle(axes[0]), ranges[0]), yaxis: sceneAxis(axisTitle(axes[1]), ranges[1]), zaxis: sceneAxis(axisTitle(axes[2]), ranges[2]),
-    aspectmode: "manual", aspectratio: toScale ? Object.fromEntries(extents.map((e, i) => ["xyz"[i], 1.2 * e / most])) : { x: 1, y: 1, z: 1 },
+    xaxis: sceneAxis(axisTitle(axes[0]), ranges[0]),
+    yaxis: sceneAxis(axisTitle(axes[1]), ranges[1]),
+    zaxis: sceneAxis(axisTitle(axes[2]), ranges[2]),
+    aspectmode: "manual",
+    aspectratio: toScale
+      ? Object.fromEntries(extents.map((e, i) => ["xyz"[i], (1.2 * e) / most]))
+      : { x: 1, y: 1, z: 1 },
     camera: { eye: { x: 1.6, y: -2.05, z: 1.05 }, center: { x: 0, y: 0, z: -0.08 } },
   };
 }
@@ -48,7 +83,11 @@ function linkCameras(plots) {
         const camera = change["scene.camera"];
         if (!camera) return;
         for (const other of plots)
-          if (other !== plot && other.drawn && JSON.stringify(other.node.layout.scene.camera) !== JSON.stringify(camera))
+          if (
+            other !== plot &&
+            other.drawn &&
+            JSON.stringify(other.node.layout.scene.camera) !== JSON.stringify(camera)
+          )
             Plotly.relayout(other.node, { "scene.camera": camera });
       });
     };
@@ -59,16 +98,41 @@ function showWorkspace(study, section) {
   const designs = study.workspace.designs.map((packed) => (packed.cells ??= new Cells(packed)));
   for (const problem of study.workspace.problems) section.append(element("p", "warning", problem));
   if (!designs.length) return;
-  const first = designs[0], order = drawingOrder(first.axes);
-  const places = [...new Set(designs.filter((d) => d.held.name).map((d) => `${d.held.name} = ${shownValue(d.held.value, d.held)}, ${d.held.note}`))];
+  const first = designs[0],
+    order = drawingOrder(first.axes);
+  const places = [
+    ...new Set(
+      designs
+        .filter((d) => d.held.name)
+        .map((d) => `${d.held.name} = ${shownValue(d.held.value, d.held)}, ${d.held.note}`),
+    ),
+  ];
   const volumes = designs.map((d) => `${d.name} ${quantity(d.volume, d.volume_unit, 6)}`).join(", ");
-  section.append(element("p", "lead", "Feasible poses" + (places.length ? " at " + places.join("; ") : "") + `. Volume of the cells shown: ${volumes}.` + (designs.length > 1 ? " The designs have the same axes and colours, and turn together." : "")));
+  section.append(
+    element(
+      "p",
+      "lead",
+      "Feasible poses" +
+        (places.length ? " at " + places.join("; ") : "") +
+        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their volume: ${volumes}.` +
+        (designs.length > 1 ? " The designs have the same axes and colours, and turn together." : ""),
+    ),
+  );
   const size = designs.length > 1 ? "half" : "";
   const names = first.fields.map((field) => field.name);
-  const controls = element("div", "controls"), grid = element("div", "grid");
+  const controls = element("div", "controls"),
+    grid = element("div", "grid");
   section.append(controls, grid);
   const start = Math.max(0, names.indexOf(names.includes("dci_worst") ? "dci_worst" : "conditioning"));
-  const field = names.length ? choice(controls, "colour", names.map((name) => fieldTitle(name, study.coupling?.joints)), start, () => all.forEach((plot) => plot.update())) : { value: 0 };
+  const field = names.length
+    ? choice(
+        controls,
+        "colour",
+        names.map((name) => fieldTitle(name, study.coupling?.joints)),
+        start,
+        () => all.forEach((plot) => plot.update()),
+      )
+    : { value: 0 };
   const meaning = element("span", "control");
   controls.append(meaning);
   const current = () => {
@@ -78,27 +142,52 @@ function showWorkspace(study, section) {
   };
   current();
 
-  const surfaces = designs.map((design) => addPlot(grid, {
-    title: design.name[0].toUpperCase() + design.name.slice(1), size, height: 520,
-    make() {
-      const info = current();
-      return { data: [surfaceTrace(design, info.name, fieldRange(designs, info.name), order)], layout: { scene: workspaceScene(designs, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } } };
-    },
-  }));
+  const surfaces = designs.map((design) =>
+    addPlot(grid, {
+      title: design.name[0].toUpperCase() + design.name.slice(1),
+      size,
+      height: 520,
+      make() {
+        const info = current();
+        return {
+          data: [surfaceTrace(design, info.name, fieldRange(designs, info.name), order)],
+          layout: { scene: workspaceScene(designs, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+        };
+      },
+    }),
+  );
   linkCameras(surfaces);
 
   const cutBar = element("div", "controls panel");
   grid.append(cutBar);
   const cut = cutControls(cutBar, designs, () => cuts.forEach((plot) => plot.update()));
-  const cuts = designs.map((design) => addPlot(grid, {
-    title: "Section of " + design.name, size, height: 440, caption: "Cells in colour, contour lines in white.",
-    make() {
-      const info = current();
-      return { data: planeTraces(design, design.cut(info.name, cut.fixed, cut.layer(design), cut.across, cut.up), cut.across, cut.up,
-                                 { range: fieldRange(designs, info.name), title: info.name ? fieldTitle(info.name) : "feasible", unit: info.unit === "mixed" ? "1" : info.unit, lines: names.length > 0, bar: names.length > 0 }),
-               layout: planeAxes(designs, cut.across, cut.up) };
-    },
-  }));
+  const cuts = designs.map((design) =>
+    addPlot(grid, {
+      title: "Section of " + design.name,
+      size,
+      height: 440,
+      caption: "Cells in colour, contour lines in white.",
+      make() {
+        const info = current();
+        return {
+          data: planeTraces(
+            design,
+            design.cut(info.name, cut.fixed, cut.layer(design), cut.across, cut.up),
+            cut.across,
+            cut.up,
+            {
+              range: fieldRange(designs, info.name),
+              title: info.name ? fieldTitle(info.name) : "feasible",
+              unit: info.unit === "mixed" ? "1" : info.unit,
+              lines: names.length > 0,
+              bar: names.length > 0,
+            },
+          ),
+          layout: planeAxes(designs, cut.across, cut.up),
+        };
+      },
+    }),
+  );
   const along = first.axes.findIndex((a) => a.name === study.workspace.column);
   const [across, up] = order.filter((k) => k !== along);
   const lengths = designs.map((design) => {
@@ -106,9 +195,21 @@ function showWorkspace(study, section) {
     return design.lengths(along, across, up).map((row) => row.map((value) => (value === null ? null : value * scale)));
   });
   const range = [0, Math.max(...lengths.flatMap((matrix) => rangeOf(matrix.flat().filter((v) => v !== null))))];
-  designs.forEach((design, d) => addPlot(grid, {
-    title: `Length of the columns along ${first.axes[along].name}, ${design.name}`, size, height: 440, caption: "How far one can go along this coordinate, the other two standing still.",
-    make: () => ({ data: planeTraces(design, lengths[d], across, up, { range, title: "length", unit: shownUnit(first.axes[along].unit) }), layout: planeAxes(designs, across, up) }),
-  }));
+  designs.forEach((design, d) =>
+    addPlot(grid, {
+      title: `Length of the columns along ${first.axes[along].name}, ${design.name}`,
+      size,
+      height: 440,
+      caption: "How far one can go along this coordinate, the other two standing still.",
+      make: () => ({
+        data: planeTraces(design, lengths[d], across, up, {
+          range,
+          title: "length",
+          unit: shownUnit(first.axes[along].unit),
+        }),
+        layout: planeAxes(designs, across, up),
+      }),
+    }),
+  );
   const all = [...surfaces, ...cuts];
 }

@@ -1,0 +1,47 @@
+// The links of one design at the poses that the file was asked for (engine/report/mechanism_section.cpp).
+
+/** One design at all stored poses. */
+class Poses {
+  constructor(packed) {
+    Object.assign(this, packed);
+    this.drawn = unpack(packed.drawn);
+    this.reason = unpack(packed.reason);
+    this.at = packed.at.map(unpack);
+    this.positions = packed.positions.map(unpack);
+    this.conditioning = unpack(packed.conditioning);
+    this.parts = [...new Set(packed.links.map((link) => link.part))];
+    this.counts = packed.coordinates.map((c) => c.values.length);
+    this.number = new Int32Array(this.reason.length).fill(-1); // among the drawn ones
+    let count = 0;
+    for (let pose = 0; pose < this.number.length; ++pose) if (this.drawn[pose]) this.number[pose] = count++;
+  }
+  /** Places of the sliders at a pose, and back. */
+  places(pose) {
+    const places = [];
+    for (let c = 3; c >= 0; pose = Math.floor(pose / this.counts[c--])) places.unshift(pose % this.counts[c]);
+    return places;
+  }
+  pose(places) {
+    return places.reduce((pose, place, c) => pose * this.counts[c] + place, 0);
+  }
+  values(places) {
+    return places.map((place, c) => this.coordinates[c].values[place]);
+  }
+  /** The links that can be drawn at a pose: all, or those of the frame where it does not assemble. */
+  linksAt(pose) {
+    const number = Math.max(this.number[pose], 0),
+      assembles = this.number[pose] >= 0;
+    const end = (e) => this.at.map((column) => column[number * this.ends + e]);
+    return this.links
+      .filter((link) => assembles || link.part === "frame")
+      .map((link) => ({ ...link, from: end(link.from), to: end(link.to) }));
+  }
+  /** What all poses together span, per axis. */
+  span() {
+    const radius = Math.max(...this.links.map((link) => link.radius));
+    return this.at.map((column) => {
+      const [low, high] = rangeOf(column);
+      return [low - 1.5 * radius, high + 1.5 * radius];
+    });
+  }
+}
