@@ -21,9 +21,8 @@ PageParts page_parts() {
           {pkm_page_plotly, pkm_page_plotly_end}};
 #else
   throw std::runtime_error(
-      "this pkmopt was built without its page, because npm or its registry was missing: install npm, then configure "
-      "and "
-      "build it again");
+      "this pkmopt was built without its page, because npm or its registry was missing or PKM_REPORT was off: with npm "
+      "installed, configure and build it again");
 #endif
 }
 
