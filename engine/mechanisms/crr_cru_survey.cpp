@@ -272,13 +272,17 @@ class VoxelSurveyor final : public Surveyor {
       tables.fill(d.g, b, mode_, phi, grid, coordinates, axes.v, held_at);
       return demand_.conditioning ? conditioning_at(d.g, demand_, phi) : 0.0;
     };
-    thread_local InertiaTables own;
-    const double index_of_all = over_phi ? 0.0 : fill(own, held_at);
+    const auto own = []() -> InertiaTables& {  // each thread's
+      thread_local InertiaTables tables;
+      return tables;
+    };
+    const InertiaTables& common = own();
+    const double index_of_all = over_phi ? 0.0 : fill(own(), held_at);
     share_sections(d, held_, grid, survey,
-                   [&, &common = own, cell_volume = survey.cell_volume](std::int64_t k, const SectionCells& cells,
-                                                                        std::size_t n, Survey<double>& part) {
-                     const double index = over_phi ? fill(own, grid.centre(axes.outer, k)) : index_of_all;
-                     const InertiaTables& tables = over_phi ? own : common;
+                   [&, cell_volume = survey.cell_volume](std::int64_t k, const SectionCells& cells, std::size_t n,
+                                                         Survey<double>& part) {
+                     const double index = over_phi ? fill(own(), grid.centre(axes.outer, k)) : index_of_all;
+                     const InertiaTables& tables = over_phi ? own() : common;
                      visit_clear_columns(d, grid, test, k, cells, n, [&](const auto& cell, const auto& row) {
                        add_column(tables, cell, row, index, cell_volume, grid, held_at, part);
                        part.touches_box =

@@ -84,18 +84,22 @@ class SectionCells {
 template <class Visit>
 void share_sections(const Design<double>& d, const Held& held, const VoxelGrid& grid, Survey<double>& survey,
                     const Visit& visit) {
-  thread_local SectionCells own;
+  // By a function, because a variable of this one would begin to exist on the calling thread only.
+  const auto own = []() -> SectionCells& {
+    thread_local SectionCells cells;
+    return cells;
+  };
+  SectionCells& common = own();
   const std::size_t outer = grid_axes(held).outer;
   const bool over_phi = cuts(held).outer_is_phi;
-  if (!over_phi && !own.fill(d, held, grid, held_value(d.g, held))) return;
-  share_samples(static_cast<std::size_t>(grid.cells[outer]), survey,
-                [&, &common = own](std::size_t piece, Survey<double>& part) {
-                  const auto k = static_cast<std::int64_t>(piece);
-                  if (!over_phi)
-                    visit(k, common, piece, part);
-                  else if (own.fill(d, held, grid, grid.centre(outer, k)))
-                    visit(k, own, std::size_t{0}, part);
-                });
+  if (!over_phi && !common.fill(d, held, grid, held_value(d.g, held))) return;
+  share_samples(static_cast<std::size_t>(grid.cells[outer]), survey, [&](std::size_t piece, Survey<double>& part) {
+    const auto k = static_cast<std::int64_t>(piece);
+    if (!over_phi)
+      visit(k, common, piece, part);
+    else if (SectionCells& cells = own(); cells.fill(d, held, grid, grid.centre(outer, k)))
+      visit(k, cells, std::size_t{0}, part);
+  });
 }
 
 }  // namespace pkm::crr_cru
