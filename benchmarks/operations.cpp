@@ -119,9 +119,8 @@ Work nominal(const std::string& name, const HeldCoordinate& held, const Demand& 
   return work;
 }
 
-// By hand from hybrid_cells_kernel.cpp: four squares of 5, two roots, 11 for the ends of a column and 4 for its cells;
-// twelve more with another root where there is a hole, which the nominal design hasn't at most heights. Columns: 34
-// x 60.
+// By hand from hybrid_cells_kernel.cpp: four squares of 5, two roots, 11 for the ends of a column and 4 for its cells,
+// at 34 x 60 columns. Not counted: twelve more, and another root, where a column has a hole.
 void hybrid_voxels(benchmark::State& state) {
   constexpr Operations kColumn{21, 14, 0, 2};
   against_bound(state, nominal("2t1r-p-hybrid", {}), [&](const Survey<double>&) { return 34 * 60 * kColumn; });

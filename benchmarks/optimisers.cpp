@@ -1,34 +1,13 @@
-// The genetic algorithm: what it costs itself, the random numbers it draws, and a whole study without a file.
+// The random numbers that the genetic algorithm draws, and a whole study without a file. What it costs itself:
+// scaling.cpp.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/silent_monitor.hpp"
-#include "benchmarks/sphere.hpp"
-#include "engine/core/catalogue.hpp"
 #include "engine/math/random.hpp"
 
 namespace pkm::benchmarks {
 namespace {
-
-void ga_overhead(benchmark::State& state) {
-  const Sphere problem(4);
-  const OptimiserEntry& entry = *find_named(all_optimisers(), "ga");
-  Options options = default_options(entry.options);
-  options.set("population", std::int64_t{state.range(0)});
-  options.set("generations", std::int64_t{100});
-  const auto optimiser = entry.make(options, problem.space());
-  SerialEvaluator evaluator;
-  Silent monitor;
-  std::size_t evaluations = 0;
-  for (auto _ : state) {
-    EvaluationTable table(problem.shape());
-    optimiser->minimise({problem, evaluator, monitor, 1, {}}, table);
-    evaluations += table.size();
-  }
-  using benchmark::Counter;
-  state.counters["s_per_evaluation"] = Counter(static_cast<double>(evaluations), Counter::kIsRate | Counter::kInvert);
-}
-BENCHMARK(ga_overhead)->Name("ga_overhead/population")->Arg(20)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void random_doubles(benchmark::State& state) {
   constexpr int kCount = 4096;

@@ -1,17 +1,44 @@
 // How cost grows: with threads, population and number of variables. With the grid: voxel_survey/grid.
 #include <benchmark/benchmark.h>
 
+#include <string>
 #include <thread>
 
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/silent_monitor.hpp"
-#include "benchmarks/sphere.hpp"
-#include "benchmarks/timing.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/problem/evaluator.hpp"
 
 namespace pkm::benchmarks {
 namespace {
+
+// A problem whose evaluation costs next to nothing: the sum of squares.
+class Sphere final : public Problem {
+ public:
+  explicit Sphere(std::size_t variables) : space_(axes(variables)) {}
+  const DesignSpace& space() const override { return space_; }
+  const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
+  const std::vector<MarginInfo>& margins() const override { return margins_; }
+  const std::vector<ReportInfo>& reports() const override { return reports_; }
+  void evaluate(std::span<const double> design, EvaluationSlot result) const override {
+    double sum = 0;
+    for (const double x : design) sum += x * x;
+    result.objectives[0] = sum;
+    result.status = Status::feasible;
+  }
+
+ private:
+  static std::vector<Variable> axes(std::size_t count) {
+    std::vector<Variable> list;
+    for (std::size_t i = 0; i < count; ++i) list.push_back({"x" + std::to_string(i + 1), "m", -1, 2});
+    return list;
+  }
+
+  DesignSpace space_;
+  std::vector<ObjectiveInfo> objectives_{{"sphere", "m^2", "sum of squares", Direction::minimise}};
+  std::vector<MarginInfo> margins_;
+  std::vector<ReportInfo> reports_;
+};
 
 /// Runs the genetic algorithm and counts designs per second.
 void run_ga(benchmark::State& state, const Problem& problem, std::int64_t population, std::int64_t generations,
@@ -53,11 +80,14 @@ void population(benchmark::State& state) {
 BENCHMARK(population)->Name("scaling/population")->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMillisecond);
 
 // The algorithm alone, with free evaluations.
-void own_population(benchmark::State& state) {
+void own(benchmark::State& state, std::int64_t generations) {
   const Sphere problem(4);
   SerialEvaluator evaluator;
-  run_ga(state, problem, state.range(0), 10, evaluator);
+  run_ga(state, problem, state.range(0), generations, evaluator);
 }
+void ga_overhead(benchmark::State& state) { own(state, 100); }
+BENCHMARK(ga_overhead)->Name("ga_overhead/population")->Arg(20)->Arg(1000)->Unit(benchmark::kMicrosecond);
+void own_population(benchmark::State& state) { own(state, 10); }
 BENCHMARK(own_population)
     ->Name("scaling/own_population")
     ->RangeMultiplier(10)

@@ -10,6 +10,21 @@ std::optional<Gain> gain_over(double baseline, double value, Direction direction
   return Gain{percent, percent != 0 && (direction == Direction::maximise) != (percent > 0)};
 }
 
+std::optional<DesignRecord> best_so_far(const StudyContents& contents) {
+  if (contents.best.row < 0) return {};
+  const EvaluationTable& table = contents.stages[static_cast<std::size_t>(contents.best.stage)].table;
+  const auto row = static_cast<std::size_t>(contents.best.row);
+  const auto copy = [](std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); };
+  DesignRecord record;
+  for (const ParameterRecord& p : contents.problem.parameters)
+    record.parameters.push_back(p.variable < 0 ? p.value : table.design(row)[static_cast<std::size_t>(p.variable)]);
+  record.objectives = copy(table.objective_row(row));
+  record.margins = copy(table.margin_row(row));
+  record.reports = copy(table.report_row(row));
+  record.status = table.status[row];
+  return record;
+}
+
 std::optional<std::size_t> most_broken(std::span<const double> margins) {
   std::optional<std::size_t> worst;
   for (std::size_t i = 0; i < margins.size(); ++i)

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "engine/problem/problem.hpp"
+#include "engine/storage/study_contents.hpp"
 
 namespace pkm {
 
@@ -16,6 +17,10 @@ struct Gain {
 };
 /// None where there is nothing to compare: the baseline's value is 0, or one is NaN.
 std::optional<Gain> gain_over(double baseline, double value, Direction direction);
+
+/// The best evaluation as the file has it, also before the study's end; none while nothing is evaluated. Without what
+/// is worked out once the study has ended: volume and cells.
+std::optional<DesignRecord> best_so_far(const StudyContents& contents);
 
 /// The margin that is broken most; none where all hold.
 std::optional<std::size_t> most_broken(std::span<const double> margins);

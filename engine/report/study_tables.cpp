@@ -3,6 +3,7 @@
 #include <span>
 
 #include "engine/optimisers/front.hpp"
+#include "engine/report/standing.hpp"
 
 namespace pkm {
 namespace {
@@ -91,26 +92,10 @@ CsvTable populations(const StudyContents& contents) {
   return table;
 }
 
-/// The best design as far as the file knows it before the study's end.
-DesignRecord best_so_far(const StudyContents& contents) {
-  const EvaluationTable& rows = contents.stages[static_cast<std::size_t>(contents.best.stage)].table;
-  const auto row = static_cast<std::size_t>(contents.best.row);
-  const auto list = [](std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); };
-  DesignRecord best;
-  for (const ParameterRecord& parameter : contents.problem.parameters)
-    best.parameters.push_back(parameter.variable < 0 ? parameter.value
-                                                     : rows.design(row)[static_cast<std::size_t>(parameter.variable)]);
-  best.objectives = list(rows.objective_row(row));
-  best.margins = list(rows.margin_row(row));
-  best.reports = list(rows.report_row(row));
-  best.status = rows.status[row];
-  return best;
-}
-
 CsvTable best(const StudyContents& contents) {
   std::vector<std::pair<std::string, DesignRecord>> designs;
   const auto& final = contents.final;
-  if (!final || !final->best) designs.emplace_back("best", best_so_far(contents));
+  if (!final || !final->best) designs.emplace_back("best", best_so_far(contents).value());
   if (final) {
     const auto take = [&](const char* name, const std::optional<DesignRecord>& record) {
       if (record) designs.emplace_back(name, *record);

@@ -14,22 +14,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Found = std::optional<DesignRecord>;
 
-/// The best evaluation as the file has it, also before the study's end.
-Found best_so_far(const StudyContents& contents) {
-  if (contents.best.row < 0) return {};
-  const EvaluationTable& table = contents.stages[static_cast<std::size_t>(contents.best.stage)].table;
-  const auto row = static_cast<std::size_t>(contents.best.row);
-  const auto copy = [](std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); };
-  DesignRecord record;
-  for (const ParameterRecord& p : contents.problem.parameters)
-    record.parameters.push_back(p.variable < 0 ? p.value : table.design(row)[static_cast<std::size_t>(p.variable)]);
-  record.objectives = copy(table.objective_row(row));
-  record.margins = copy(table.margin_row(row));
-  record.reports = copy(table.report_row(row));
-  record.status = table.status[row];
-  return record;
-}
-
 /// A design of the table: "best", and the same on exact columns where there are both.
 struct Column {
   std::string name;
