@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12 packages), builds everything and runs every test; the last lines are CTest's.
-# In this order: formatting; a Clang build with address and undefined-behaviour sanitizers, in which every header is
-# compiled on its own, too; the release build by GCC, in which a thread sanitizer watches the team. Warnings are errors in
-# both builds.
+# In this order: formatting; a Clang build with address and undefined-behaviour sanitizers, in which headers without a
+# source are compiled on their own, too; the release build by GCC, in which a thread sanitizer watches the team. Warnings
+# are errors in both builds.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source experiments/debian-packages.sh
@@ -16,7 +16,7 @@ step() {  # step NAME COMMAND...: runs the command, remembers its time
   summary+=("$(printf '%5d s  %s' $((SECONDS - begin)) "$name")")
 }
 build() {  # build PRESET
-  cmake --preset "$1" --log-level=WARNING -DPKM_PRECOMPILE=ON
+  cmake --preset "$1" --log-level=WARNING
   cmake --build --preset "$1" --parallel "$(nproc)"
 }
 check_format() {

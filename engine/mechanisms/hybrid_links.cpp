@@ -7,9 +7,9 @@
 //   chain      input shaft F F1, telescopic shaft F1 F3, output shaft F3 F' and on it the tool, kToolRadii long
 //
 // Rails and the bar are half as thick as link A.
-#include <algorithm>
-
 #include "engine/mechanisms/hybrid_links.hpp"
+
+#include <algorithm>
 
 namespace pkm::hybrid {
 namespace {

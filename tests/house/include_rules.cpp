@@ -89,15 +89,24 @@ std::string refuse_outside(const std::string& path, const std::string& header) {
   return path.ends_with(".cpp") || folder == "experiments/app" ? "" : "may appear in .cpp files only";
 }
 
+const std::regex kInclude(R"(^\s*#\s*include\s*(["<])([^">]+)[">].*$)");
+
 }  // namespace
 
+bool includes_first(const std::string& source, const std::string& header) {
+  std::istringstream lines(source);
+  std::string line;
+  for (std::smatch match; std::getline(lines, line);)
+    if (std::regex_match(line, match, kInclude)) return match[1] == "\"" && match[2] == header;
+  return false;
+}
+
 std::vector<std::string> broken_rules(const std::string& path, const std::string& text) {
-  static const std::regex pattern(R"(^\s*#\s*include\s*(["<])([^">]+)[">].*$)");
   std::vector<std::string> broken;
   std::istringstream lines(text);
   std::string line;
   for (std::smatch match; std::getline(lines, line);) {
-    if (!std::regex_match(line, match, pattern)) continue;
+    if (!std::regex_match(line, match, kInclude)) continue;
     const std::string header = match[2];
     const std::string reason =
         match[1] == "<" ? refuse_outside(path, header) : refuse_own(folder_of(path), folder_of(header));

@@ -13,4 +13,8 @@ namespace pkm::house {
 /// @param path  of the file from the repository's root: "engine/core/error.hpp"
 std::vector<std::string> broken_rules(const std::string& path, const std::string& text);
 
+/// Whether the first `#include` of a source is `header`: then compiling the source shows that the header needs nothing
+/// before it.
+bool includes_first(const std::string& source, const std::string& header);
+
 }  // namespace pkm::house

@@ -73,6 +73,13 @@ TEST(IncludeRules, FindAnOutsideLibraryOutOfPlace) {
                           "is in no list of tests/house/include_rules.cpp"));
 }
 
+TEST(IncludeRules, FindASourceThatDoesNotBeginWithItsHeader) {
+  EXPECT_TRUE(includes_first("// What it is.\n#include \"engine/core/a.hpp\"\n#include <span>\n", "engine/core/a.hpp"));
+  EXPECT_FALSE(includes_first("#include <span>\n#include \"engine/core/a.hpp\"\n", "engine/core/a.hpp"));
+  EXPECT_FALSE(includes_first("#include <engine/core/a.hpp>\n", "engine/core/a.hpp"));
+  EXPECT_FALSE(includes_first("", "engine/core/a.hpp"));
+}
+
 TEST(IncludeRules, HoldInEverySource) {
   namespace fs = std::filesystem;
   const fs::path root = PKM_ROOT;
@@ -84,7 +91,11 @@ TEST(IncludeRules, HoldInEverySource) {
       if (extension != ".cpp" && extension != ".hpp") continue;
       std::ostringstream text;
       text << std::ifstream(entry.path()).rdbuf();
-      EXPECT_THAT(broken_rules(fs::relative(entry.path(), root), text.str()), IsEmpty());
+      const fs::path name = fs::relative(entry.path(), root), header = fs::path(name).replace_extension(".hpp");
+      EXPECT_THAT(broken_rules(name, text.str()), IsEmpty());
+      if (extension == ".cpp" && fs::exists(root / header)) {
+        EXPECT_TRUE(includes_first(text.str(), header)) << name << " does not begin with its header";
+      }
       ++files;
     }
   }
