@@ -113,7 +113,8 @@ class CrrCru final : public Mechanism {
                                     name_of(modes_.front()) + " only, so inertia is not surveyed in the mode " +
                                     demand.mode + " beside it");
     }
-    return make_surveyor(platform_, mass_model_, mode, held, plan, demand);
+    const auto make = plan.method == Method::columns ? make_column_surveyor : make_voxel_surveyor;
+    return make(platform_, mass_model_, mode, held, plan, demand);
   }
   VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
     return crr_cru::voxel_map(platform_, modes_.front(), sweep_of(info_, plan).held, p, plan);

@@ -1,10 +1,9 @@
-// (3CRR/R)&CRU and Quadrupteron: which cells of lines lie in a ring, kLanes lines side by side; and how many cells rows
-// of bits have in common.
+// (3CRR/R)&CRU and Quadrupteron: which cells of lines lie in a ring, kLanes lines side by side, as rows of bits; and
+// how many cells rows of bits have in common.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "engine/core/instruction_set.hpp"
 #include "engine/math/lanes.hpp"
@@ -21,15 +20,10 @@ struct RingLines {
   double in2, out2;       ///< squared radii
 };
 
-/// Of each line, the cells [first, end) whose distance is at most the outer radius, and of them [hole_first, hole_end)
-/// that are nearer than the inner one. Whole numbers; empty where the end is not greater. As long as whole lanes.
-struct RingCells {
-  std::vector<double> first, end, hole_first, hole_end;
-};
-
-/// The same cells that (place - across)^2 + (centre of the cell - center)^2 <= out2 and < in2 find one by one.
+/// Takes out of each line's row of bits, `words` long, the cells that are not in the ring: the same cells for which
+/// in2 <= (place - across)^2 + (centre of the cell - center)^2 <= out2 is false, one by one.
 template <InstructionSet set>
-void cells_in_ring(const RingLines& lines, RingCells& cells);
+void keep_ring(const RingLines& lines, std::size_t words, std::uint64_t* rows);
 
 /// One plane of cells: a column along v has the bits of `of_v` that its own row has, where `of_u` has its bit.
 struct PlaneRows {

@@ -60,8 +60,6 @@ bool SectionCells::fill(const Design<double>& d, const Held& held, const VoxelGr
   } else {
     lay(n_, grid, axes.outer);
   }
-  const auto lines = std::max(n_.center.size(), u_.center.size());
-  for (auto* list : {&cells_.first, &cells_.end, &cells_.hole_first, &cells_.hole_end}) list->resize(lines);
   return fill(d, f, c.normal, n_, c.u, u_, u_at_n_) && fill(d, f, c.normal, n_, c.v, v_, v_at_n_) &&
          fill(d, f, c.u, u_, c.v, v_, v_at_u_);
 }
@@ -84,7 +82,7 @@ bool SectionCells::fill(const Design<double>& d, const Frame<double>& f, std::si
   range_.resize(words);
   for (std::size_t w = 0; w < words; ++w) range_[w] = bits_of(first, end, w);
   table.words = words;
-  table.bits.assign(across.cells * words, 0);
+  table.bits.assign(across.center.size() * words, 0);
   const auto [first_line, end_line] = inside(across, f.range[a]);
   const auto rows_begin = static_cast<std::size_t>(first_line), rows_end = static_cast<std::size_t>(end_line);
   for (std::size_t row = rows_begin; row < rows_end; ++row)
@@ -100,12 +98,7 @@ bool SectionCells::fill(const Design<double>& d, const Frame<double>& f, std::si
                           f.center[i][a],
                           d.in2[i],
                           d.out2[i]};
-    with_instruction_set([&]<InstructionSet set>() { cells_in_ring<set>(lines, cells_); });
-    const auto whole = [](double cell) { return static_cast<std::int64_t>(cell); };
-    for (std::size_t row = rows_begin; row < rows_end; ++row)
-      for (std::size_t w = 0; w < words; ++w)
-        table.bits[row * words + w] &= bits_of(whole(cells_.first[row]), whole(cells_.end[row]), w) &
-                                       ~bits_of(whole(cells_.hole_first[row]), whole(cells_.hole_end[row]), w);
+    with_instruction_set([&]<InstructionSet set>() { keep_ring<set>(lines, words, table.bits.data()); });
   }
   return std::ranges::any_of(table.bits, [](std::uint64_t word) { return word != 0; });
 }

@@ -28,7 +28,8 @@ inline GridAxes grid_axes(const Held& held) { return held.coordinate == 3 ? Grid
 /// Holds every feasible pose: positions by the slides' ranges, phi by kappa_p >= 0. Order of axes as the sweep's.
 Box default_box(const Design<double>& d, const Held& held);
 
-/// Of every cell along one coordinate, the feasible cells along another: a row of bits in whole words.
+/// Of every cell along one coordinate, the feasible cells along another: a row of bits in whole words. Behind the last
+/// row, empty ones up to whole lanes.
 struct BitTable {
   std::size_t words = 0;
   std::vector<std::uint64_t> bits;
@@ -76,7 +77,6 @@ class SectionCells {
   Axis n_, u_, v_;
   BitTable u_at_n_, v_at_n_, v_at_u_;
   std::vector<std::uint64_t> range_;
-  RingCells cells_;
 };
 
 /// Calls visit(k, cells, n, survey) for every outer cell k whose section may have cells, among the team lent to this
