@@ -78,11 +78,6 @@ PKM_LANES LaneMask<W> operator&(const LaneMask<W>& x, const LaneMask<W>& y) {
   PKM_EACH_PART r.part[i] = x.part[i] & y.part[i];
   return r;
 }
-PKM_LANES LaneMask<W> operator|(const LaneMask<W>& x, const LaneMask<W>& y) {
-  LaneMask<W> r;
-  PKM_EACH_PART r.part[i] = x.part[i] | y.part[i];
-  return r;
-}
 
 /// Lanes have no derivatives.
 PKM_LANES const Lanes<W>& value_of(const Lanes<W>& x) { return x; }

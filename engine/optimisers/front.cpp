@@ -66,8 +66,6 @@ Ranges ranges_of(const Scores& front) {
   return e;
 }
 
-std::vector<double> prices(const Scores& front) { return sums(normalised(front)); }
-
 std::vector<std::size_t> ends_of(const Scores& front) {
   std::vector<std::size_t> ends;
   for (std::size_t k = 0; k < front.objectives; ++k) {

@@ -23,10 +23,6 @@ struct Ranges {
 };
 Ranges ranges_of(const Scores& front);
 
-/// Of each design the sum of its scores, each from 0 for the front's best to 1 for its worst: what a compromise that
-/// weighs all objectives by their ranges would pay.
-std::vector<double> prices(const Scores& front);
-
 /// The best design of each score, the first of several. The front must not be empty.
 std::vector<std::size_t> ends_of(const Scores& front);
 

@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/math/statistics.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/report/sections.hpp"
 #include "engine/report/thinning.hpp"
@@ -16,15 +16,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostGenerations = 1000;
 constexpr std::size_t kMostEvaluations = 2000;  // of a solver stage
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Value at share p of sorted numbers, between neighbours by proportion; NaN without numbers.
-double quantile(const std::vector<double>& sorted, double p) {
-  if (sorted.empty()) return kNone;
-  const double at = p * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
 
 /// The best feasible value of an objective among the rows before each row; NaN while there is none.
 std::vector<double> best_before(const EvaluationTable& table, std::size_t objective, Direction direction) {
@@ -54,11 +45,12 @@ Json objective_curves(const StageRecord& stage, std::size_t objective, Direction
     for (const std::int64_t row : stage.generations.population_of(g))
       if (const auto r = static_cast<std::size_t>(row); stage.table.status[r] == Status::feasible)
         values.push_back(stage.table.objective_row(r)[objective]);
-    std::sort(values.begin(), values.end());
+    const std::vector<double> equal(values.size(), 1.0);
+    const auto quantile = [&](double p) { return values.empty() ? kNone : weighted_quantile(equal, values, p); };
     so_far.push_back(best[rows_after(stage, g)]);
-    median.push_back(quantile(values, 0.5));
-    lower.push_back(quantile(values, 0.25));
-    upper.push_back(quantile(values, 0.75));
+    median.push_back(quantile(0.5));
+    lower.push_back(quantile(0.25));
+    upper.push_back(quantile(0.75));
   }
   return {{"best", so_far}, {"median", median}, {"lower", lower}, {"upper", upper}};
 }

@@ -48,8 +48,8 @@ TEST(Lanes, SelectByMasks) {
   const L x = L::load(kX.data()), y = L::load(kY.data());
   EXPECT_EQ(values(select((x < y) & (x > -2.0), x, y)),
             each([](double a, double b) { return a < b && a > -2.0 ? a : b; }));
-  EXPECT_EQ(values(select((x >= 1.0) | (y <= 0.0), L(1.0), L(0.0))),
-            each([](double a, double b) { return a >= 1.0 || b <= 0.0 ? 1.0 : 0.0; }));
+  EXPECT_EQ(values(select((x >= 1.0) & (y <= 0.0), L(1.0), L(0.0))),
+            each([](double a, double b) { return a >= 1.0 && b <= 0.0 ? 1.0 : 0.0; }));
   EXPECT_EQ(values(lesser(x, y)), each([](double a, double b) { return a < b ? a : b; }));
   EXPECT_EQ(values(greater(x, y)), each([](double a, double b) { return a > b ? a : b; }));
 }
