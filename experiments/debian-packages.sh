@@ -6,6 +6,7 @@ pkm_build_packages=(
   libhdf5-dev libxxhash-dev         # study files and their checksum
   libtomlplusplus-dev               # studies
   libnlopt-dev coinor-libipopt-dev  # solvers
+  liblapack-dev                     # what Ipopt asks for when it is linked
   libmuparser-dev                   # formulas in studies
   libcli11-dev nlohmann-json3-dev   # command line, --json
   librandom123-dev                  # counter-based random numbers
@@ -18,7 +19,7 @@ pkm_test_packages=(
   python3-vtk9                                # reads exported workspaces as ParaView does
   chromium                                    # looks at the pages of pkmopt report
   clang-14 libclang-rt-14-dev                 # second compiler, its sanitizers
-  clang-format-14
+  clang-format-14 ccache
 )
 # For the page of pkmopt report. By the command's name: where node comes from elsewhere, Debian's package does not install.
 command -v npm >/dev/null || pkm_build_packages+=(npm)
