@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "engine/report/json_text.hpp"
@@ -37,6 +39,23 @@ Json poses(const Trajectory& trajectory) {
   return packed;
 }
 
+/// Input and output of the auxiliary chain, and their derivatives by time; null where no sample has a chain.
+Json chain(const Trajectory& trajectory) {
+  if (std::ranges::none_of(trajectory.points, [](const TrajectoryPoint& point) { return point.chain.has_value(); }))
+    return Json();
+  const auto curves = [&](double Turning::*what) {
+    std::vector<double> input, output;
+    for (const TrajectoryPoint& point : trajectory.points) {
+      input.push_back(point.motion.input.*what);
+      output.push_back(point.chain && point.chain->turns ? point.chain->output.*what : std::nan(""));
+    }
+    return Json{packed_floats(input), packed_floats(output)};
+  };
+  return {{"angles", curves(&Turning::angle)},
+          {"speeds", curves(&Turning::speed)},
+          {"accelerations", curves(&Turning::acceleration)}};
+}
+
 /// Peaks and energies; what needs forces is null where a sample has none.
 Json summary(const TrajectorySummary& s) {
   Json json = {{"infeasible", s.infeasible}, {"peak_speed", s.peak_speed.m}};
@@ -64,6 +83,7 @@ Json along(const Views& views, const View& view, const Motion& motion) {
           {"speeds", columns(found, &TrajectoryPoint::speeds)},
           {"forces", columns(found, &TrajectoryPoint::forces)},
           {"power", columns(found, &TrajectoryPoint::power)},
+          {"chain", chain(found)},
           {"conditioning", packed_floats(conditioning)},
           {"reasons", reasons},
           {"summary", summary(found.summary)}};
@@ -84,7 +104,10 @@ std::string motions_data(const Views& views) {
     if (!json["designs"].empty()) motions.push_back(std::move(json));
   }
   if (motions.empty()) return "";
-  return json_text(Json{{"coordinates", info.coordinates}, {"joints", info.joints}, {"motions", motions}});
+  return json_text(Json{{"coordinates", info.coordinates},
+                        {"joints", info.joints},
+                        {"chain", {info.chain_input, info.chain_output}},
+                        {"motions", motions}});
 }
 
 }  // namespace pkm

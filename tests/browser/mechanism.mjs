@@ -39,6 +39,8 @@ assert.ok(compared >= 4);
 const text = await page.text("#summary");
 for (const value of Object.values(shown.best.design))
   assert.ok(text.includes(String(Number(value.toPrecision(10)))), `${value} is not in the summary`);
+if (name === "2t1r-p-hybrid")
+  assert.ok((await page.text("#motions")).includes("Angles of the auxiliary chain"), "no curves of the chain");
 const inFile = JSON.parse(
   execFileSync(
     "/usr/bin/python3",

@@ -7,6 +7,13 @@ const motionColumns = [
   ["power", "Power of the drives", "power", "W"],
 ];
 
+// Of the auxiliary chain: what is shown of a value in radians is `scale` times it.
+const chainColumns = [
+  ["angles", "Angles of the auxiliary chain", "angle", "deg", 180 / Math.PI],
+  ["speeds", "Its angular speeds", "angular speed", "rad/s", 1],
+  ["accelerations", "Its angular accelerations", "angular acceleration", "rad/s^2", 1],
+];
+
 /** How an array of sums that cancel is told: what is rounding beside the rest is 0. */
 function beside(value, size) {
   return Math.abs(value) < 1e-9 * Math.abs(size) ? 0 : value;
@@ -16,19 +23,20 @@ function timesOf(motion) {
   return Array.from({ length: motion.samples }, (_, k) => (motion.duration * k) / (motion.samples - 1));
 }
 
-function motionTraces(motion, joints, key, unit) {
+/** One line for each of `names`, of every design. */
+function motionTraces(motion, names, unit, curvesOf) {
   const time = timesOf(motion);
   return motion.designs.flatMap((design, d) =>
-    (design[key] || []).map((packed, i) => ({
+    (curvesOf(design) || []).map((values, i) => ({
       type: "scatter",
       mode: "lines",
       x: time,
-      y: unpack(packed),
-      name: label(joints[i]),
-      legendgroup: joints[i],
+      y: values,
+      name: label(names[i]),
+      legendgroup: names[i],
       showlegend: d === 0,
       line: { color: limbColours[i], width: d ? 1.5 : 2.5, dash: d ? "dash" : "solid" },
-      hovertemplate: `%{y:.4g} ${label(unit)} at %{x:.4g} s<extra>${label(joints[i] + ", " + design.name)}</extra>`,
+      hovertemplate: `%{y:.4g} ${label(unitText(unit))} at %{x:.4g} s<extra>${label(names[i] + ", " + design.name)}</extra>`,
     })),
   );
 }
@@ -101,7 +109,7 @@ function obstacles(motion) {
 }
 
 function showMotions(study, section) {
-  const { motions, joints, coordinates } = study.motions;
+  const { motions, joints, chain, coordinates } = study.motions;
   section.append(
     element(
       "p",
@@ -151,20 +159,26 @@ function showMotions(study, section) {
       }),
     }),
   );
-  for (const [key, title, name, unit] of motionColumns) {
-    if (!motions.some((m) => m.designs.some((d) => d[key]))) continue;
+  const addCurves = (title, name, unit, names, curvesOf) => {
+    if (!motions.some((m) => m.designs.some(curvesOf))) return;
     plots.push(
       addPlot(grid, {
         title,
         size: "half",
         height: 360,
         make: () => ({
-          data: motionTraces(motion(), joints, key, unit),
+          data: motionTraces(motion(), names, unit, curvesOf),
           layout: { xaxis: axis("time [s]"), yaxis: axis(axisName(name, unit)) },
         }),
       }),
     );
-  }
+  };
+  for (const [key, title, name, unit] of motionColumns)
+    addCurves(title, name, unit, joints, (design) => design[key]?.map(unpack));
+  for (const [key, title, name, unit, scale] of chainColumns)
+    addCurves(title, name, unit, chain, (design) =>
+      design.chain?.[key].map((packed) => Array.from(unpack(packed), (value) => value * scale)),
+    );
   plots.push(
     addPlot(grid, {
       title: "Conditioning",

@@ -7,12 +7,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/motion/motions.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/report/thinning.hpp"
+#include "engine/workspace/trajectory.hpp"
 #include "tests/unit/contracts/nominal.hpp"
 #include "tests/unit/storage/sample_study.hpp"
 
@@ -170,6 +172,37 @@ TEST(PageData, ADesignHasAWorkspaceItsLinksAndItsCoupling) {
   EXPECT_LT(drawn["ends"], 2 * drawn["links"].size());  // joined links share their ends
   EXPECT_EQ(study["coupling"]["designs"][0]["indices"].size(), 5u);
   EXPECT_FALSE(study.contains("motions"));
+}
+
+TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
+  const auto mechanism = mechanism_called("2t1r-p-hybrid");
+  const MechanismInfo& info = mechanism->info();
+  const auto formula = [](const std::string& text) { return Formula(text, time_name()); };
+  const auto motion =
+      with_input(formulas_of_time({formula("-0.01*t"), formula("0.01*t"), formula("0.25"), formula("0.1*sin(t)")}, 5),
+                 formula("t"));
+  const Views views = views_of(*mechanism, test::plan(info, Method::voxels, 6), info.modes.front(), {{"turns", motion}},
+                               {"nominal", test::nominal(info)});
+  const json page = json::parse(motions_data(views)), &chain = page["motions"][0]["designs"][0]["chain"];
+  EXPECT_EQ(page["chain"], json({info.chain_input, info.chain_output}));
+
+  const Trajectory found =
+      follow(*mechanism, views.designs[0].parameters, views.mode, views.limits, *motion, page["motions"][0]["samples"]);
+  std::vector<double> input, output;
+  for (const TrajectoryPoint& point : found.points) {
+    input.push_back(point.motion.time);
+    output.push_back(point.chain->output.angle);
+  }
+  EXPECT_EQ(chain["angles"], json({packed_floats(input), packed_floats(output)}));
+  EXPECT_EQ(chain["speeds"][0], packed_floats(std::vector<double>(input.size(), 1.0)));
+  EXPECT_EQ(chain["accelerations"].size(), 2u);
+
+  const auto without = mechanism_called("3crr-r-cru");
+  const auto rest = formulas_of_time({formula("0.15"), formula("0.2"), formula("0.21"), formula("0.1*sin(t)")}, 5);
+  const json none = json::parse(
+      motions_data(views_of(*without, test::plan(without->info(), Method::voxels, 6), without->info().modes.front(),
+                            {{"turns", rest}}, {"nominal", test::nominal(without->info())})));
+  EXPECT_TRUE(none["motions"][0]["designs"][0]["chain"].is_null());
 }
 
 TEST(PageData, ADesignThatIsNoneIsSaidSo) {
