@@ -19,7 +19,7 @@ pkm_test_packages=(
   python3-vtk9                                # reads exported workspaces as ParaView does
   chromium                                    # looks at the pages of pkmopt report
   clang-14 libclang-rt-14-dev                 # second compiler, its sanitizers
-  clang-format-14 ccache
+  clang-format-14
 )
 # For the page of pkmopt report. By the command's name: where node comes from elsewhere, Debian's package does not install.
 command -v npm >/dev/null || pkm_build_packages+=(npm)

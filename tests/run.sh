@@ -15,8 +15,8 @@ step() {  # step NAME COMMAND...: runs the command, remembers its time
   "$@"
   summary+=("$(printf '%5d s  %s' $((SECONDS - begin)) "$name")")
 }
-build() {  # build PRESET OPTION...
-  cmake --preset "$1" --log-level=WARNING -DPKM_PRECOMPILE=ON "${@:2}"
+build() {  # build PRESET
+  cmake --preset "$1" --log-level=WARNING -DPKM_PRECOMPILE=ON
   cmake --build --preset "$1" --parallel "$(nproc)"
 }
 check_format() {
@@ -28,7 +28,7 @@ step "packages" pkm_install_missing "${pkm_build_packages[@]}" "${pkm_test_packa
 step "formatting" check_format
 step "build with address and undefined-behaviour sanitizers" build asan
 step "its tests" ctest --preset asan
-step "release build" build ci -DCMAKE_CXX_COMPILER_LAUNCHER=ccache  # packaging.add_subdirectory compiles it again
+step "release build" build ci
 
 printf '== so far\n'
 printf '%s\n' "${summary[@]}"
