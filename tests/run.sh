@@ -16,7 +16,7 @@ step() {  # step NAME COMMAND...: runs the command, remembers its time
   summary+=("$(printf '%5d s  %s' $((SECONDS - begin)) "$name")")
 }
 build() {  # build PRESET
-  cmake --preset "$1" --log-level=WARNING -DPKM_PRECOMPILE=ON
+  cmake --preset "$1" --log-level=WARNING
   cmake --build --preset "$1" --parallel "$(nproc)"
 }
 check_format() {

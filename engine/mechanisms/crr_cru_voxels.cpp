@@ -79,14 +79,14 @@ bool SectionCells::fill(const Design<double>& d, const Frame<double>& f, std::si
                       std::upper_bound(begin, end, range.upper) - begin};
   };
   const auto [first, end] = inside(along, f.range[b]);
-  range_.resize(words);
-  for (std::size_t w = 0; w < words; ++w) range_[w] = bits_of(first, end, w);
   table.words = words;
   table.bits.assign(across.center.size() * words, 0);
   const auto [first_line, end_line] = inside(across, f.range[a]);
   const auto rows_begin = static_cast<std::size_t>(first_line), rows_end = static_cast<std::size_t>(end_line);
-  for (std::size_t row = rows_begin; row < rows_end; ++row)
-    for (std::size_t w = 0; w < words; ++w) table.bits[row * words + w] = range_[w];
+  for (std::size_t w = 0; w < words; ++w) {
+    const std::uint64_t word = bits_of(first, end, w);
+    for (std::size_t row = rows_begin; row < rows_end; ++row) table.bits[row * words + w] = word;
+  }
   for (std::size_t i = 0; i < 4; ++i) {
     if (!(kPlane[i][0] == a && kPlane[i][1] == b) && !(kPlane[i][0] == b && kPlane[i][1] == a)) continue;
     const RingLines lines{along.lower,

@@ -76,7 +76,6 @@ class SectionCells {
 
   Axis n_, u_, v_;
   BitTable u_at_n_, v_at_n_, v_at_u_;
-  std::vector<std::uint64_t> range_;
 };
 
 /// Calls visit(k, cells, n, survey) for every outer cell k whose section may have cells, among the team lent to this

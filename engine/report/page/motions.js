@@ -7,7 +7,7 @@ const motionColumns = [
   ["power", "Power of the drives", "power", "W"],
 ];
 
-// Of the auxiliary chain: what is shown of a value in radians is `scale` times it.
+// Of the auxiliary chain; the last is the unit per radian.
 const chainColumns = [
   ["angles", "Angles of the auxiliary chain", "angle", "deg", 180 / Math.PI],
   ["speeds", "Its angular speeds", "angular speed", "rad/s", 1],
@@ -23,15 +23,15 @@ function timesOf(motion) {
   return Array.from({ length: motion.samples }, (_, k) => (motion.duration * k) / (motion.samples - 1));
 }
 
-/** One line for each of `names`, of every design. */
-function motionTraces(motion, names, unit, curvesOf) {
+/** One line for each of `names`, of every design. @param curvesOf  packed; what is shown is `scale` times it */
+function motionTraces(motion, names, unit, scale, curvesOf) {
   const time = timesOf(motion);
   return motion.designs.flatMap((design, d) =>
-    (curvesOf(design) || []).map((values, i) => ({
+    (curvesOf(design) || []).map((packed, i) => ({
       type: "scatter",
       mode: "lines",
       x: time,
-      y: values,
+      y: Array.from(unpack(packed), (value) => value * scale),
       name: label(names[i]),
       legendgroup: names[i],
       showlegend: d === 0,
@@ -159,7 +159,7 @@ function showMotions(study, section) {
       }),
     }),
   );
-  const addCurves = (title, name, unit, names, curvesOf) => {
+  const addCurves = (title, name, unit, scale, names, curvesOf) => {
     if (!motions.some((m) => m.designs.some(curvesOf))) return;
     plots.push(
       addPlot(grid, {
@@ -167,18 +167,16 @@ function showMotions(study, section) {
         size: "half",
         height: 360,
         make: () => ({
-          data: motionTraces(motion(), names, unit, curvesOf),
+          data: motionTraces(motion(), names, unit, scale, curvesOf),
           layout: { xaxis: axis("time [s]"), yaxis: axis(axisName(name, unit)) },
         }),
       }),
     );
   };
   for (const [key, title, name, unit] of motionColumns)
-    addCurves(title, name, unit, joints, (design) => design[key]?.map(unpack));
+    addCurves(title, name, unit, 1, joints, (design) => design[key]);
   for (const [key, title, name, unit, scale] of chainColumns)
-    addCurves(title, name, unit, chain, (design) =>
-      design.chain?.[key].map((packed) => Array.from(unpack(packed), (value) => value * scale)),
-    );
+    addCurves(title, name, unit, scale, chain, (design) => design.chain?.[key]);
   plots.push(
     addPlot(grid, {
       title: "Conditioning",
