@@ -1,7 +1,6 @@
 #include "engine/mechanisms/crr_cru_rings.hpp"
 
 #include <cstring>
-#include <iterator>
 
 namespace pkm::crr_cru {
 namespace {
@@ -66,7 +65,7 @@ template <class L>
       auto ring = from_on(within.first, start);
       const auto behind = from_on(within.end, start);
       const auto in = from_on(hole.first, start), out = from_on(hole.end, start);
-      for (std::size_t i = 0; i < std::size(ring.part); ++i)
+      for (std::size_t i = 0; i < sizeof ring.part / sizeof ring.part[0]; ++i)
         ring.part[i] &= ~behind.part[i] & ~(in.part[i] & ~out.part[i]);
       std::uint64_t row[kLanes];
       std::memcpy(row, ring.part, sizeof row);
