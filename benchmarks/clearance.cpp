@@ -4,7 +4,7 @@
 
 #include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/four_ppa_two_par_clearance.hpp"
+#include "engine/mechanisms/four_ppa_two_par/clearance.hpp"
 
 namespace pkm::benchmarks {
 namespace {

@@ -4,7 +4,7 @@
 #include "benchmarks/inputs.hpp"
 #include "benchmarks/timing.hpp"
 #include "engine/math/dual.hpp"
-#include "engine/mechanisms/four_ppa_two_par_columns.hpp"
+#include "engine/mechanisms/four_ppa_two_par/columns.hpp"
 
 namespace pkm::benchmarks {
 namespace {

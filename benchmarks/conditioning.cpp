@@ -3,7 +3,7 @@
 
 #include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
+#include "engine/mechanisms/four_ppa_two_par/conditioning.hpp"
 
 namespace pkm::benchmarks {
 namespace {

@@ -4,8 +4,8 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/all.hpp"
-#include "engine/mechanisms/crr_cru_dynamics.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/mechanisms/crr_cru/dynamics.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {

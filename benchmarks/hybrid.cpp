@@ -4,7 +4,7 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
-#include "engine/mechanisms/hybrid_voxels.hpp"
+#include "engine/mechanisms/hybrid/voxels.hpp"
 
 namespace pkm::benchmarks {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/mechanisms/four_ppa_two_par.hpp"
+#include "engine/mechanisms/four_ppa_two_par/model.hpp"
 #include "engine/setup/study.hpp"
 
 namespace pkm::benchmarks {

@@ -15,8 +15,8 @@
 #include "benchmarks/timing.hpp"
 #include "engine/dynamics/coupling.hpp"
 #include "engine/mechanisms/all.hpp"
-#include "engine/mechanisms/crr_cru_coupling.hpp"
-#include "engine/mechanisms/four_ppa_two_par_columns.hpp"
+#include "engine/mechanisms/crr_cru/coupling.hpp"
+#include "engine/mechanisms/four_ppa_two_par/columns.hpp"
 
 namespace pkm::benchmarks {
 namespace {

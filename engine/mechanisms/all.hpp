@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/workspace/mechanism.hpp"
+#include "engine/mechanism/mechanism.hpp"
 
 namespace pkm {
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "engine/workspace/mechanism.hpp"
+#include "engine/mechanism/mechanism.hpp"
 
 namespace pkm {
 

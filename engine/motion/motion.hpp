@@ -1,6 +1,6 @@
 // Motions of a platform: the pose, its velocity and acceleration at every time.
 //
-// A motion belongs to no mechanism: it is a curve in (x, y, z, rotation). engine/workspace/trajectory.hpp follows it
+// A motion belongs to no mechanism: it is a curve in (x, y, z, rotation). engine/mechanism/trajectory.hpp follows it
 // with one.
 #pragma once
 

@@ -1,8 +1,8 @@
-#include "engine/optimisers/genetic_algorithm.hpp"
-#include "engine/optimisers/ipopt.hpp"
-#include "engine/optimisers/nlopt.hpp"
-#include "engine/optimisers/nsga2.hpp"
+#include "engine/optimisers/evolutionary/genetic_algorithm.hpp"
+#include "engine/optimisers/evolutionary/nsga2.hpp"
 #include "engine/optimisers/optimiser.hpp"
+#include "engine/optimisers/solvers/ipopt.hpp"
+#include "engine/optimisers/solvers/nlopt.hpp"
 #include "engine/optimisers/sweep.hpp"
 
 namespace pkm {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/optimisers/dominance.hpp"
+#include "engine/optimisers/evolutionary/dominance.hpp"
 #include "engine/optimisers/optimiser.hpp"
 
 namespace pkm {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/workspace/survey_set.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm {
 namespace {

@@ -7,8 +7,8 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/math/statistics.hpp"
+#include "engine/mechanism/drive_along.hpp"
 #include "engine/problem/inertia_options.hpp"
-#include "engine/workspace/drive_along.hpp"
 
 namespace pkm {
 namespace {

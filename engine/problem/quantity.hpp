@@ -10,9 +10,9 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
+#include "engine/mechanism/mechanism.hpp"
 #include "engine/motion/motion.hpp"
 #include "engine/problem/problem.hpp"
-#include "engine/workspace/mechanism.hpp"
 
 namespace pkm {
 

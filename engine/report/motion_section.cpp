@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/mechanism/trajectory.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
-#include "engine/workspace/trajectory.hpp"
 
 namespace pkm {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "engine/report/thinning.hpp"
-#include "engine/workspace/picture_plan.hpp"
+#include "engine/survey/picture_plan.hpp"
 
 namespace pkm {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "engine/core/team.hpp"
 #include "engine/dynamics/coupling.hpp"
-#include "engine/workspace/picture_plan.hpp"
+#include "engine/survey/picture_plan.hpp"
 
 namespace pkm {
 namespace {

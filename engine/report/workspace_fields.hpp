@@ -20,8 +20,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/workspace/mechanism.hpp"
-#include "engine/workspace/voxel_grid.hpp"
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/survey/voxel_grid.hpp"
 
 namespace pkm {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/workspace/mechanism.hpp"
+#include "engine/mechanism/mechanism.hpp"
 
 namespace pkm {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "engine/mechanism/mechanism.hpp"
 #include "engine/motion/motion.hpp"
 #include "engine/setup/config_value.hpp"
-#include "engine/workspace/mechanism.hpp"
 
 namespace pkm {
 

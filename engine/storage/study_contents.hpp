@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "engine/core/parameter.hpp"
+#include "engine/mechanism/survey.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/problem/problem.hpp"
-#include "engine/workspace/survey.hpp"
 
 namespace pkm {
 

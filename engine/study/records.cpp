@@ -9,9 +9,9 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/optimisers/optimality.hpp"
+#include "engine/optimisers/solvers/optimality.hpp"
 #include "engine/study/machine.hpp"
-#include "engine/workspace/picture_plan.hpp"
+#include "engine/survey/picture_plan.hpp"
 
 namespace pkm {
 namespace {

@@ -9,7 +9,7 @@
 #include "engine/problem/inertia_options.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
-#include "engine/workspace/survey_set.hpp"
+#include "engine/survey/survey_set.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/print.hpp"

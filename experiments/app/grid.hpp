@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/workspace/mechanism.hpp"
+#include "engine/mechanism/mechanism.hpp"
 
 namespace CLI {
 class App;

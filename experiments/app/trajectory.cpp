@@ -7,10 +7,10 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/mechanism/trajectory.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/setup/motion_section.hpp"
-#include "engine/workspace/trajectory.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/target.hpp"

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/optimisers/dominance.hpp"
+#include "engine/optimisers/evolutionary/dominance.hpp"
 #include "engine/optimisers/front.hpp"
 #include "tests/cli/study_program.hpp"
 

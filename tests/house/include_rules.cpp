@@ -10,8 +10,8 @@ namespace {
 using Words = std::vector<std::string>;
 
 // A folder of engine/ may include itself and those before it.
-const Words kOrder = {"core",    "math",       "model",   "motion", "dynamics", "workspace", "mechanisms",
-                      "problem", "optimisers", "storage", "setup",  "study",    "report"};
+const Words kOrder = {"core",       "math",    "model",      "motion",  "dynamics", "mechanism", "survey",
+                      "mechanisms", "problem", "optimisers", "storage", "setup",    "study",     "report"};
 
 // Where the headers of a library may be included.
 struct Library {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/simbody/closed_loop.hpp"
-#include "tests/unit/mechanisms/crr_cru_states.hpp"
+#include "tests/unit/mechanisms/crr_cru/states.hpp"
 
 namespace pkm::simbody {
 namespace {

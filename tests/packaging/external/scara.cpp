@@ -9,7 +9,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/setup/study.hpp"
-#include "engine/workspace/voxel_grid.hpp"
+#include "engine/survey/voxel_grid.hpp"
 #include "objectives/all.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "engine/problem/expression.hpp"
 #include "engine/problem/survey_results.hpp"
-#include "engine/workspace/voxel_grid.hpp"
+#include "engine/survey/voxel_grid.hpp"
 #include "tests/unit/contracts/nominal.hpp"
 
 namespace pkm {

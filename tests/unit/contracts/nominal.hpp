@@ -10,7 +10,7 @@
 #include "engine/mechanisms/all.hpp"
 #include "engine/motion/motions.hpp"
 #include "engine/problem/quantity.hpp"
-#include "engine/workspace/voxel_grid.hpp"
+#include "engine/survey/voxel_grid.hpp"
 
 namespace pkm::test {
 

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "engine/mechanism/drive_along.hpp"
 #include "engine/motion/motions.hpp"
-#include "engine/workspace/drive_along.hpp"
-#include "tests/unit/mechanisms/crr_cru_golden.hpp"
+#include "tests/unit/mechanisms/crr_cru/golden.hpp"
 
 namespace pkm::testing::crr {
 namespace {

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/taylor.hpp"
-#include "engine/mechanisms/four_ppa_two_par_dynamics.hpp"
+#include "engine/mechanisms/four_ppa_two_par/dynamics.hpp"
 #include "tests/unit/contracts/nominal.hpp"
-#include "tests/unit/mechanisms/crr_cru_golden.hpp"
+#include "tests/unit/mechanisms/crr_cru/golden.hpp"
 
 namespace pkm::testing {
 namespace {

@@ -8,7 +8,7 @@
 #include <Eigen/QR>
 
 #include "engine/math/dual.hpp"
-#include "engine/mechanisms/four_ppa_two_par_conditioning.hpp"
+#include "engine/mechanisms/four_ppa_two_par/conditioning.hpp"
 
 namespace pkm::testing {
 namespace {

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "engine/optimisers/diversity.hpp"
+#include "engine/optimisers/evolutionary/diversity.hpp"
 #include "tests/unit/optimisers/trade_off_problems.hpp"
 
 namespace pkm::test {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/mechanism/trajectory.hpp"
 #include "engine/motion/motions.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/report/json_text.hpp"
@@ -14,7 +15,6 @@
 #include "engine/report/sections.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/report/thinning.hpp"
-#include "engine/workspace/trajectory.hpp"
 #include "tests/unit/contracts/nominal.hpp"
 #include "tests/unit/storage/sample_study.hpp"
 

@@ -1,0 +1,153 @@
+#include "engine/mechanisms/crr_cru/columns.hpp"
+#include "engine/mechanisms/crr_cru/coupling.hpp"
+#include "engine/mechanisms/crr_cru/samples.hpp"
+#include "engine/mechanisms/crr_cru/survey.hpp"
+
+namespace pkm::crr_cru {
+namespace {
+
+/// The plan's box as ranges of x, y, z, phi.
+PoseBox pose_box(const Held& held, const SurveyPlan& plan) {
+  PoseBox box = kEverywhere;
+  if (!plan.box) return box;
+  for (std::size_t k = 0, axis = 0; k < 4; ++k)
+    if (k != held.coordinate) box[k] = (*plan.box)[axis++];
+  return box;
+}
+
+/// Adds what was demanded of one pose's inertia.
+template <class S>
+void add_inertia(const Matrix<S, 4, 4>& M_q, const Demand& demand, Survey<S>& survey) {
+  if (demand.dci) {
+    const Vector<S, 4> index = coupling_indices(M_q);
+    for (std::size_t i = 0; i < 4; ++i) survey.dci[i].push_back(index[i]);
+  }
+  if (demand.inertia_condition) survey.inertia_condition.push_back(inertia_condition(M_q));
+}
+
+class ColumnSurveyor final : public Surveyor {
+ public:
+  ColumnSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
+                 const Demand& demand)
+      : platform_(platform),
+        mass_model_(mass_model),
+        mode_(mode),
+        held_(held_of(held, plan)),
+        box_(pose_box(held_, plan)),
+        limits_(limits(plan.limits)),
+        tolerance_(plan.tolerance),
+        fixed_(plan.nodes[0] > 0),
+        demand_(demand) {
+    // Nodes come in the order of the swept coordinates; phi is the last of them.
+    const std::size_t outer = cuts(held_).outer_is_phi ? 1 : 0;
+    const int usual = needs_inertia() ? kInertiaNodes : kSampleNodes;
+    outer_rule_ = gauss_legendre(fixed_ ? plan.nodes[outer] : usual);
+    inner_rule_ = gauss_legendre(fixed_ ? plan.nodes[1 - outer] : kInertiaNodes);
+  }
+
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
+  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
+  std::string no_derivatives() const override { return {}; }
+
+ private:
+  static constexpr int kSampleNodes = 32;
+  static constexpr int kInertiaNodes = 8;  // per piece and coordinate
+
+  bool needs_inertia() const { return demand_.dci || demand_.inertia_condition; }
+
+  template <class S>
+  void run(std::span<const S> parameters, Survey<S>& survey) const {
+    thread_local ColumnScratch<S> scratch;
+    survey.clear();
+    const auto s = sweeping(design(geometry(platform_, parameters), limits_, box_), held_);
+    find_outer_pieces(s, still<double>(parameters), still<Dual<1>>(parameters), scratch);
+    long columns = 0;
+    if (!fixed_) {
+      const Integral<S> volume =
+          integrate<S>([&](const S& outer) { return area_at(s, outer, scratch); }, scratch.pieces, tolerance_,
+                       roundoff(s, scratch.pieces), scratch.integrals);
+      survey.volume = volume.value;
+      survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
+      columns = volume.evaluations;
+    }
+    const Geometry<S>& g = s.design.g;
+    if (needs_inertia()) {
+      sample_inertia(s, parameters, scratch, survey);
+      if (fixed_) {
+        for (const S& weight : survey.weight) survey.volume += weight;
+        columns = static_cast<long>(survey.weight.size());
+      }
+      survey.columns = columns;
+      return;
+    }
+    if (fixed_ || (demand_.conditioning && s.cuts.outer_is_phi))
+      for (const Piece<S>& piece : scratch.pieces)
+        for (std::size_t i = 0; i < outer_rule_.node.size(); ++i) {
+          const auto [outer, jacobian] = map_node(piece, outer_rule_.node[i]);
+          const S area = fixed_ ? area_of_columns(s, outer, inner_rule_, scratch, columns) : area_at(s, outer, scratch);
+          const S weight = area * jacobian * outer_rule_.weight[i];
+          if (fixed_) survey.volume += weight;
+          if (demand_.conditioning && s.cuts.outer_is_phi) add_conditioning(g, demand_, outer, weight, survey);
+        }
+    if (demand_.conditioning && !s.cuts.outer_is_phi) add_conditioning(g, demand_, s.held, survey.volume, survey);
+    survey.columns = columns;
+  }
+
+  /// Samples at nodes along all three coordinates.
+  template <class S>
+  void sample_inertia(const Sweeping<S>& s, std::span<const S> parameters, ColumnScratch<S>& scratch,
+                      Survey<S>& survey) const {
+    const Geometry<S>& g = s.design.g;
+    const Masses<S> b = masses(mass_model_, parameters);
+    InertiaFrame<S> frame;
+    S angle(0.0), index(0.0);
+    const auto set_phi = [&](const S& phi) {
+      angle = phi;
+      frame = inertia_frame(g, b, phi);
+      if (demand_.conditioning) index = conditioning_at(g, demand_, phi);
+    };
+    if (!s.cuts.outer_is_phi) set_phi(s.held);
+    for (const Piece<S>& piece : scratch.pieces)
+      for (std::size_t i = 0; i < outer_rule_.node.size(); ++i) {
+        const auto [outer, jacobian] = map_node(piece, outer_rule_.node[i]);
+        const S outer_weight = jacobian * outer_rule_.weight[i];
+        if (s.cuts.outer_is_phi) set_phi(outer);
+        visit_positions(s, outer, inner_rule_, scratch, [&](const Vector3<S>& at, const S& weight) {
+          const S measure = outer_weight * weight;
+          if (!(value_of(measure) > 0)) return;
+          survey.weight.push_back(measure);
+          if (demand_.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
+          if (demand_.conditioning) survey.conditioning.push_back(index);
+          add_inertia(joint_inertia(g, b, frame, at, mode_), demand_, survey);
+        });
+      }
+  }
+
+  /// The design as constants of another scalar.
+  template <class To, class From>
+  Sweeping<To> still(std::span<const From> parameters) const {
+    std::array<To, kParameters> values;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = To(value_of(parameters[i]));
+    return sweeping(design(geometry(platform_, std::span<const To>(values)), limits_, box_), held_);
+  }
+
+  Platform platform_;
+  MassModel mass_model_;
+  WorkingMode mode_;
+  Held held_;
+  PoseBox box_;
+  Limits limits_;
+  double tolerance_;
+  bool fixed_;  ///< numbers of nodes are given
+  Demand demand_;
+  GaussRule outer_rule_, inner_rule_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Surveyor> make_column_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
+                                                     int held, const SurveyPlan& plan, const Demand& demand) {
+  return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, demand);
+}
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,80 @@
+// (3CRR/R)&CRU and Quadrupteron: joint-space inertia at many poses of one phi.
+//
+// M_q = J^-T M_X J^-1 needs no matrix algebra at a pose. With j_i the entries of J's last column and w = 1/(j_4 - j_2),
+// slide 4 alone turns the platform by w and shifts it by (-j_1 w, -j_2 w, 0); slide 2 alone moves it by e_y less that;
+// slides 1 and 3 move it along x and z. So with s_i the velocity of C_i per rho_4 rate, A the sum of the limbs'
+// inertias at their joints, v that of A_i s_i and k that of s_i^T A_i s_i, platforms included,
+//
+//          | A_xx  A_xy - v_x             A_xz          v_x     |
+//    M_q = |       A_yy - 2 v_y + k       A_yz - v_z    v_y - k |
+//          |                              A_zz          v_z     |
+//          |  symmetric                                 k       |
+//
+// A limb's share A_i depends on its two plane coordinates and is the same for all poses that share them: a voxel survey
+// keeps it in tables, so that a pose costs sums.
+#pragma once
+
+#include "engine/dynamics/coupling.hpp"
+#include "engine/mechanisms/crr_cru/dynamics.hpp"
+#include "engine/mechanisms/crr_cru/joint_inertia.hpp"
+
+namespace pkm::crr_cru {
+
+/// What all poses of one phi have in common.
+template <class S>
+struct InertiaFrame : SlideFrame<S> {
+  std::array<Vector3<S>, 4> arm;  ///< C_i - D
+};
+
+template <class S>
+InertiaFrame<S> inertia_frame(const Geometry<S>& g, const Masses<S>& b, const S& phi) {
+  const auto [sin, cos] = sincos(phi);
+  const auto arm = arms(g, sin, cos);
+  std::array<Vector<S, 3>, 4> turn;
+  for (std::size_t i = 0; i < 4; ++i) turn[i] = turning(arm[i]);
+  const S j1 = turn[0][0], j2 = turn[1][1], j4 = turn[3][1];
+  const S w = S(1.0) / (j4 - j2);
+  const Vector<S, 4> X = {{j1 * w * -1.0, j2 * w * -1.0, S(0.0), w}};  // per rho_4 rate
+
+  Matrix<S, 4, 4> M = platform_inertia(g, b, sin, cos);
+  InertiaFrame<S> f;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const LimbFrame& limb = kLimbs[i];
+    f.arm[i] = arm[i].to_joint;
+    f.per_slide[i] = {X[limb.p] + turn[i][limb.p] * w, X[limb.q] + turn[i][limb.q] * w};
+    Matrix<S, 3, 3> rail;
+    rail(limb.e, limb.e) = rail_mass(b, i);
+    add_at_joint(rail, turn[i], M);
+  }
+  const Vector<S, 4> v = M * X;
+  f.xx = M(0, 0);
+  f.yy = M(1, 1);
+  f.zz = M(2, 2);
+  f.vx = v[0];
+  f.vy = v[1];
+  f.vz = v[2];
+  f.k = dot(X, v);
+  return f;
+}
+
+/// A limb's inertia at its joint in world axes: its plane's lower axis, both, the higher one [kg].
+template <class S>
+PlaneInertia<S> limb_share(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
+  PlaneInertia<S> share = plane_inertia(g, b, i, limb);
+  share.pq = share.pq * (kLimbs[i].p_sign * kLimbs[i].q_sign);
+  return share;
+}
+
+/// M_q at a feasible position [kg].
+template <class S>
+Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const InertiaFrame<S>& f, const Vector3<S>& at,
+                              const WorkingMode& mode) {
+  std::array<PlaneInertia<S>, 4> share;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector3<S> C = {at[0] + f.arm[i][0], at[1] + f.arm[i][1], at[2] + f.arm[i][2]};
+    share[i] = limb_share(g, b, i, limb_at(g, i, C, mode[i]));
+  }
+  return matrix_of(joint_inertia(f, share[0], share[1], share[2], share[3]));
+}
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,169 @@
+// (3CRR/R)&CRU and Quadrupteron: equations of motion, limb by limb.
+//
+// A limb's two rods have no actuated turning, so a limb acts on its platform joint C_i with a force that depends on
+// that limb alone: in its plane M_d ddot + .., along its rail the mass of what slides. With j1 = u2^T/(l1 sin theta_2)
+// and j2 = -u1^T/(l2 sin theta_2), the rods' turning rates per velocity of C_i in the plane,
+//
+//   M_d = (m1/4 l1^2 + I1 + m2 l1^2) j1^T j1 + m2 l1 l2 cos(theta_2)/2 (j1^T j2 + j2^T j1) + (m2/4 l2^2 + I2) j2^T j2
+//   M_X = sum of J_C^T (P^T M_d P + (m_i1 + m_i2) e e^T) J_C + platforms,   J_C = [1 | z x arm_i]
+//
+// Source: as model.hpp, sections 2.2 to 3.1 with their errata; the limb-wise form follows from virtual work.
+#pragma once
+
+#include "engine/dynamics/pose_dynamics.hpp"
+#include "engine/mechanisms/crr_cru/joint_inertia.hpp"
+#include "engine/mechanisms/crr_cru/masses.hpp"
+#include "engine/mechanisms/crr_cru/yaw.hpp"
+
+namespace pkm::crr_cru {
+
+template <class S>
+PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
+  const S &l1 = g.l_1[i], &l2 = g.l_2[i];
+  const S sin2 = limb.sin_2 * limb.sin_2;
+  const S A = (b.m_1[i] * 0.25 + b.m_2[i] + b.I_1[i] / (l1 * l1)) / sin2;
+  const S B = b.m_2[i] * 0.5 * limb.cos_2 / sin2;
+  const S C = (b.m_2[i] * 0.25 + b.I_2[i] / (l2 * l2)) / sin2;
+  const auto& u = limb.u1;
+  const auto& v = limb.u2;
+  return {A * v[0] * v[0] - B * 2.0 * (u[0] * v[0]) + C * u[0] * u[0],
+          A * v[0] * v[1] - B * (u[0] * v[1] + u[1] * v[0]) + C * u[0] * u[1],
+          A * v[1] * v[1] - B * 2.0 * (u[1] * v[1]) + C * u[1] * u[1]};
+}
+
+/// What moves along a limb's rail [kg].
+template <class S>
+S rail_mass(const Masses<S>& b, std::size_t i) {
+  return b.m_1[i] + b.m_2[i] + b.slide;
+}
+
+/// The same in space, with what moves along the rail.
+template <class S>
+Matrix<S, 3, 3> inertia_at_joint(const PlaneInertia<S>& d, const S& along, std::size_t i) {
+  const LimbFrame& f = kLimbs[i];
+  Matrix<S, 3, 3> at;
+  at(f.p, f.p) = d.pp;
+  at(f.q, f.q) = d.qq;
+  at(f.p, f.q) = at(f.q, f.p) = d.pq * (f.p_sign * f.q_sign);
+  at(f.e, f.e) = along;
+  return at;
+}
+
+/// z x arm where the arm turns, else 0: velocity of C_i per phidot.
+template <class S>
+Vector<S, 3> turning(const Arm<S>& arm) {
+  if (!arm.turns) return {};
+  return {{arm.to_joint[1] * -1.0, arm.to_joint[0], S(0.0)}};
+}
+
+/// Adds J_C^T at J_C, J_C = [1 | turning], to M_X.
+template <class S>
+void add_at_joint(const Matrix<S, 3, 3>& at, const Vector<S, 3>& turning, Matrix<S, 4, 4>& M) {
+  const Vector<S, 3> column = at * turning;
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) M(r, c) += at(r, c);
+    M(r, 3) += column[r];
+    M(3, r) += column[r];
+  }
+  M(3, 3) += dot(turning, column);
+}
+
+/// A point mass that moves with D and an arm of length `at` along D-C_4 [m]: on the moving platform.
+template <class S>
+void add_on_arm(const S& mass, const S& at, const S& sin_phi, const S& cos_phi, Matrix<S, 4, 4>& M) {
+  for (std::size_t k = 0; k < 3; ++k) M(k, k) += mass;
+  const S x = mass * at * sin_phi * -1.0, y = mass * at * cos_phi;
+  M(0, 3) += x;
+  M(3, 0) += x;
+  M(1, 3) += y;
+  M(3, 1) += y;
+  M(3, 3) += mass * at * at;
+}
+
+/// Platforms' and payload's share of M_X: depends on phi alone.
+template <class S>
+Matrix<S, 4, 4> platform_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_phi, const S& cos_phi) {
+  Matrix<S, 4, 4> M;
+  for (std::size_t k = 0; k < 3; ++k) M(k, k) += b.m_middle;
+  if (g.platform == Platform::rigid) M(3, 3) += b.I_middle;
+  add_on_arm(b.m, b.c, sin_phi, cos_phi, M);
+  M(3, 3) += b.I_zz;
+  add_on_arm(b.payload, b.c_payload, sin_phi, cos_phi, M);
+  return M;
+}
+
+/// The equations of motion at a pose and velocity. Infinite where a limb is stretched or folded (sin theta_2 = 0).
+template <class S>
+PoseDynamics<S> pose_dynamics(const Geometry<S>& g, const Masses<S>& b, const MotionState<S>& state,
+                              const WorkingMode& mode) {
+  PoseDynamics<S> d;
+  const auto [s, c] = sincos(state.pose.angle);
+  const Limbs<S> limbs = inverse(g, state.pose, mode);
+  d.assembles = limbs.assembles;
+  if (!d.assembles) return d;
+  const Vector<S, 4>& X = state.velocity;
+  const S turn2 = X[3] * X[3];
+  d.J = Matrix<S, 4, 4>();
+  d.M_X = platform_inertia(g, b, s, c);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const LimbFrame& f = kLimbs[i];
+    const Limb<S>& limb = limbs.limb[i];
+    const Vector<S, 3> t = turning(limbs.arm[i]);
+    d.q[i] = limb.rho;
+    d.J(i, f.e) = S(1.0);
+    d.J(i, 3) = t[f.e];
+    // at rest in X, C_i is still accelerated towards the arm's centre
+    Vector<S, 3> v, a;
+    for (std::size_t k = 0; k < 3; ++k) {
+      v[k] = X[k] + t[k] * X[3];
+      a[k] = limbs.arm[i].turns && k < 2 ? S(limbs.arm[i].to_joint[k] * turn2 * -1.0) : S(0.0);
+    }
+    d.J_rate_X[i] = a[f.e];
+    const S along = rail_mass(b, i);
+    add_at_joint(inertia_at_joint(plane_inertia(g, b, i, limb), along, i), t, d.M_X);
+
+    // forces that the rods need in the plane at C_i: by rates alone, and by weight alone
+    const RodRates<S> rate = rod_rates(g, i, limb, {v[0], v[1], v[2]}, {a[0], a[1], a[2]});
+    const S &l1 = g.l_1[i], &l2 = g.l_2[i], &m1 = b.m_1[i], &m2 = b.m_2[i];
+    const std::array<S, 2> n1 = {limb.u1[1] * -1.0, limb.u1[0]}, n2 = {limb.u2[1] * -1.0, limb.u2[0]};
+    const S square1 = rate.velocity[0] * rate.velocity[0], square2 = rate.velocity[1] * rate.velocity[1];
+    std::array<S, 2> a2, gravity;  // of the outer rod's centre
+    const std::array<double, 3> g_world = {0, 0, -kGravity};
+    gravity = {S(g_world[f.p] * f.p_sign), S(g_world[f.q] * f.q_sign)};
+    for (std::size_t k = 0; k < 2; ++k)
+      a2[k] = l1 * (n1[k] * rate.acceleration[0] - limb.u1[k] * square1) +
+              l2 * 0.5 * (n2[k] * rate.acceleration[1] - limb.u2[k] * square2);
+    const auto across = [](const std::array<S, 2>& n, const std::array<S, 2>& w) {
+      return S(n[0] * w[0] + n[1] * w[1]);
+    };
+    const S Q1 = (m1 * 0.25 * l1 * l1 + b.I_1[i]) * rate.acceleration[0] + m2 * l1 * across(n1, a2);
+    const S Q2 = b.I_2[i] * rate.acceleration[1] + m2 * 0.5 * l2 * across(n2, a2);
+    const S W1 = (m1 * 0.5 + m2) * l1 * across(n1, gravity) * -1.0, W2 = m2 * 0.5 * l2 * across(n2, gravity) * -1.0;
+    const auto at_C = [&](const S& turn1, const S& turn2_, const S& rail) {  // j1^T turn1 + j2^T turn2, in space
+      const S x = turn1 / (l1 * limb.sin_2), y = turn2_ / (l2 * limb.sin_2) * -1.0;
+      Vector<S, 3> force;
+      force[f.p] = (limb.u2[0] * x + limb.u1[0] * y) * f.p_sign;
+      force[f.q] = (limb.u2[1] * x + limb.u1[1] * y) * f.q_sign;
+      force[f.e] = rail;
+      return force;
+    };
+    const auto add = [&](Vector<S, 4>& sum, const Vector<S, 3>& force) {
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += force[k];
+      sum[3] += dot(t, force);
+    };
+    add(d.h_X, at_C(Q1, Q2, S(along * a[f.e])));
+    add(d.G_X, at_C(W1, W2, S(along * (f.e == 2 ? kGravity : 0.0))));
+  }
+  // platforms: the centre on the arm is accelerated towards D
+  const S arm = b.m * b.c + b.payload * b.c_payload;
+  d.h_X[0] = d.h_X[0] - arm * c * turn2;
+  d.h_X[1] = d.h_X[1] - arm * s * turn2;
+  d.G_X[2] += (b.m + b.m_middle + b.payload) * kGravity;
+  for (std::size_t k = 0; k < 3; ++k) d.J_wrench(k, k) = S(1.0);
+  d.J_wrench(0, 3) = b.c * s * -1.0;
+  d.J_wrench(1, 3) = b.c * c;
+  d.J_wrench(5, 3) = S(1.0);
+  return d;
+}
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,134 @@
+// (3CRR/R)&CRU and Quadrupteron: the feasible positions at given phi, as the tests that they are made of.
+//
+// At given phi every platform joint is the position (x, y, z) shifted by a constant. So each slide's range is a range
+// of one coordinate, and the reach of limb i, |sin theta_i2| >= s_min included, is a ring in the coordinates a, b of
+// the limb's plane:
+//
+//   rho_i = (coordinate e_i) + shift in [rho_min, rho_max]
+//   in2 <= (a - center_a)^2 + (b - center_b)^2 <= out2,   in2, out2 = l_1^2 + l_2^2 -/+ 2 l_1 l_2 sqrt(1 - s_min^2)
+//
+// Neither depends on the working mode.
+#pragma once
+
+#include <limits>
+
+#include "engine/mechanisms/crr_cru/yaw.hpp"
+
+namespace pkm::crr_cru {
+
+/// Ranges of x, y, z, phi.
+using PoseBox = std::array<std::array<double, 2>, 4>;
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+inline constexpr PoseBox kEverywhere = {
+    {{-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}}};
+
+/// What all phi of one design have in common.
+template <class S>
+struct Design {
+  Geometry<S> g;
+  Yaw<S> yaw;
+  double c_min;
+  std::array<S, 4> in2, out2;  ///< squared radii of the reaches [m^2]
+  PoseBox box = kEverywhere;   ///< poses outside do not count
+};
+
+template <class S>
+Design<S> design(const Geometry<S>& g, const Limits& l, const PoseBox& box = kEverywhere) {
+  Design<S> d{g, yaw(g), l.c_min, {}, {}, box};
+  const double lost = l.s_min * l.s_min / (1 + std::sqrt((1 - l.s_min) * (1 + l.s_min)));  // 1 - sqrt(1 - s_min^2)
+  for (std::size_t i = 0; i < 4; ++i) {
+    const S difference = g.l_1[i] - g.l_2[i], sum = g.l_1[i] + g.l_2[i], cut = g.l_1[i] * g.l_2[i] * (2 * lost);
+    d.in2[i] = difference * difference + cut;
+    d.out2[i] = sum * sum - cut;
+  }
+  return d;
+}
+
+/// Which of the coordinates x, y, z a limb's rods move in, the lower first.
+inline constexpr std::array<std::array<std::size_t, 2>, 4> kPlane = {{{1, 2}, {0, 2}, {0, 1}, {0, 2}}};
+
+/// A range of a coordinate, and the limbs whose slides end it; kBoxLower, kBoxUpper where the box does.
+template <class S>
+struct SlideRange {
+  S lower, upper;
+  std::size_t lower_limb, upper_limb;
+};
+
+inline constexpr std::size_t kBoxLower = 8, kBoxUpper = 5;  // 4 + upper_limb is a number of its own, too
+
+template <class S>
+struct Frame {
+  std::array<SlideRange<S>, 3> range;  ///< of x, y, z
+  std::array<Vector3<S>, 4> center;    ///< of the limbs' rings; the coordinate along e_i has no meaning
+  bool singular;                       ///< kappa_p < c_min: no position is feasible
+};
+
+template <class S>
+Frame<S> frame(const Design<S>& d, const S& phi) {
+  const Geometry<S>& g = d.g;
+  const auto [s, c] = sincos(phi);
+  const auto arm = arms(g, s, c);
+  Frame<S> f;
+  f.singular = !(value_of(parallel_index(d.yaw, s, c)) >= d.c_min);
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) f.center[i][k] = g.L * kLimbs[i].rail[k] - arm[i].to_joint[k];
+    const std::size_t e = kLimbs[i].e;
+    const S lower = g.rho_min - arm[i].to_joint[e], upper = g.rho_max - arm[i].to_joint[e];
+    if (i < 3) {  // limbs 1, 2, 3 slide along x, y, z
+      f.range[e] = {lower, upper, i, i};
+      continue;
+    }
+    SlideRange<S>& range = f.range[e];
+    if (value_of(lower) > value_of(range.lower)) range = {lower, range.upper, i, range.upper_limb};
+    if (value_of(upper) < value_of(range.upper)) range = {range.lower, upper, range.lower_limb, i};
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    SlideRange<S>& range = f.range[k];
+    if (d.box[k][0] > value_of(range.lower)) range = {S(d.box[k][0]), range.upper, kBoxLower, range.upper_limb};
+    if (d.box[k][1] < value_of(range.upper)) range = {range.lower, S(d.box[k][1]), range.lower_limb, kBoxUpper};
+  }
+  return f;
+}
+
+/// Whether a position is feasible: the plain test of one voxel.
+inline bool feasible(const Design<double>& d, const Frame<double>& f, const Vector3<double>& at) {
+  if (f.singular) return false;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (at[k] < f.range[k].lower || at[k] > f.range[k].upper) return false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double a = at[kPlane[i][0]] - f.center[i][kPlane[i][0]], b = at[kPlane[i][1]] - f.center[i][kPlane[i][1]];
+    const double distance2 = a * a + b * b;
+    if (distance2 < d.in2[i] || distance2 > d.out2[i]) return false;
+  }
+  return true;
+}
+
+/// What a survey holds: one coordinate at a value, or at the design's own middle: phi = 0, and the position at which
+/// the slides of limbs 1, 2, 3 without the circle's shift are half way.
+struct Held {
+  std::size_t coordinate = 3;
+  bool middle = true;
+  double value = 0;
+};
+
+template <class S>
+S held_value(const Geometry<S>& g, const Held& held) {
+  if (!held.middle) return S(held.value);
+  if (held.coordinate == 3) return S(0.0);
+  const S half = (g.rho_min + g.rho_max) * 0.5;
+  return held.coordinate == 2 ? S(half + g.h) : half;
+}
+
+/// The coordinate along which surveys cut the workspace into plane sections, and the section's axes. Sections are
+/// normal to the position that is held, or to x where phi is held; the outer coordinate counts the sections.
+struct Cuts {
+  std::size_t normal, u, v;
+  bool outer_is_phi;
+};
+
+inline Cuts cuts(const Held& held) {
+  const std::size_t n = held.coordinate == 3 ? 0 : held.coordinate;
+  return {n, n == 0 ? 1u : 0u, n == 2 ? 1u : 2u, held.coordinate != 3};
+}
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,236 @@
+// (3CRR/R)&CRU and Quadrupteron: geometry and inverse kinematics of one pose.
+//
+// Source: Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, with its errata; the
+// Quadrupteron is the mechanism that the other one is obtained from by decoupling. Both are one model: four limbs of
+// two rods that move in the plane normal to the limb's rail, and a platform that turns about the vertical.
+//
+//   slide    A_i = a_i + rho_i e_i
+//   elbow    B_i = A_i + l_i1 (p cos psi_i1 + q sin psi_i1),   psi_i1 = theta_i1
+//   joint    C_i = B_i + l_i2 (p cos psi_i2 + q sin psi_i2),   psi_i2 = theta_i1 + theta_i2
+//
+//   limb   e   p   q   s    a          rods move in
+//    1     x  -y   z   -1   (0, L, 0)  y-z
+//    2     y   x  -z   +1   (0, 0, L)  x-z
+//    3     z   x   y   +1   (0, 0, 0)  x-y
+//    4     y  -x  -z   -1   (L, 0, L)  x-z
+//
+// The platform's point D is the pose, N = D - (0, 0, h) the centre of the circle of radius r that C_1..C_3 sit on at
+// the angles beta_i, and C_4 = D + l (cos phi, sin phi, 0). In (3CRR/R)&CRU the circle belongs to a middle platform
+// that does not turn; in the Quadrupteron it turns with the platform, so that beta_i + phi takes the place of beta_i.
+//
+// A turn by psi about p x q is one by s psi about e: s = e . (p x q).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "engine/math/scalar.hpp"
+#include "engine/mechanism/plan.hpp"
+#include "engine/model/pose.hpp"
+
+namespace pkm::crr_cru {
+
+/// Whether the circle of C_1..C_3 is a platform of its own, jointed to the moving one at D, or part of it.
+enum class Platform { jointed, rigid };  // (3CRR/R)&CRU, Quadrupteron
+
+/// Order of the parameters.
+enum ParameterIndex {
+  kL11,
+  kL12,
+  kL21,
+  kL22,
+  kL31,
+  kL32,
+  kL41,
+  kL42,
+  kR,
+  kH,
+  kL,
+  kRails,
+  kBeta1,
+  kBeta2,
+  kBeta3,
+  kRhoMin,
+  kRhoMax,
+  kParameters
+};
+
+/// Order of the pose-level limits.
+enum LimitIndex { kSMin, kCMin, kClearanceMin, kLimits };
+
+template <class S>
+using Vector3 = std::array<S, 3>;
+
+/// Lengths [m], names as above.
+template <class S>
+struct Geometry {
+  Platform platform;
+  std::array<S, 4> l_1, l_2;  ///< rods next to the slide and next to the platform
+  S r, h, l, L;
+  std::array<S, 3> cos_beta, sin_beta;
+  S rho_min, rho_max;
+};
+
+template <class S>
+Geometry<S> geometry(Platform platform, std::span<const S> p) {
+  Geometry<S> g{platform,
+                {p[kL11], p[kL21], p[kL31], p[kL41]},
+                {p[kL12], p[kL22], p[kL32], p[kL42]},
+                p[kR],
+                p[kH],
+                p[kL],
+                p[kRails],
+                {},
+                {},
+                p[kRhoMin],
+                p[kRhoMax]};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto [s, c] = sincos(p[kBeta1 + i]);
+    g.cos_beta[i] = c;
+    g.sin_beta[i] = s;
+  }
+  return g;
+}
+
+/// Thresholds: a pose is feasible where |sin theta_i2| >= s_min in all limbs and kappa_p >= c_min, and links that are
+/// not joined keep clearance_min.
+struct Limits {
+  double s_min = 0, c_min = 0;
+  std::optional<double> clearance_min = std::nullopt;  ///< [m]; none: no capsule is looked at
+};
+
+inline Limits limits(const LimitSpec& spec) {
+  return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0), spec.given[kClearanceMin]};
+}
+
+/// Axes of a limb's frame: numbers of the world axes along e, p, q and the signs of p and q.
+struct LimbFrame {
+  std::size_t e, p, q;
+  double p_sign, q_sign;
+  double sense;          ///< s
+  Vector3<double> rail;  ///< a / L
+};
+inline constexpr std::array<LimbFrame, 4> kLimbs = {{{0, 1, 2, -1, 1, -1, {0, 1, 0}},
+                                                     {1, 0, 2, 1, -1, 1, {0, 0, 1}},
+                                                     {2, 0, 1, 1, 1, 1, {0, 0, 0}},
+                                                     {1, 0, 2, -1, -1, -1, {1, 0, 1}}}};
+
+/// C_i - D, and whether it turns with phi.
+template <class S>
+struct Arm {
+  Vector3<S> to_joint;
+  bool turns;
+};
+
+template <class S>
+std::array<Arm<S>, 4> arms(const Geometry<S>& g, const S& sin_phi, const S& cos_phi) {
+  std::array<Arm<S>, 4> arm;
+  const bool turns = g.platform == Platform::rigid;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const S c = turns ? S(g.cos_beta[i] * cos_phi - g.sin_beta[i] * sin_phi) : g.cos_beta[i];
+    const S s = turns ? S(g.sin_beta[i] * cos_phi + g.cos_beta[i] * sin_phi) : g.sin_beta[i];
+    arm[i] = {{g.r * c, g.r * s, -g.h}, turns};
+  }
+  arm[3] = {{g.l * cos_phi, g.l * sin_phi, S(0.0)}, true};
+  return arm;
+}
+
+/// Elbow signs sigma_i = sign(sin theta_i2), +1 or -1.
+using WorkingMode = std::array<int, 4>;
+
+/// One limb at a pose. Where it does not reach, only rho, A, C, d and reach are set.
+template <class S>
+struct Limb {
+  S rho;                    ///< slide position [m]
+  Vector3<S> A, B, C;       ///< the limb's joints [m]
+  std::array<S, 2> d;       ///< C - A in the limb's plane, along p and q [m]
+  std::array<S, 2> u1, u2;  ///< unit vectors along the rods, along p and q
+  S sin_2, cos_2;           ///< of theta_i2
+  double reach = 0;         ///< margin [m], >= 0 where the limb assembles
+};
+
+/// A limb whose platform joint is at C.
+template <class S>
+Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int elbow) {
+  const LimbFrame& f = kLimbs[i];
+  const S &l1 = g.l_1[i], &l2 = g.l_2[i];
+  Limb<S> limb;
+  limb.C = C;
+  limb.rho = C[f.e];
+  for (std::size_t k = 0; k < 3; ++k) limb.A[k] = g.L * f.rail[k];
+  limb.A[f.e] += limb.rho;
+  limb.d = {(C[f.p] - limb.A[f.p]) * f.p_sign, (C[f.q] - limb.A[f.q]) * f.q_sign};
+  const S d2 = limb.d[0] * limb.d[0] + limb.d[1] * limb.d[1];
+  const double length = std::sqrt(value_of(d2)), sum = value_of(l1 + l2), difference = value_of(l1 - l2);
+  limb.reach = std::fmin(sum - length, length - std::fabs(difference));
+  if (!(limb.reach >= 0)) return limb;
+  // 1 - cos theta_2 and 1 + cos theta_2, without cancellation at the ends of the reach
+  const S twice = l1 * l2 * 2.0, less = ((l1 + l2) * (l1 + l2) - d2) / twice,
+          more = (d2 - (l1 - l2) * (l1 - l2)) / twice;
+  limb.cos_2 = value_of(less) < 1 ? S(1.0 - less) : S(more - 1.0);
+  limb.sin_2 = root_or_zero(S(less * more)) * static_cast<double>(elbow);
+  if (!(value_of(d2) > 0)) {  // the rods fold back on themselves: any direction will do
+    limb.u1 = {S(1.0), S(0.0)};
+    limb.u2 = {S(-1.0), S(0.0)};
+  } else {
+    const S k = l1 + l2 * limb.cos_2, w = l2 * limb.sin_2;  // components of d along and across u1
+    limb.u1 = {(k * limb.d[0] + w * limb.d[1]) / d2, (k * limb.d[1] - w * limb.d[0]) / d2};
+    limb.u2 = {(limb.d[0] - l1 * limb.u1[0]) / l2, (limb.d[1] - l1 * limb.u1[1]) / l2};
+  }
+  limb.B = limb.A;
+  limb.B[f.p] += l1 * limb.u1[0] * f.p_sign;
+  limb.B[f.q] += l1 * limb.u1[1] * f.q_sign;
+  return limb;
+}
+
+template <class S>
+struct Limbs {
+  std::array<Limb<S>, 4> limb;
+  std::array<Arm<S>, 4> arm;
+  Vector3<S> N;  ///< centre of the circle of C_1..C_3 [m]
+  bool assembles = false;
+};
+
+template <class S>
+Limbs<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& mode) {
+  const auto [s, c] = sincos(pose.angle);
+  Limbs<S> limbs;
+  limbs.arm = arms(g, s, c);
+  limbs.N = {pose.x, pose.y, pose.z - g.h};
+  limbs.assembles = true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector3<S>& arm = limbs.arm[i].to_joint;
+    limbs.limb[i] = limb_at(g, i, {pose.x + arm[0], pose.y + arm[1], pose.z + arm[2]}, mode[i]);
+    limbs.assembles = limbs.assembles && limbs.limb[i].reach >= 0;
+  }
+  return limbs;
+}
+
+/// Rates of a limb's plane angles psi_i1, psi_i2 (section "rod kinematics" of the source's second part): the turning
+/// rates of the rods about e are `sense` times these.
+template <class S>
+struct RodRates {
+  std::array<S, 2> velocity, acceleration;  ///< [rad/s], [rad/s^2]
+};
+
+/// @param v, a  velocity and acceleration of C_i [m/s, m/s^2]. Infinite where sin theta_i2 = 0.
+template <class S>
+RodRates<S> rod_rates(const Geometry<S>& g, std::size_t i, const Limb<S>& limb, const Vector3<S>& v,
+                      const Vector3<S>& a) {
+  const LimbFrame& f = kLimbs[i];
+  const S across_1 = g.l_1[i] * limb.sin_2, across_2 = g.l_2[i] * limb.sin_2;
+  const auto solve = [&](const S& x, const S& y) {
+    return std::array<S, 2>{(limb.u2[0] * x + limb.u2[1] * y) / across_1,
+                            -(limb.u1[0] * x + limb.u1[1] * y) / across_2};
+  };
+  RodRates<S> rates;
+  rates.velocity = solve(v[f.p] * f.p_sign, v[f.q] * f.q_sign);
+  const S c1 = g.l_1[i] * rates.velocity[0] * rates.velocity[0], c2 = g.l_2[i] * rates.velocity[1] * rates.velocity[1];
+  rates.acceleration = solve(a[f.p] * f.p_sign + c1 * limb.u1[0] + c2 * limb.u2[0],
+                             a[f.q] * f.q_sign + c1 * limb.u1[1] + c2 * limb.u2[1]);
+  return rates;
+}
+
+}  // namespace pkm::crr_cru

@@ -1,0 +1,123 @@
+#include "engine/mechanisms/crr_cru/section.hpp"
+
+#include <algorithm>
+
+namespace pkm::crr_cru {
+namespace {
+
+/// Every break that the section's formulas may have, whether it matters or not.
+void list_candidates(const Section<double>& s, std::vector<Structure::Candidate>& list) {
+  using Kind = BreakCode::Kind;
+  list.clear();
+  const double first = s.u.interval[0].lower, last = s.u.interval[s.u.size - 1].upper;
+  const auto add = [&](Kind kind, std::size_t a, std::size_t b, int sign) {
+    const BreakCode code{kind, static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b),
+                         static_cast<std::int8_t>(sign)};
+    bool exists = false;
+    const double u = break_at(s, code, &exists);
+    if (exists && u > first && u < last) list.push_back({u, code});
+  };
+  for (std::size_t circle = 0; circle < 2 * s.rings; ++circle)
+    for (const int sign : {-1, 1}) {
+      add(Kind::extreme, circle, 0, sign);
+      for (std::size_t end = 0; end < 2 * s.v.size; ++end) add(Kind::crossing_v, circle, end, sign);
+      if (s.rings == 2 && circle < 2)
+        for (const std::size_t other : {2, 3}) add(Kind::crossing_ring, circle, other, sign);
+    }
+  std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.u < b.u; });
+}
+
+/// Intervals of v over u; codes below 16 number the ends of the section's v.
+IntervalSet<double> column_at(const Section<double>& s, double u) {
+  IntervalSet<double> column = s.v;
+  for (std::size_t i = 0; i < column.size; ++i) {
+    column.interval[i].lower_code = static_cast<EndCode>(2 * i);
+    column.interval[i].upper_code = static_cast<EndCode>(2 * i + 1);
+  }
+  for (std::size_t i = 0; i < s.rings; ++i) {
+    const Ring<double>& ring = s.ring[i];
+    const double w2 = (u - ring.u) * (u - ring.u);
+    cut(column, ring.v, ring.out2 - w2, ring.in2 - w2, ring_code(ring.limb));
+  }
+  return column;
+}
+
+/// FNV-1a over bytes.
+class Hash {
+ public:
+  void add(std::size_t byte) { value_ = (value_ ^ (byte & 0xff)) * 1099511628211u; }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037u;
+};
+
+std::uint64_t signature_of(const Section<double>& s, const std::vector<Column>& columns) {
+  if (columns.empty()) return 0;
+  Hash hash;
+  for (const auto* set : {&s.u, &s.v}) {
+    hash.add(set->size);
+    for (std::size_t i = 0; i < set->size; ++i) {
+      hash.add(set->interval[i].lower_code);
+      hash.add(set->interval[i].upper_code);
+    }
+  }
+  for (const Column& column : columns) {
+    for (const BreakCode& code : {column.lower, column.upper}) {
+      hash.add(static_cast<std::size_t>(code.kind));
+      hash.add(code.first);
+      hash.add(code.second);
+      hash.add(code.sign > 0);
+    }
+    hash.add(column.ends);
+    for (std::size_t k = 0; k < column.ends; ++k) hash.add(column.end[k]);
+  }
+  return hash.value();
+}
+
+}  // namespace
+
+void find_structure(const Section<double>& s, Structure& structure) {
+  structure.columns.clear();
+  structure.signature = 0;
+  if (s.u.size == 0 || s.v.size == 0) return;
+  list_candidates(s, structure.candidates);
+  auto next = structure.candidates.begin();
+  const auto end = structure.candidates.end();
+  for (std::size_t i = 0; i < s.u.size; ++i) {
+    const Interval<double>& part = s.u.interval[i];
+    while (next != end && next->u <= part.lower) ++next;
+    BreakCode from{BreakCode::Kind::end_of_u, static_cast<std::uint8_t>(2 * i), 0, 1};
+    double low = part.lower;
+    bool joins = false;  // the column before reaches up to `from`
+    while (true) {
+      const bool last = next == end || next->u >= part.upper;
+      const double high = last ? part.upper : next->u;
+      const BreakCode to =
+          last ? BreakCode{BreakCode::Kind::end_of_u, static_cast<std::uint8_t>(2 * i + 1), 0, 1} : next->code;
+      if (high > low) {
+        const IntervalSet<double> found = column_at(s, 0.5 * (low + high));
+        Column column{from, to, {}, 2 * found.size};
+        for (std::size_t k = 0; k < found.size; ++k) {
+          column.end[2 * k] = found.interval[k].lower_code;
+          column.end[2 * k + 1] = found.interval[k].upper_code;
+        }
+        const bool same = joins && structure.columns.back().ends == column.ends &&
+                          std::equal(column.end.begin(), column.end.begin() + static_cast<std::ptrdiff_t>(column.ends),
+                                     structure.columns.back().end.begin());
+        if (same)
+          structure.columns.back().upper = to;
+        else if (column.ends > 0)
+          structure.columns.push_back(column);
+        joins = column.ends > 0;
+      }
+      if (last) break;
+      from = to;
+      low = high;
+      ++next;
+    }
+  }
+  structure.signature = signature_of(s, structure.columns);
+}
+
+}  // namespace pkm::crr_cru

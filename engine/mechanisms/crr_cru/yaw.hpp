@@ -1,0 +1,98 @@
+// (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. The Jacobian does, because the three translations
+// move the slides along fixed directions; so do the forward kinematics of the yaw and the parallel singularity.
+//
+//   rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0 = R sin(phi + delta) + a_0,   det J = R cos(phi + delta)
+//
+// with a_s = l, a_c = 0, a_0 = -r sin beta_2 where the platforms are jointed, and a_s = l - r cos beta_2,
+// a_c = -r sin beta_2, a_0 = 0 where they are one.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "engine/mechanisms/crr_cru/model.hpp"
+#include "engine/model/conditioning.hpp"
+#include "engine/model/influence.hpp"
+
+namespace pkm::crr_cru {
+
+template <class S>
+struct Yaw {
+  S a_s, a_c, a_0;  ///< [m]
+  S R;              ///< hypot(a_s, a_c) [m]
+};
+
+template <class S>
+Yaw<S> yaw(const Geometry<S>& g) {
+  const S along = g.r * g.cos_beta[1], across = g.r * g.sin_beta[1];
+  if (g.platform == Platform::jointed) return {g.l, S(0.0), -across, g.l};
+  const S a_s = g.l - along;
+  return {a_s, -across, S(0.0), root_or_zero(S(a_s * a_s + across * across))};
+}
+
+/// delta, in (-pi, pi].
+template <class S>
+S offset(const Yaw<S>& y) {
+  return atan2(y.a_c, y.a_s);
+}
+
+/// kappa_p = det J / R = cos(phi + delta), in [-1, 1]: 0 at a parallel singularity, > 0 on the nominal branch.
+template <class S>
+S parallel_index(const Yaw<S>& y, const S& sin_phi, const S& cos_phi) {
+  return (y.a_s * cos_phi - y.a_c * sin_phi) / y.R;
+}
+
+/// J in qdot = J Xdot, X = (x, y, z, phi): row i is (e_i, e_i . (z x arm_i)).
+template <class S>
+Eigen::Matrix<S, 4, 4> jacobian(const std::array<Arm<S>, 4>& arm) {
+  Eigen::Matrix<S, 4, 4> J = Eigen::Matrix<S, 4, 4>::Constant(S(0.0));
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const std::size_t e = kLimbs[i].e;
+    J(row, static_cast<Eigen::Index>(e)) = S(1.0);
+    if (arm[i].turns && e < 2) J(row, 3) = e == 0 ? S(-arm[i].to_joint[1]) : arm[i].to_joint[0];
+  }
+  return J;
+}
+
+/// dJ/dt: a turning arm's e_i . (z x (z x arm_i)) phidot in the last column, 0 elsewhere.
+template <class S>
+Eigen::Matrix<S, 4, 4> jacobian_rate(const std::array<Arm<S>, 4>& arm, const S& phi_rate) {
+  Eigen::Matrix<S, 4, 4> rate = Eigen::Matrix<S, 4, 4>::Constant(S(0.0));
+  for (std::size_t i = 0; i < 4; ++i)
+    if (arm[i].turns && kLimbs[i].e < 2)
+      rate(static_cast<Eigen::Index>(i), 3) = -arm[i].to_joint[kLimbs[i].e] * phi_rate;
+  return rate;
+}
+
+/// Influence coefficients of the slides: their speeds follow from J, and their accelerations at a steady yaw rate from
+/// dJ/dt, which is proportional to it.
+template <class S>
+Influence<S> influence(const std::array<Arm<S>, 4>& arm) {
+  const Eigen::Matrix<S, 4, 4> J = jacobian(arm), rate = jacobian_rate(arm, S(1.0));
+  Influence<S> q;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t c = 0; c < 4; ++c) q.G(i, c) = J(row, static_cast<Eigen::Index>(c));
+    q.H[i](3, 3) = rate(row, 3);
+  }
+  return q;
+}
+
+/// The length that the phi column is divided by, unless a study gives one: l, or l + r [m].
+template <class S>
+S characteristic_length(const Geometry<S>& g) {
+  return g.platform == Platform::jointed ? g.l : S(g.l + g.r);
+}
+
+/// Inverse condition number of J with the phi column divided by `length` [m]. z stands alone in J: its singular value
+/// is 1, and x, y, phi are left.
+template <class S>
+S conditioning(const std::array<Arm<S>, 4>& arm, const S& length) {
+  const S one(1.0), zero(0.0);
+  const S turn_1 = arm[0].turns ? S(-arm[0].to_joint[1] / length) : zero;
+  const S turn_2 = arm[1].turns ? S(arm[1].to_joint[0] / length) : zero;
+  return inverse_condition(
+      Rows3<S>{{{one, zero, turn_1}, {zero, one, turn_2}, {zero, one, arm[3].to_joint[0] / length}}}, one);
+}
+
+}  // namespace pkm::crr_cru

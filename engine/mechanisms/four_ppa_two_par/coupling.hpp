@@ -1,0 +1,92 @@
+// 4PPa-2PaR: the inertia that the sliders feel at a pose of the lower mode, without J and M_X.
+//
+// Sliders' speeds give y_j' = (q_2j' + q_2j-1')/2 and h_j' = (q_2j' - q_2j-1')/2, these give z_cj' = -(h_j / z_cj)
+// h_j', and with t_j = x_j / sigma_j the loop closure of dynamics.hpp solves to
+//
+//   theta' = (y_2' - y_1') / (a c),  y' = (y_1' + y_2')/2
+//   x' = (z_c2' - z_c1' - (t_1 - t_2)(a s/2) theta') / (t_1 + t_2),   z' = z_c1' + t_1 x_1'
+//
+// Kinetic energy is a sum of squares of such speeds, so M_q is the sum of their coefficients' outer products. Of a limb
+// (m_u, I_u, m_d, I_d one bar each; m_C, m_D connectors; m_s a slider):
+//
+//   (2 m_s + 4 m_u + m_C + 2 m_d + m_D) y_j'^2 + (2 m_s + m_u) h_j'^2 + (m_C + m_u + 4 I_u / h_j^2) z_cj'^2
+//   + (m_d / 2 + m_D + 2 I_d / sigma_j^2) x_j'^2 + m_d (z_cj' + z')^2 / 2 + m_D z'^2
+#pragma once
+
+#include <cmath>
+
+#include "engine/dynamics/coupling.hpp"
+#include "engine/mechanisms/four_ppa_two_par/masses.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+/// M_q [kg], finite inside the workspace: 0 < sigma_j, 0 < h_j, z_cj < 0, 0 < cos theta, 0 < sin(beta_1 + beta_2).
+/// @param x, sigma, z_c  of the two limbs [m], lower branch
+template <class S>
+Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_theta, const S& cos_theta,
+                              const std::array<S, 2>& x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c) {
+  using Row = Vector<S, 4>;  // of a speed: its coefficients of q'
+  std::array<Row, 2> y, h, z_cj, x_j;
+  std::array<S, 2> t, h2;
+  for (std::size_t j = 0; j < 2; ++j) {
+    h2[j] = (g.l_u - z_c[j]) * (g.l_u + z_c[j]);
+    t[j] = x[j] / sigma[j];
+    y[j][2 * j] = y[j][2 * j + 1] = h[j][2 * j + 1] = S(0.5);
+    h[j][2 * j] = S(-0.5);
+    z_cj[j] = h[j] * S(root_or_zero(h2[j]) / z_c[j] * -1.0);
+  }
+  const S half_a_s = g.a * sin_theta * 0.5;
+  const Row theta = (y[1] - y[0]) * S(S(1.0) / (g.a * cos_theta));
+  const Row middle_y = (y[0] + y[1]) * S(0.5);
+  const Row middle_x = (z_cj[1] - z_cj[0] - theta * S((t[0] - t[1]) * half_a_s)) * S(S(1.0) / (t[0] + t[1]));
+  x_j[0] = theta * half_a_s + middle_x;
+  x_j[1] = theta * half_a_s - middle_x;
+  const Row z = z_cj[0] + x_j[0] * t[0];
+
+  Matrix<S, 4, 4> M;
+  const auto add = [&](const S& coefficient, const Row& speed) {
+    const Row scaled = speed * coefficient;
+    for (std::size_t r = 0; r < 4; ++r)
+      for (std::size_t c = r; c < 4; ++c) M(r, c) += scaled[r] * speed[c];
+  };
+  for (std::size_t j = 0; j < 2; ++j) {
+    add(b.slider * 2.0 + b.upper_bar * 4.0 + b.upper_connector + b.lower_bar * 2.0 + b.lower_connector, y[j]);
+    add(b.slider * 2.0 + b.upper_bar, h[j]);
+    add(b.upper_connector + b.upper_bar + b.I_upper * 4.0 / h2[j], z_cj[j]);
+    add(b.lower_bar * 0.5 + b.lower_connector + b.I_lower * 2.0 / (sigma[j] * sigma[j]), x_j[j]);
+    add(b.lower_bar * 0.5, z_cj[j] + z);
+  }
+  add(b.lower_connector * 2.0 + b.platform + b.payload, z);
+  add(b.platform, middle_x);
+  add(b.platform, middle_y);
+  add(b.I_platform, theta);
+  add(b.payload, middle_x - theta * S(b.c_payload * sin_theta));
+  add(b.payload, middle_y + theta * S(b.c_payload * cos_theta));
+  for (std::size_t r = 1; r < 4; ++r)
+    for (std::size_t c = 0; c < r; ++c) M(r, c) = M(c, r);
+  return M;
+}
+
+/// What surveys keep of a pose's inertia.
+template <class S>
+struct Coupling {
+  Vector<S, 4> dci;
+  S condition;  ///< inverse condition number of M_q
+
+  /// The same pose with theta -> -theta (mirrored in y): the two sliders of each rail change places.
+  Coupling mirrored() const { return {{{dci[1], dci[0], dci[3], dci[2]}}, condition}; }
+};
+
+/// Where M_q is infinite or has no value, on the edge of the workspace without margins, the values that it tends to or
+/// that are worst: 1 and 0.
+template <class S>
+Coupling<S> coupling(const Matrix<S, 4, 4>& M_q, bool with_condition) {
+  bool finite = true;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j <= i; ++j) finite = finite && std::isfinite(value_of(M_q(i, j)));
+  for (std::size_t i = 0; i < 4; ++i) finite = finite && value_of(M_q(i, i)) > 0;
+  if (!finite) return {{{S(1.0), S(1.0), S(1.0), S(1.0)}}, S(0.0)};
+  return {coupling_indices(M_q), with_condition ? inertia_condition(M_q) : S(0.0)};
+}
+
+}  // namespace pkm::four_ppa_two_par

@@ -1,0 +1,78 @@
+// 4PPa-2PaR: masses and inertias that follow the geometry.
+//
+// The paper gives none. Here every link's mass is its length times a mass per length; by default that of a solid
+// aluminium rod (2700 kg/m^3) of the link's own default radius: 0.848 kg/m for 10 mm, 3.393 kg/m for 20 mm. Links are
+// those of links.hpp:
+//
+//   slider            lambda_s (2 d_0 + d_u)
+//   upper bar         lambda_u l_u,                            I = kappa m l_u^2 / 12 about its middle (two per slider)
+//   upper connector   lambda_u d_u + lambda_d d_d + m_c        carries C_j
+//   lower bar         lambda_d l_d,                            I = kappa m l_d^2 / 12 (two per limb)
+//   lower connector   lambda_d max(d, d_d) + m_c               from D_j to P_j
+//   platform          lambda_p a,                              I_zz = kappa_p m a^2 / 12, centre (x, y, z)
+//   payload           m_p, a point on the line P_1 P_2, c_p from the platform's centre towards P_2
+//
+// Both parallelograms keep their connectors upright and along y: those translate only, so neither their inertias nor
+// the places of their centres of mass count.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/core/parameter.hpp"
+#include "engine/mechanisms/four_ppa_two_par/model.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+/// Order of the parameters that follow the lengths.
+enum MassIndex {
+  kLambdaU = kParameters,
+  kLambdaD,
+  kLambdaS,
+  kLambdaP,
+  kJoints,  ///< m_c
+  kKappa,
+  kKappaP,
+  kPayload,        ///< m_p
+  kPayloadOffset,  ///< c_p
+  kAllParameters
+};
+
+template <class S>
+struct Masses {
+  S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< one of each [kg]
+  S I_upper, I_lower;  ///< of a bar about its middle, across the bar [kg m^2]
+  S I_platform;        ///< about its centre and z [kg m^2]
+  S c_payload;         ///< [m]
+};
+
+/// Throws std::domain_error with a sentence when a link's mass or inertia is not positive.
+void check_positive(const Masses<double>& b);
+
+/// Throws std::domain_error with a sentence when a link's mass or inertia is not positive.
+/// @param p  all parameters
+template <class S>
+Masses<S> masses(std::span<const S> p) {
+  const Geometry<S> g = geometry(p);
+  Masses<S> b;
+  b.slider = p[kLambdaS] * (g.d_0 * 2.0 + g.d_u);
+  b.upper_bar = p[kLambdaU] * g.l_u;
+  b.lower_bar = p[kLambdaD] * g.l_d;
+  b.upper_connector = p[kLambdaU] * g.d_u + p[kLambdaD] * g.d_d + p[kJoints];
+  b.lower_connector = p[kLambdaD] * max(g.d, g.d_d) + p[kJoints];
+  b.platform = p[kLambdaP] * g.a;
+  b.payload = p[kPayload];
+  b.I_upper = p[kKappa] * b.upper_bar * g.l_u * g.l_u * (1.0 / 12);
+  b.I_lower = p[kKappa] * b.lower_bar * g.l_d * g.l_d * (1.0 / 12);
+  b.I_platform = p[kKappaP] * b.platform * g.a * g.a * (1.0 / 12);
+  b.c_payload = p[kPayloadOffset];
+  const auto v = [](const S& x) { return value_of(x); };
+  check_positive({v(b.slider), v(b.upper_bar), v(b.lower_bar), v(b.upper_connector), v(b.lower_connector),
+                  v(b.platform), v(b.payload), v(b.I_upper), v(b.I_lower), v(b.I_platform), v(b.c_payload)});
+  return b;
+}
+
+/// The parameters that follow the lengths.
+std::vector<Parameter> mass_parameters();
+
+}  // namespace pkm::four_ppa_two_par

@@ -1,0 +1,202 @@
+// 4PPa-2PaR as a mechanism of the catalogue.
+#include <stdexcept>
+
+#include "engine/core/options.hpp"
+#include "engine/mechanisms/four_ppa_two_par/dynamics.hpp"
+#include "engine/mechanisms/four_ppa_two_par/links.hpp"
+#include "engine/mechanisms/four_ppa_two_par/survey.hpp"
+#include "engine/mechanisms/list.hpp"
+
+namespace pkm {
+namespace {
+
+using namespace four_ppa_two_par;
+
+/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
+constexpr double kNoClearance = -2;
+
+const char* const kModes[4] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
+
+/// The one mass model: every mass is a length times a mass per length.
+const char* const kMassModel = "geometry";
+
+MechanismInfo make_info() {
+  MechanismInfo i;
+  i.name = "4ppa-2par";
+  i.title = "two limbs of two sliders each on two parallel rails, parallelograms down to a common platform";
+  i.source = "Kinematics analysis and optimal design of a 3T1R parallel mechanism (4PPa-2PaR)";
+  i.parameters = {
+      {"a", "m", 0.2, 1e-3, 100, "distance of the platform's two revolute joints"},
+      {"b", "m", 0.8, 1e-3, 100, "distance of the rails"},
+      {"l_u", "m", 0.6, 1e-3, 100, "bar length of the upper parallelograms"},
+      {"l_d", "m", 0.55, 1e-3, 100, "bar length of the lower parallelograms"},
+      {"d", "m", 0.15, 0, 100, "height of the lower joints above the platform"},
+      {"L0", "m", 2.5, 0, 100, "rail length"},
+      {"R_u", "m", 0.010, 0, 1, "radius of the upper bars"},
+      {"R_d", "m", 0.010, 0, 1, "radius of the lower bars"},
+      {"d_u", "m", 0.080, 1e-3, 10, "distance of an upper parallelogram's two bars"},
+      {"d_d", "m", 0.080, 1e-3, 10, "distance of the lower parallelogram's two bars"},
+      {"d_0", "m", 0.030, 0, 10, "length of a slider beyond its outer joint"},
+      {"R_p", "m", 0.020, 0, 1, "radius of the platform as a capsule"},
+      {"R_s", "m", 0.020, 0, 1, "radius of the sliders as capsules"},
+  };
+  for (Parameter& parameter : mass_parameters()) i.parameters.push_back(std::move(parameter));
+  i.has_influence = true;
+  i.has_dynamics = true;
+  i.has_links = true;
+  i.mass_models = {kMassModel};
+  i.mass_model = kMassModel;
+  i.coordinates = {"x", "y", "z", "theta"};
+  i.joints = {"q1", "q2", "q3", "q4"};
+  i.modes.assign(std::begin(kModes), std::end(kModes));
+  i.swept = {0, 2, 3};
+  i.held = 1;
+  i.held_can_integrate = true;
+  constexpr double quarter = kPi / 2;
+  i.limits = {
+      {"alpha_min", "rad", 0, 0, quarter, "interference", "asin(2 R_u / d_u), eq 17",
+       "least angle of the upper bars with the rail"},
+      {"beta_min", "rad", 0, 0, quarter, "interference", "asin(2 R_d / d_d), eq 17",
+       "least angle of the lower bars from the vertical"},
+      {"beta_max", "rad", quarter, 0, quarter, "singularity-margin", "",
+       "greatest angle of the lower bars from the vertical, eq 20"},
+      {"h_min", "m", 0, 0, 100, "singularity-margin", "d_0 + d_u / 2, eq 19", "least half spacing of a limb's sliders"},
+      {"sin_par_min", "1", 0, 0, 1, "singularity-margin", "", "least sin(beta_1 + beta_2), eq 15"},
+      {"cos_theta_min", "1", 0, 0, 1, "singularity-margin", "", "least cos(theta), eq 15"},
+      {"clearance_min", "m", kNoClearance, kNoClearance, 100, "clearance", "",
+       "least distance of links of different limbs, platform and sliders; < 0: they may overlap that far"},
+  };
+  i.design_margins = {
+      {"workspace-shape", "m",
+       "l_d - sqrt(l_u^2 + (b - a cos_theta_min)^2) / 2, eq 21 at the least cos(theta) allowed"},
+      {"rail-length", "m", "L0 - 2 l_u cos(alpha_min), eq 18"},
+  };
+  i.volume_unit = "m^2 rad";
+  i.integrated_unit = "m^3 rad";
+  i.size_unit = "m^2";
+  i.size_meaning = "pi b (l_u + l_d)";
+  i.characteristic_length = "a / 2";
+  return i;
+}
+
+/// Eq 21, upper and lower part separate at the least cos(theta) allowed; eq 18.
+template <class S>
+void margins_of(std::span<const S> p, const LimitSpec& spec, std::span<S> margins) {
+  const auto g = geometry(p);
+  const auto l = limits(g, spec);
+  const S w = g.b - g.a * l.cos_theta_min;
+  margins[0] = g.l_d - sqrt(S(g.l_u * g.l_u + w * w)) * 0.5;
+  margins[1] = g.L0 - 2.0 * g.l_u * l.cos_alpha_min;
+}
+
+/// V_mech of table 8.
+template <class S>
+S size_of(std::span<const S> p) {
+  return kPi * p[kB] * (p[kLu] + p[kLd]);
+}
+
+template <class S>
+void thresholds_of(std::span<const S> p, const LimitSpec& spec, std::span<S> values) {
+  const auto g = geometry(p);
+  const auto l = limits(g, spec);
+  values[kAlphaMin] = asin(l.sin_alpha_min);
+  values[kBetaMin] = asin(l.sin_beta_min);
+  values[kBetaMax] = atan2(l.sin_beta_max, l.cos_beta_max);
+  values[kHMin] = l.h_min;
+  values[kSinParMin] = l.sin_par_min;
+  values[kCosThetaMin] = l.cos_theta_min;
+  values[kClearanceMin] = S(l.clearance_min.value_or(kNoClearance));
+}
+
+class FourPpaTwoPar final : public Mechanism {
+ public:
+  const MechanismInfo& info() const override { return info_; }
+
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
+    sweep_of(info_, plan);  // refuses a plan that holds another coordinate than y
+    return make_surveyor(plan, demand);
+  }
+  VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
+    return four_ppa_two_par::voxel_map(geometry(p), plan);
+  }
+  double middle(std::span<const double> p, int) const override { return middle_plane(geometry(p)); }
+  void design_margins(std::span<const double> p, const LimitSpec& spec, std::span<double> margins) const override {
+    margins_of(p, spec, margins);
+  }
+  void design_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> margins) const override {
+    margins_of(p, spec, margins);
+  }
+  double size(std::span<const double> p) const override { return size_of(p); }
+  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
+  void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
+    thresholds_of(p, spec, values);
+  }
+  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
+    thresholds_of(p, spec, values);
+  }
+  NamedValues facts(std::span<const double> p, const LimitSpec& spec) const override {
+    const auto g = geometry(p);
+    return {{"shape_type_at_theta_0", section_type(g, 1)},
+            {"shape_type_at_greatest_theta", section_type(g, limits(g, spec).cos_theta_min)}};
+  }
+  std::string refuse(std::span<const double> p) const override {
+    for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
+      const Parameter& parameter = info_.parameters[i];
+      if (!(p[i] >= parameter.lower && p[i] <= parameter.upper))
+        return parameter.name + " = " + shortest(p[i]) + " is outside the model's range " + shortest(parameter.lower) +
+               " to " + shortest(parameter.upper) + " " + parameter.unit;
+    }
+    return {};
+  }
+  PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
+                     const LimitSpec& spec) const override {
+    const auto g = geometry(p);
+    return four_ppa_two_par::inspect(g, limits(g, spec), pose, mode_called(mode));
+  }
+  std::optional<Influence<double>> influence(std::span<const double> p, const Pose<double>& pose,
+                                             const std::string& mode) const override {
+    return four_ppa_two_par::influence(geometry(p), pose, mode_called(mode));
+  }
+  std::vector<PlacedLink> links(std::span<const double> p, const Pose<double>& pose,
+                                const std::string& mode) const override {
+    return placed_links(geometry(p), pose, mode_called(mode));
+  }
+  std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& q) const override {
+    return four_ppa_two_par::forward(geometry(p), q);
+  }
+
+  void dynamics(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
+                std::span<PoseDynamics<double>> out) const override {
+    find_dynamics(p, mode, states, out);
+  }
+  void dynamics(std::span<const Dual4> p, const std::string& mode, std::span<const MotionState<Dual4>> states,
+                std::span<PoseDynamics<Dual4>> out) const override {
+    find_dynamics(p, mode, states, out);
+  }
+  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
+    return model == kMassModel ? std::make_shared<FourPpaTwoPar>() : nullptr;
+  }
+
+ private:
+  static WorkingMode mode_called(const std::string& name) {
+    for (int i = 0; i < 4; ++i)
+      if (name == kModes[i]) return {i & 2 ? Branch::upper : Branch::lower, i & 1 ? Branch::upper : Branch::lower};
+    throw std::invalid_argument("unknown working mode " + name);
+  }
+  template <class S>
+  static void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const MotionState<S>> states,
+                            std::span<PoseDynamics<S>> out) {
+    const WorkingMode branches = mode_called(mode);
+    const auto g = geometry(p);
+    const auto b = masses(p);
+    for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics(g, b, states[i], branches);
+  }
+
+  MechanismInfo info_ = make_info();
+};
+
+}  // namespace
+
+std::shared_ptr<const Mechanism> make_four_ppa_two_par() { return std::make_shared<FourPpaTwoPar>(); }
+
+}  // namespace pkm

@@ -1,0 +1,170 @@
+// 4PPa-2PaR: geometry, limits and kinematics of one pose.
+//
+// Source: "Kinematics analysis and optimal design of a 3T1R parallel mechanism", equation numbers are that paper's.
+//
+// Two rails along y at x = 0 and x = b in the plane z = 0, z up. Sliders 1, 2 run on rail 1 and 3, 4 on rail 2; q_i is
+// the slider's y. Limb j = 1, 2: its two upper bars (length l_u) meet at C_j below the rail, a lower parallelogram
+// (length l_d) hangs D_j from C_j in the x-z plane, and the platform's joint P_j lies d below D_j.
+//
+//   P_1, P_2 = (x, y, z) -/+ (a/2)(cos theta, sin theta, 0)
+//   x_1 = x - a c/2 = l_d sin(beta_1),   x_2 = b - x - a c/2 = l_d sin(beta_2)
+//   y_1 = y - a s/2,                     y_2 = y + a s/2
+//   sigma_j = l_d |cos(beta_j)|,         h_j = l_u cos(alpha_j) = half the slider spacing
+//   lower branch: z_cj = z + d + sigma_j; upper branch: z_cj = z + d - sigma_j
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/math/scalar.hpp"
+#include "engine/mechanism/plan.hpp"
+#include "engine/model/pose.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+/// Order of the parameters.
+enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kRp, kRs, kParameters };
+
+/// Order of the pose-level limits.
+enum LimitIndex { kAlphaMin, kBetaMin, kBetaMax, kHMin, kSinParMin, kCosThetaMin, kClearanceMin, kLimits };
+
+/// Lengths [m], names as in the paper.
+template <class S>
+struct Geometry {
+  S a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s;
+};
+
+template <class S>
+Geometry<S> geometry(std::span<const S> p) {
+  return {p[kA], p[kB], p[kLu], p[kLd], p[kD], p[kL0], p[kRu], p[kRd], p[kDu], p[kDd], p[kD0], p[kRp], p[kRs]};
+}
+
+/// The plane y that surveys are on where their plan names no other [m].
+template <class S>
+S middle_plane(const Geometry<S>& g) {
+  return g.L0 * 0.5;
+}
+
+/// Pose-level thresholds in the form in which the tests use them.
+template <class S>
+struct Limits {
+  S sin_alpha_min, cos_alpha_min;
+  S sin_beta_min, cos_beta_min;
+  S sin_beta_max, cos_beta_max;
+  S h_min;               ///< [m]
+  S sin_par_min;         ///< sin(phi), the least sin(beta_1 + beta_2)
+  S sin_half, cos_half;  ///< of phi/2
+  S cos_theta_min;
+  std::optional<double> clearance_min;  ///< [m]; none: no capsule is looked at
+};
+
+/// Thresholds given by the study, or derived from the bars' and sliders' sizes (eqs 17 and 19).
+template <class S>
+Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
+  const auto angle = [&](int i, double inactive) {
+    return sincos(S(spec.given[static_cast<std::size_t>(i)].value_or(inactive)));
+  };
+  const auto cosine = [](const S& sine) { return root_or_zero(S((S(1.0) - sine) * (S(1.0) + sine))); };
+  Limits<S> l;
+  const auto alpha = angle(kAlphaMin, 0), beta_low = angle(kBetaMin, 0);
+  l.sin_alpha_min = spec.derived[kAlphaMin] ? S(2.0 * g.R_u / g.d_u) : alpha.sin;  // eq 17
+  l.cos_alpha_min = spec.derived[kAlphaMin] ? cosine(l.sin_alpha_min) : alpha.cos;
+  l.sin_beta_min = spec.derived[kBetaMin] ? S(2.0 * g.R_d / g.d_d) : beta_low.sin;  // eq 17
+  l.cos_beta_min = spec.derived[kBetaMin] ? cosine(l.sin_beta_min) : beta_low.cos;
+  if (spec.given[kBetaMax]) {
+    const auto beta = angle(kBetaMax, 0);
+    l.sin_beta_max = beta.sin;
+    l.cos_beta_max = beta.cos;
+  } else {
+    l.sin_beta_max = S(1.0);
+    l.cos_beta_max = S(0.0);
+  }
+  l.h_min = spec.derived[kHMin] ? S(g.d_0 + g.d_u * 0.5) : S(spec.given[kHMin].value_or(0));  // eq 19
+  const double sin_phi = spec.given[kSinParMin].value_or(0), cos_phi = std::sqrt((1 - sin_phi) * (1 + sin_phi));
+  l.sin_par_min = S(sin_phi);
+  l.cos_half = S(std::sqrt(0.5 * (1 + cos_phi)));
+  l.sin_half = S(0.5 * sin_phi / std::sqrt(0.5 * (1 + cos_phi)));
+  l.cos_theta_min = S(spec.given[kCosThetaMin].value_or(0));
+  l.clearance_min = spec.given[kClearanceMin];
+  return l;
+}
+
+/// Branch of a limb: lower when the platform hangs below C_j.
+enum class Branch { lower, upper };
+using WorkingMode = std::array<Branch, 2>;
+
+/// Position of the limbs at a pose. Exists (`assembles`) where x_j is in [0, l_d] and |z_cj| <= l_u. The paper takes
+/// z_cj <= 0, C_j below its rail, but lists q for both (table 2), since q depends on z_cj^2 only.
+template <class S>
+struct Limbs {
+  std::array<S, 2> x, y, sigma, z_c, h;    ///< [m]
+  std::array<S, 4> q;                      ///< slider positions [m], eq 13
+  std::array<double, 2> reach_x, reach_z;  ///< margins [m], >= 0 where the limb assembles
+  bool assembles = false;
+};
+
+template <class S>
+Limbs<S> inverse(const Geometry<S>& g, const Pose<S>& pose, WorkingMode mode) {
+  const auto [s, c] = sincos(pose.angle);
+  Limbs<S> limb;
+  limb.x = {pose.x - g.a * c * 0.5, g.b - pose.x - g.a * c * 0.5};
+  limb.y = {pose.y - g.a * s * 0.5, pose.y + g.a * s * 0.5};
+  limb.assembles = true;
+  for (std::size_t j = 0; j < 2; ++j) {
+    const S under = (g.l_d - limb.x[j]) * (g.l_d + limb.x[j]);
+    limb.sigma[j] = root_or_zero(under);
+    limb.z_c[j] = mode[j] == Branch::lower ? S(pose.z + g.d + limb.sigma[j]) : S(pose.z + g.d - limb.sigma[j]);
+    limb.h[j] = root_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
+    limb.reach_x[j] = std::fmin(value_of(limb.x[j]), value_of(g.l_d - limb.x[j]));
+    limb.reach_z[j] = value_of(g.l_u) - std::fabs(value_of(limb.z_c[j]));
+    limb.assembles = limb.assembles && limb.reach_x[j] >= 0 && limb.reach_z[j] >= 0;
+  }
+  limb.q = {limb.y[0] - limb.h[0], limb.y[0] + limb.h[0], limb.y[1] - limb.h[1], limb.y[1] + limb.h[1]};
+  return limb;
+}
+
+/// J_q qdot = G V (eqs 14, 15). J_q is singular, with infinite entries left at 0, where z_cj = 0.
+template <class S>
+struct Velocity {
+  Eigen::Matrix<S, 4, 4> Jq, G;
+  std::array<S, 2> k;  ///< cot(alpha_j) cos(beta_j)
+  bool finite = true;  ///< no alpha_j is 0
+};
+
+template <class S>
+Velocity<S> velocity(const Geometry<S>& g, const Pose<S>& pose, const Limbs<S>& limb, WorkingMode mode) {
+  const auto [s, c] = sincos(pose.angle);
+  std::array<S, 2> sin_b, cos_b;
+  Velocity<S> v;
+  for (std::size_t j = 0; j < 2; ++j) {
+    sin_b[j] = limb.x[j] / g.l_d;
+    cos_b[j] = (mode[j] == Branch::lower ? limb.sigma[j] : S(-limb.sigma[j])) / g.l_d;
+    const bool flat = value_of(limb.z_c[j]) == 0;
+    v.finite = v.finite && !flat;
+    v.k[j] = flat ? S(0.0) : S(limb.h[j] / -limb.z_c[j] * cos_b[j]);  // cot(alpha) = h / (-z_c)
+  }
+  const S zero(0.0), one(1.0), half(0.5);
+  v.Jq << half, half, zero, zero,               //
+      zero, zero, half, half,                   //
+      v.k[0] * 0.5, v.k[0] * -0.5, zero, zero,  //
+      zero, zero, v.k[1] * -0.5, v.k[1] * 0.5;
+  v.G << zero, one, zero, g.a * c * -0.5,                   //
+      zero, one, zero, g.a * c * 0.5,                       //
+      sin_b[0], zero, -cos_b[0], g.a * s * sin_b[0] * 0.5,  //
+      sin_b[1], zero, cos_b[1], g.a * s * sin_b[1] * -0.5;
+  return v;
+}
+
+/// Every assembly mode (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its rail, both circle
+/// intersections. Up to 16; those with both C_j below the rails come first.
+std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<double, 4>& q);
+
+/// Shape of the x-z section at given theta, 1 to 5 (figure 6): 1 empty, 2 one piece, 3 notched, 4 upper and lower part
+/// separate with beta = pi/2 inside, 5 separate without.
+int section_type(const Geometry<double>& g, double cos_theta);
+
+}  // namespace pkm::four_ppa_two_par

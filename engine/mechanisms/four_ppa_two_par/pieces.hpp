@@ -1,0 +1,234 @@
+// 4PPa-2PaR: the pieces of theta on which the section's area is smooth.
+//
+// The area changes its formula where an end of the delta range changes its kind, where the stroke begins to cut or
+// empties a limb, where sin_par begins to cut at x = b/2, and where the depth Delta overtakes an end. All but the last
+// have closed forms in cos theta or sin theta; the last has one while the stroke does not cut, and is found by a root
+// otherwise. Breaks move with the design: a closed form carries its derivative along, a root has that of an implicit
+// function. The area is continuous at every break, and everything is even in theta, so only theta >= 0 is listed.
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+
+#include "engine/math/dual.hpp"
+#include "engine/mechanisms/four_ppa_two_par/section.hpp"
+
+namespace pkm::four_ppa_two_par {
+
+/// A break: where, and on which sides the area behaves like a square root.
+template <class S>
+struct Break {
+  S theta;
+  bool root_below = false;
+  bool root_above = false;
+};
+
+/// Continuous functions of theta whose signs are part of the area's formula: where the depths lie beside the ends of
+/// delta. Delta_1 <= Delta_2 here, because y <= L0/2 and theta >= 0.
+inline constexpr std::size_t kGaps = 6;
+template <class S>
+std::array<S, kGaps> gaps(const Section<S>& t) {
+  const S &D1 = t.depth[0], &D2 = t.depth[1];
+  return {D1 - t.delta_end, D2 - t.delta_end,      D1 - t.delta_low,
+          D2 - t.delta_low, D2 - D1 - t.delta_end, D2 - D1 - t.delta_low};
+}
+template <class S>
+S gap(const Frame<S>& f, std::size_t index, const S& theta) {
+  const auto [s, c] = sincos(theta);
+  return gaps(section(f, s, c))[index];
+}
+
+/// Everything that tells one formula of the area from another at one theta.
+struct Signature {
+  int formula = -1;  ///< -1: empty
+  std::array<double, kGaps> gap{};
+  bool operator==(const Signature& other) const {
+    if (formula != other.formula) return false;
+    if (formula < 0) return true;
+    for (std::size_t i = 0; i < kGaps; ++i)
+      if ((gap[i] > 0) != (other.gap[i] > 0)) return false;
+    return true;
+  }
+};
+
+/// The signature at one theta of a frame of doubles.
+Signature signature(const Frame<double>& f, double theta);
+/// Whether the stroke cuts the depth of either limb at theta.
+bool stroke_cuts(const Frame<double>& f, double theta);
+
+/// A zero of one of the gaps.
+struct Crossing {
+  double theta;
+  std::size_t gap;
+};
+/// The first theta in (low, high] where a gap is seen to have another sign than at `low`, to the last bits. The two
+/// signatures differ by gaps alone.
+Crossing find_crossing(const Frame<double>& f, double low, const Signature& at_low, double high,
+                       const Signature& at_high);
+
+/// A frame that does not move with the design, for another scalar.
+template <class To, class From>
+Frame<To> constant_frame(const Frame<From>& f) {
+  const auto& g = f.g;
+  const auto& l = f.l;
+  const auto v = [](const From& x) { return To(value_of(x)); };
+  return {{v(g.a), v(g.b), v(g.l_u), v(g.l_d), v(g.d), v(g.L0), v(g.R_u), v(g.R_d), v(g.d_u), v(g.d_d), v(g.d_0),
+           v(g.R_p), v(g.R_s)},
+          {v(l.sin_alpha_min), v(l.cos_alpha_min), v(l.sin_beta_min), v(l.cos_beta_min), v(l.sin_beta_max),
+           v(l.cos_beta_max), v(l.h_min), v(l.sin_par_min), v(l.sin_half), v(l.cos_half), v(l.cos_theta_min)},
+          v(f.x_min),
+          v(f.x_max),
+          v(f.z_low),
+          v(f.z_high),
+          v(f.stroke_free),
+          v(f.y),
+          f.empty};
+}
+
+/// The theta of a crossing with its derivatives: gap(p, theta(p)) = 0 gives theta' = -(d gap/d p) / (d gap/d theta).
+template <class S>
+S follow(const Frame<S>& f, const Crossing& crossing) {
+  if constexpr (!std::is_same_v<S, double>) {
+    const S moves = gap(f, crossing.gap, S(crossing.theta));
+    using Slope = Dual<1>;
+    const double slope = gap(constant_frame<Slope>(f), crossing.gap, Slope::variable(crossing.theta, 0)).v[0];
+    if (slope != 0) return crossing.theta - (moves - value_of(moves)) / slope;
+  }
+  return S(crossing.theta);  // a gap that only touches 0 opens and closes a piece there: a kink of the rule
+}
+
+/// Breaks with a closed form, unsorted.
+template <class S>
+void closed_form_breaks(const Frame<S>& f, std::vector<Break<S>>& breaks) {
+  const Geometry<S>& g = f.g;
+  const Limits<S>& l = f.l;
+  const auto at_w = [&](const S& w, bool root_below, bool root_above) {
+    const S c = (g.b - w) / g.a;
+    if (value_of(c) > 0 && value_of(c) < 1) breaks.push_back({acos(c), root_below, root_above});
+  };
+  const auto at_shift = [&](const S& shift, bool root_below, bool root_above) {  // shift = (a/2) sin theta
+    const S s = shift * 2.0 / g.a;
+    if (value_of(s) > 0 && value_of(s) < 1) breaks.push_back({asin(s), root_below, root_above});
+  };
+  const auto root = [](const S& x) { return root_or_zero(x); };
+  // ends of the range of w
+  at_w(f.x_min * 2.0, false, false);
+  at_w(f.x_max * 2.0, true, false);
+  at_w(g.l_d * 2.0 * l.cos_half, true, false);
+  // beta_max hands over to beta_min: a root where sigma of the limb that leans more gets to 0
+  at_w(f.x_max + f.x_min, value_of(l.cos_beta_max) < 0.1, false);
+  const bool parallel = value_of(l.sin_par_min) > 0;
+  const S sin_phi = l.sin_half * l.cos_half * 2.0, cos_phi = l.cos_half * l.cos_half - l.sin_half * l.sin_half;
+  if (parallel) {
+    // beta_1 + beta_2 = pi - phi with one limb at its limit
+    at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max + cos_phi * l.sin_beta_max), false, false);
+    at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min + cos_phi * l.sin_beta_min), false, false);
+    // beta_1 + beta_2 = phi begins to cut at x = b/2, and meets a limit
+    at_w(g.l_d * 2.0 * l.sin_half, true, false);
+    at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min - cos_phi * l.sin_beta_min), false, false);
+    at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max - cos_phi * l.sin_beta_max), false, false);
+  }
+  // the depth without stroke overtakes an end of delta
+  const S depth = f.z_low - f.z_high;
+  const S lean = g.l_d * l.cos_beta_max + depth, other = g.l_d * l.cos_beta_min - depth;
+  if (value_of(lean) < value_of(g.l_d)) {
+    const S x = root(S((g.l_d - lean) * (g.l_d + lean)));
+    at_w(f.x_max + x, false, false);
+    at_w(f.x_max - x, false, false);
+  }
+  if (value_of(other) > 0) at_w(f.x_min + root(S((g.l_d - other) * (g.l_d + other))), false, false);
+  const S upper = (g.l_d * 2.0 * l.cos_half - depth) * (g.l_d * 2.0 * l.cos_half + depth);
+  if (value_of(upper) > 0) at_w(root(upper), false, false);
+  const S lower = (g.l_d * 2.0 * l.sin_half - depth) * (g.l_d * 2.0 * l.sin_half + depth);
+  if (parallel && value_of(lower) > 0) at_w(root(lower), false, false);
+  // the stroke begins to cut (a root on the side where it does), and empties a limb
+  at_shift(f.y - f.stroke_free, false, true);
+  at_shift(f.stroke_free - f.y, true, false);
+  at_shift(g.L0 - f.stroke_free - f.y, false, true);
+  at_shift(f.y - l.h_min, false, false);
+  at_shift(g.L0 * 0.5 - f.y, false, false);  // the nearer end of the rail changes
+}
+
+/// Calls `split(break, signature below it)` wherever gaps change their signs between two closed-form breaks, and
+/// returns the signature above the last one. Every change of the formula has a closed form: a sample with another
+/// formula than that in the middle lies within rounding of an end and tells nothing.
+template <class S, class Split>
+Signature split_at_crossings(const Frame<S>& f, const Frame<double>& plain, double low, double high,
+                             const Signature& middle, const Split& split) {
+  constexpr int kSamples = 8;
+  constexpr double kInset = 1e-7;  // off the ends, where a gap may be 0 but for rounding
+  Signature now = middle;
+  double at = low;
+  bool started = false;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double share = k == 0 ? kInset : k == kSamples ? 1 - kInset : k / static_cast<double>(kSamples);
+    const double next = low + (high - low) * share;
+    const Signature then = signature(plain, next);
+    if (then.formula != middle.formula) continue;
+    for (int more = 0; started && more < 6 && !(now == then); ++more) {  // several gaps may change in between
+      const Crossing crossing = find_crossing(plain, at, now, next, then);
+      split(Break<S>{follow(f, crossing)}, now);
+      at = crossing.theta + 1e-12;
+      now = signature(plain, at);
+      if (now.formula != middle.formula) now = then;
+    }
+    at = next;
+    now = then;
+    started = true;
+  }
+  return now;
+}
+
+/// Fills `pieces` with the theta >= 0 on which the area is positive and smooth.
+/// @param breaks  reused storage
+template <class S>
+void find_pieces(const Frame<S>& f, std::vector<Break<S>>& breaks, std::vector<Piece<S>>& pieces) {
+  breaks.clear();
+  pieces.clear();
+  if (f.empty) return;
+  const Frame<double> plain = constant_frame<double>(f);
+  breaks.push_back({S(0.0)});
+  closed_form_breaks(f, breaks);
+  const S last = acos(f.l.cos_theta_min);
+  std::erase_if(breaks, [&](const Break<S>& b) { return !(value_of(b.theta) < value_of(last)); });
+  breaks.push_back({last});
+  const auto by_theta = [](const Break<S>& a, const Break<S>& b) { return value_of(a.theta) < value_of(b.theta); };
+  for (auto next = breaks.begin(); next != breaks.end(); ++next)  // std::stable_sort allocates
+    std::rotate(std::upper_bound(breaks.begin(), next, *next, by_theta), next, next + 1);
+
+  constexpr double kNear = 1e-13;  // rad; breaks nearer than this are one
+  Signature before;                // of the piece before
+  Break<S> from = breaks.front();
+  for (std::size_t i = 1; i < breaks.size(); ++i) {
+    const Break<S>& to = breaks[i];
+    const double low = value_of(from.theta), high = value_of(to.theta);
+    if (high - low < kNear) {
+      from.root_above = from.root_above || to.root_above;
+      if (!pieces.empty() && value_of(pieces.back().upper) == low)
+        pieces.back().root_upper = pieces.back().root_upper || to.root_below;
+      continue;
+    }
+    const auto add = [&](const Break<S>& start, const Break<S>& stop, const Signature& now) {
+      const bool joins = !pieces.empty() && before == now && !start.root_above && !start.root_below &&
+                         value_of(pieces.back().upper) == value_of(start.theta);
+      if (now.formula >= 0 && joins) {
+        pieces.back().upper = stop.theta;
+        pieces.back().root_upper = stop.root_below;
+      } else if (now.formula >= 0) {
+        pieces.push_back({start.theta, stop.theta, start.root_above, stop.root_below});
+      }
+      before = now;
+    };
+    Signature now = signature(plain, 0.5 * (low + high));
+    if (now.formula >= 0 && stroke_cuts(plain, 0.5 * (low + high))) {
+      now = split_at_crossings(f, plain, low, high, now, [&](const Break<S>& crossing, const Signature& below) {
+        add(from, crossing, below);
+        from = crossing;
+      });
+    }
+    add(from, to, now);
+    from = to;
+  }
+}
+
+}  // namespace pkm::four_ppa_two_par

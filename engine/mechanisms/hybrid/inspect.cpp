@@ -1,0 +1,95 @@
+#include "engine/mechanisms/hybrid/inspect.hpp"
+
+#include <limits>
+
+#include "engine/mechanisms/hybrid/influence.hpp"
+
+namespace pkm::hybrid {
+namespace {
+
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+constexpr unsigned bit(std::size_t limb) { return 1u << limb; }
+
+const char* const kLimbs[3] = {"A", "B", "C"};
+
+std::string out_of_reach(const Joints<double>& j) {
+  std::string reason;
+  for (std::size_t limb = 0; limb < 3; ++limb)
+    if (j.unreached & bit(limb))
+      reason += std::string(reason.empty() ? "" : "; ") + "limb " + kLimbs[limb] + ": out of reach of its link (" +
+                kLimbs[limb] + "' is farther than L" + std::to_string(limb + 1) + " from its rail)";
+  return reason;
+}
+
+Eigen::Matrix4d as_eigen(const Matrix<double, 4, 4>& matrix) {
+  return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(matrix.m.data());
+}
+
+/// What depends on the platform's and the limbs' velocities alone.
+void add_velocity(const Geometry<double>& g, const Pose<double>& pose, const Joints<double>& j, PoseReport& report) {
+  const VelocityEquation<double> v = velocity_equation(pose, j);
+  report.Jq = as_eigen(v.Jq);
+  report.G = as_eigen(v.Jx);
+  report.det_Jq = j.n1 * j.n2 * j.n3;
+  report.det_G = pose.z * (j.n1 - j.n2) * j.N2;
+  report.conditioning = 0;
+  if (j.serial) return;
+  report.J = as_eigen(influence(g, pose, j).G);
+  const Rows3<double> J = homogeneous_jacobian(pose.z, j, g.e);  // L_c = e
+  report.conditioning = inverse_condition(J);
+  const ExtremeSingularValues<double> s = extreme_singular_values(J);
+  const bool has_pair = s.pair_2 > 0;  // else J has rank 1, and sigma_2 = 0
+  report.indices = {{"sigma_1", std::sqrt(s.greatest_2)},
+                    {"sigma_2", has_pair ? std::sqrt(s.pair_2 / s.greatest_2) : 0},
+                    {"sigma_3", has_pair ? std::sqrt(s.least_2()) : 0}};
+}
+
+/// Measures of transmission, and of the chain at the phase 0.
+void add_transmission(const Geometry<double>& g, const Pose<double>& pose, const Joints<double>& j,
+                      PoseReport& report) {
+  const Transmission<double> t = transmission(g, pose.z, j);
+  for (std::size_t i = 0; i < 3; ++i) report.indices.emplace_back("t_" + std::to_string(i + 1), t.t[i]);
+  report.indices.emplace_back("t_xz", t.t_xz);
+  report.indices.emplace_back("t_beta", std::fabs(t.t_beta));
+  report.indices.emplace_back("t_con", std::fabs(t.sin_lambda));
+  report.indices.emplace_back("LTI", local_transmission_index(t));
+  for (std::size_t i = 0; i < 3; ++i) report.angles.emplace_back("pressure_" + std::to_string(i + 1), acos(t.t[i]));
+  report.angles.emplace_back("lambda", t.lambda);
+  report.angles.emplace_back("mu", wrapped(t.lambda - pose.angle));
+  const Forks<double> forks = hybrid::forks(shaft(g, pose), pose.angle, 0);
+  if (!forks.turns) return;
+  const Ratio<double> r = ratio(forks);
+  report.indices.emplace_back("aux_ratio_min", r.least);
+  report.indices.emplace_back("aux_ratio_max", r.greatest);
+}
+
+}  // namespace
+
+PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose,
+                   const WorkingMode& mode, int branch) {
+  PoseReport report;
+  const Joints<double> j = inverse(g, pose, mode);
+  const Margins<double> m = margins(g, l, pose, j, branch);
+  report.assembles = j.assembles();
+  report.joints = j.s;
+  constexpr std::size_t kDriveOfLimb[3] = {0, 2, 3};
+  for (std::size_t limb = 0; limb < 3; ++limb)
+    if (j.unreached & bit(limb)) (*report.joints)[kDriveOfLimb[limb]] = kAbsent;
+  for (std::size_t i = 0; i < kMargins; ++i)
+    report.margins.emplace_back(margin_names()[i], report.assembles || i <= kReach3 ? m[i] : kAbsent);
+  if (!report.assembles) {
+    report.reason = out_of_reach(j);
+    return report;
+  }
+  add_velocity(g, pose, j, report);
+  add_transmission(g, pose, j, report);
+  report.feasible = feasible(pose.z, m);
+  if (report.feasible) return report;
+  report.reason = "the platform is not above the base";
+  for (std::size_t i = kMargins; i-- > 0;)  // the first that is broken
+    if (!(m[i] >= 0)) report.reason = "limit " + margin_names()[i] + " is broken";
+  return report;
+}
+
+}  // namespace pkm::hybrid

@@ -1,0 +1,52 @@
+// Hybrid robot: its links as capsules, and which pairs of them must keep clear of each other.
+//
+//   A = A''A'   B = B''B'   C = C''C'   F = F1F3, the telescopic shaft   P = A'B', the platform's edge
+//
+// Pairs that share a joint are not tested. The carriage's y shifts all of them: they do not depend on it.
+#pragma once
+
+#include <vector>
+
+#include "engine/mechanisms/hybrid/chain.hpp"
+#include "engine/model/placed_link.hpp"
+
+namespace pkm::hybrid {
+
+enum Link { kLinkA, kLinkB, kLinkC, kLinkF, kLinkP, kLinks };
+
+template <class S>
+using Links = std::array<Capsule<S>, kLinks>;
+
+template <class S>
+Links<S> links(const Geometry<S>& g, const Pose<S>& pose, const Joints<S>& j, const Shaft<S>& shaft) {
+  const S zero(0.0), &x = pose.x, &z = pose.z;
+  const Point3<S> A2 = {j.s[0] - g.b1, zero, zero}, A1 = {x - g.a, zero, z};
+  const Point3<S> B2 = {j.s[2] + g.b2, zero, zero}, B1 = {x + g.a, zero, z};
+  const Point3<S> C2 = {j.s[3] + g.c, g.d, zero}, C1 = {x, j.k + g.d, j.N1};
+  return {{{{A2, A1}, g.radius[kLinkA]},
+           {{B2, B1}, g.radius[kLinkB]},
+           {{C2, C1}, g.radius[kLinkC]},
+           {{shaft.F1, shaft.F3}, g.radius[kLinkF]},
+           {{A1, B1}, g.radius[kLinkP]}}};
+}
+
+struct LinkPair {
+  Link first, second;
+};
+inline constexpr std::size_t kLinkPairs = 8;
+/// In the order of their margins.
+inline constexpr std::array<LinkPair, kLinkPairs> kPairs = {{{kLinkA, kLinkB},
+                                                             {kLinkA, kLinkC},
+                                                             {kLinkB, kLinkC},
+                                                             {kLinkA, kLinkF},
+                                                             {kLinkB, kLinkF},
+                                                             {kLinkC, kLinkF},
+                                                             {kLinkC, kLinkP},
+                                                             {kLinkF, kLinkP}}};
+
+/// The robot as it is drawn at a pose: these links, and what carries them and is carried. Empty where the pose does not
+/// assemble.
+/// @param p  all parameters
+std::vector<PlacedLink> placed_links(std::span<const double> p, const Pose<double>& pose, const WorkingMode& mode);
+
+}  // namespace pkm::hybrid

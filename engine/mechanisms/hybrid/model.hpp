@@ -1,0 +1,130 @@
+// Four-degree-of-freedom hybrid robot with an auxiliary rotation: geometry and inverse kinematics of one pose.
+//
+// Source: "Kinematics Analysis and Dynamic Simulation of a Novel Mixed-connection Manipulator", with its errata. A
+// 2T1R parallel stage (two P-R-R-R limbs A and B, one P-U-U limb C) stands on a carriage E that runs along Y; a
+// telescopic shaft between two universal joints turns a tool on its platform (chain.hpp).
+//
+// Frame O' on the carriage: X' along the rails of A, B and C, the first two on the line y' = z' = 0, that of C on y' =
+// d, z' = 0; Z' normal to the base. Pose (x, y, z, beta): the platform's point O'' is at (x, 0, z), the carriage at y,
+// and the platform turned by beta about X'. With b = beta
+//
+//   A'' = (-b1 + s1, 0, 0)   A' = (x - a, 0, z)     n1 = x - a + b1 - s1     n1^2 + z^2 = L1^2
+//   B'' = (b2 + s3, 0, 0)    B' = (x + a, 0, z)     n2 = x + a - b2 - s3     n2^2 + z^2 = L2^2
+//   C'' = (c + s4, d, 0)     C' = (x, e cos b, z + e sin b)
+//   n3  = x - c - s4,  k = e cos b - d,  N1 = z + e sin b                    n3^2 + k^2 + N1^2 = L3^2
+//   N2  = e (z cos b + d sin b)                                              y = s2
+//
+// The drives are ordered A, E, B, C.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/core/parameter.hpp"
+#include "engine/math/scalar.hpp"
+#include "engine/model/pose.hpp"
+
+namespace pkm::hybrid {
+
+/// Order of the parameters: geometry, then what bounds the poses (limits.hpp), then the links' radii.
+enum ParameterIndex {
+  kA,
+  kB1,
+  kB2,
+  kC,
+  kD,
+  kE,
+  kL1,
+  kL2,
+  kL3,
+  kF,
+  kFp,
+  kH1,
+  kH2,
+  kTheta0,
+  kSMin,              ///< of s1, four in all
+  kSMax = kSMin + 4,  ///< the same
+  kZClear = kSMax + 4,
+  kBetaMin,
+  kBetaMax,
+  kTauS,
+  kTauP,
+  kTauC,
+  kPsiAMax,
+  kPsiCMax,
+  kLamMax,
+  kMuMax,
+  kGap,
+  kPhiMax,
+  kLwMin,
+  kLwMax,
+  kRadiusA,
+  kRadiusB,
+  kRadiusC,
+  kRadiusF,
+  kRadiusP,
+  kParameters
+};
+
+/// The table of the parameters with the nominal design: up to f' the source's, the rest assumed.
+std::vector<Parameter> parameters();
+
+/// Lengths [m] and the phase of the fork arms [rad], names as in the source (f' is fp).
+template <class S>
+struct Geometry {
+  S a, b1, b2, c, d, e, L1, L2, L3;
+  S f, fp, h1, h2, theta0;
+  std::array<S, 5> radius;  ///< of links A, B, C, the auxiliary shaft F, the platform's edge P
+};
+
+template <class S>
+Geometry<S> geometry(std::span<const S> p) {
+  return {p[kA],  p[kB1], p[kB2], p[kC],      p[kD],
+          p[kE],  p[kL1], p[kL2], p[kL3],     p[kF],
+          p[kFp], p[kH1], p[kH2], p[kTheta0], {p[kRadiusA], p[kRadiusB], p[kRadiusC], p[kRadiusF], p[kRadiusP]}};
+}
+
+/// Signs of n1, n2, n3, +1 or -1.
+using WorkingMode = std::array<int, 3>;
+
+/// Relative roundoff within which a radicand counts as 0, a limb as stretched across its rail.
+inline constexpr double kRoundoff = 1e-12;
+
+/// The limbs at a pose. Masks: bit 0 is limb A, bit 1 B, bit 2 C. Of a limb out of reach n is 0 and s where it would
+/// be then: finite, of no meaning.
+template <class S>
+struct Joints {
+  S n1, n2, n3;            ///< components of the links along the rails [m]
+  S k, N1, N2;             ///< [m], [m], [m^2]
+  std::array<S, 4> s;      ///< drives s1, s2, s3, s4 [m]
+  unsigned unreached = 0;  ///< limbs out of reach
+  unsigned serial = 0;     ///< limbs across their rail, n = 0: serially singular
+  bool assembles() const { return unreached == 0; }
+};
+
+template <class S>
+Joints<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& mode) {
+  const auto [sin_b, cos_b] = sincos(pose.angle);
+  const S &x = pose.x, &z = pose.z;
+  Joints<S> j;
+  const auto along_rail = [&](const S& square, const S& L, std::size_t limb) {
+    const double tolerance = kRoundoff * value_of(L) * value_of(L);
+    const unsigned bit = 1u << limb;
+    if (value_of(square) < -tolerance) j.unreached |= bit;
+    if (std::fabs(value_of(square)) <= tolerance) j.serial |= bit;
+    return value_of(square) > tolerance ? S(sqrt(square) * static_cast<double>(mode[limb])) : S(0.0);
+  };
+  j.k = g.e * cos_b - g.d;
+  j.N1 = z + g.e * sin_b;
+  j.N2 = g.e * (z * cos_b + g.d * sin_b);
+  j.n1 = along_rail(S((g.L1 - z) * (g.L1 + z)), g.L1, 0);
+  j.n2 = along_rail(S((g.L2 - z) * (g.L2 + z)), g.L2, 1);
+  j.n3 = along_rail(S(g.L3 * g.L3 - j.k * j.k - j.N1 * j.N1), g.L3, 2);
+  j.s = {x - g.a + g.b1 - j.n1, pose.y, x + g.a - g.b2 - j.n2, x - g.c - j.n3};
+  return j;
+}
+
+}  // namespace pkm::hybrid

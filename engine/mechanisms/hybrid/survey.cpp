@@ -1,0 +1,243 @@
+#include "engine/mechanisms/hybrid/survey.hpp"
+
+#include <stdexcept>
+
+#include "engine/mechanisms/hybrid/columns.hpp"
+#include "engine/mechanisms/hybrid/conditioning.hpp"
+#include "engine/mechanisms/hybrid/influence.hpp"
+#include "engine/mechanisms/hybrid/voxels.hpp"
+
+namespace pkm::hybrid {
+namespace {
+
+/// The clearance that a plan asks for.
+std::optional<double> clearance_of(const SurveyPlan& plan) {
+  const std::optional<double>& given = plan.limits.given[kClearanceMin];
+  return given.value_or(kNoClearance) > kNoClearance ? given : std::nullopt;
+}
+
+/// What the carriage's stroke makes of a volume of (x, z, beta): its length where y is integrated over [m], else 1, or
+/// 0 beyond its ends.
+template <class S>
+S carriage(const Limits<S>& l, const HeldCoordinate& held) {
+  if (held.kind == HeldCoordinate::Kind::integrated) return l.s_max[1] - l.s_min[1];
+  if (held.kind == HeldCoordinate::Kind::middle) return S(1.0);
+  return S(held.value >= value_of(l.s_min[1]) && held.value <= value_of(l.s_max[1]) ? 1.0 : 0.0);
+}
+
+/// The conditioning of columns along x, on which it does not depend. Without derivatives it is computed last, for
+/// many of them side by side.
+template <class S>
+class Conditioning {
+ public:
+  /// @param poses   reused storage
+  /// @param survey  to which columns are added
+  Conditioning(const Frame<S>& f, const Demand& demand, PoseList& poses, Survey<S>& survey)
+      : frame_(f),
+        length_(demand.characteristic_length ? S(*demand.characteristic_length) : f.g.e),
+        poses_(poses),
+        survey_(survey) {
+    poses_.clear();
+  }
+
+  void add(const S& z, const S& beta, const S& weight) {
+    if (!(value_of(weight) > 0)) return;
+    survey_.weight.push_back(weight);
+    if constexpr (std::is_same_v<S, double>) {
+      if (beta != beta_) sincos_ = sincos(beta_ = beta);
+      poses_.z.push_back(z);
+      poses_.sine.push_back(sincos_.sin);
+      poses_.cosine.push_back(sincos_.cos);
+    } else {
+      const Joints<S> j = inverse(frame_.g, Pose<S>{S(0.0), S(0.0), z, beta}, frame_.signs);
+      const bool regular = j.assembles() && !j.serial;
+      survey_.conditioning.push_back(regular ? inverse_condition(homogeneous_jacobian(z, j, length_)) : S(0.0));
+    }
+  }
+
+  /// Call it after the last one.
+  void finish() {
+    if constexpr (std::is_same_v<S, double>) {
+      const std::size_t count = poses_.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
+      const std::size_t before = survey_.conditioning.size();
+      for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine}) list->resize(whole);
+      survey_.conditioning.resize(before + whole);
+      const Geometry<double>& g = frame_.g;
+      const ConditioningDesign design{
+          g.L1,      g.L2,   g.L3, g.d, g.e, {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
+          kRoundoff, length_};
+      with_instruction_set([&]<InstructionSet set>() {
+        inverse_conditions<set>(design, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), whole,
+                                survey_.conditioning.data() + before);
+      });
+      survey_.conditioning.resize(before + count);
+    }
+  }
+
+ private:
+  const Frame<S>& frame_;
+  S length_;
+  PoseList& poses_;
+  Survey<S>& survey_;
+  double beta_ = 0;  ///< the last one
+  SinCosOf<double> sincos_{0, 1};
+};
+
+class ColumnSurveyor final : public Surveyor {
+ public:
+  ColumnSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
+      : signs_(signs),
+        branch_(branch),
+        plan_(plan),
+        demand_(demand),
+        fixed_(plan.nodes[0] > 0),
+        z_rule_(gauss_legendre(fixed_ ? plan.nodes[0] : kSampleNodes)),
+        beta_rule_(gauss_legendre(fixed_ ? plan.nodes[1] : kSampleNodes)) {}
+
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
+  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
+  std::string no_derivatives() const override { return {}; }
+
+ private:
+  static constexpr int kSampleNodes = 8;  // per strip of z and piece of beta
+
+  template <class S>
+  void run(std::span<const S> parameters, Survey<S>& survey) const {
+    thread_local ColumnScratch<S> scratch;
+    survey.clear();
+    const Frame<S> f = frame_of(parameters);
+    const S stroke = carriage(f.l, plan_.held);
+    if (!(value_of(stroke) > 0)) return;
+    find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
+    if (!fixed_) {
+      const Integral<S> volume = hybrid::volume(f, plan_.tolerance, scratch);
+      survey.volume = volume.value * stroke;
+      survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
+      survey.columns = volume.evaluations;
+      if (!demand_.conditioning) return;
+    }
+    thread_local PoseList poses;
+    Conditioning<S> conditioning(f, demand_, poses, survey);
+    for (const Piece<S>& piece : scratch.pieces)
+      for (std::size_t i = 0; i < beta_rule_.node.size(); ++i) {
+        const MappedNode<S> at = map_node(piece, beta_rule_.node[i]);
+        const S &beta = at.point, outer = at.jacobian * beta_rule_.weight[i] * stroke;
+        visit_columns(f, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
+          const S weight = outer * inner * length;
+          if (demand_.conditioning) conditioning.add(z, beta, weight);
+          if (!fixed_) return;
+          survey.volume += weight;
+          ++survey.columns;
+        });
+      }
+    conditioning.finish();
+  }
+
+  template <class S>
+  Frame<S> frame_of(std::span<const S> parameters) const {
+    return frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_);
+  }
+  /// The design as constants of another scalar.
+  template <class To, class From>
+  Frame<To> still(std::span<const From> parameters) const {
+    std::array<To, kParameters> constants;
+    for (std::size_t i = 0; i < kParameters; ++i) constants[i] = To(value_of(parameters[i]));
+    return frame_of(std::span<const To>(constants));
+  }
+
+  WorkingMode signs_;
+  int branch_;
+  SurveyPlan plan_;
+  Demand demand_;
+  bool fixed_;  ///< numbers of nodes are given
+  GaussRule z_rule_, beta_rule_;
+};
+
+class VoxelSurveyor final : public Surveyor {
+ public:
+  VoxelSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
+      : signs_(signs), branch_(branch), plan_(plan), demand_(demand) {}
+
+  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    survey.clear();
+    const VoxelDesign d = design_of(parameters);
+    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
+    const double stroke = carriage(d.frame.l, plan_.held);
+    survey.cells = grid.count();
+    survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
+    if (!(stroke > 0)) return;
+    thread_local VoxelHeights heights;
+    const VoxelColumns columns(d, grid, heights);
+    const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
+    const bool counts = !d.clearance && !demand_.conditioning;
+    share_samples(
+        static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
+        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part) {
+          thread_local PoseList poses;
+          Conditioning<double> conditioning(d.frame, demand_, poses, part);
+          const auto first = static_cast<std::int64_t>(piece) * kBetas;
+          for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) {
+            if (counts) {
+              part.feasible_cells += columns.count(k, part.touches_box);
+              continue;
+            }
+            columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+              part.feasible_cells += end - i;
+              part.touches_box =
+                  part.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
+              if (demand_.conditioning)
+                conditioning.add(grid.centre(1, j), grid.centre(2, k), static_cast<double>(end - i) * cell_volume);
+            });
+          }
+          conditioning.finish();
+        });
+    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+  }
+
+  VoxelMap map(std::span<const double> parameters) const {
+    const VoxelDesign d = design_of(parameters);
+    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
+    VoxelMap m = grid.map();
+    if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
+    VoxelHeights heights;
+    const VoxelColumns columns(d, grid, heights);
+    for (std::int64_t k = 0; k < grid.cells[2]; ++k)
+      columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+        for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
+      });
+    return m;
+  }
+
+ private:
+  static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
+
+  VoxelDesign design_of(std::span<const double> parameters) const {
+    return {frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_), branch_,
+            clearance_of(plan_)};
+  }
+
+  WorkingMode signs_;
+  int branch_;
+  SurveyPlan plan_;
+  Demand demand_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Surveyor> make_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
+                                              const Demand& demand) {
+  if (plan.method == Method::voxels) return std::make_unique<VoxelSurveyor>(signs, branch, plan, demand);
+  if (clearance_of(plan))
+    throw std::invalid_argument(
+        "mechanism 2t1r-p-hybrid has no column surveys under a clearance (clearance_min), because links that meet end "
+        "columns where no formula says; take voxels, or require the clearance of a task-workspace");
+  return std::make_unique<ColumnSurveyor>(signs, branch, plan, demand);
+}
+
+VoxelMap voxel_map(const WorkingMode& signs, int branch, std::span<const double> parameters, const SurveyPlan& plan) {
+  return VoxelSurveyor(signs, branch, plan, {}).map(parameters);
+}
+
+}  // namespace pkm::hybrid

@@ -1,0 +1,164 @@
+#include "engine/mechanisms/hybrid/voxels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pkm::hybrid {
+
+namespace {
+
+bool inside(double value, double lower, double upper) { return value >= lower && value <= upper; }
+
+bool links_clear(const VoxelDesign& design, const Pose<double>& pose) {
+  const Geometry<double>& g = design.frame.g;
+  const Links<double> link = links(g, pose, inverse(g, pose, design.frame.signs), shaft(g, pose));
+  return std::ranges::all_of(kPairs, [&](const LinkPair& pair) {
+    return capsule_distance(link[pair.first], link[pair.second]) >= *design.clearance;
+  });
+}
+
+}  // namespace
+
+// The margins of limits.hpp, cheap ones first, as comparisons of squares and of products with cosines.
+bool feasible(const VoxelDesign& design, double x, double z, double beta) {
+  const Frame<double>& f = design.frame;
+  const Geometry<double>& g = f.g;
+  const Limits<double>& l = f.l;
+  const auto square = [](double value) { return value * value; };
+
+  // limbs A and B
+  if (!(z > 0 && z >= l.z_clear && inside(beta, l.beta_min, l.beta_max))) return false;
+  const double A2 = (g.L1 - z) * (g.L1 + z), B2 = (g.L2 - z) * (g.L2 + z);  // n1^2, n2^2
+  const double least = square(l.tau_s), greatest_A = square(l.psiA.sin), greatest_C = square(l.psiC.sin);
+  if (!inside(A2, least * square(g.L1), greatest_A * square(g.L1))) return false;
+  if (!inside(B2, least * square(g.L2), greatest_A * square(g.L2))) return false;
+  const double n1 = f.signs[0] * std::sqrt(A2), n2 = f.signs[1] * std::sqrt(B2);
+  if (!inside(x - n1, f.lo[0], f.hi[0]) || !inside(x - n2, f.lo[1], f.hi[1])) return false;
+  if (!(z * std::fabs(n1 - n2) >= l.tau_p * g.L1 * g.L2 && g.a * 2 + n1 - n2 >= l.gap)) return false;
+
+  // the shaft w of the auxiliary chain
+  const auto [sin_b, cos_b] = sincos(beta);
+  const double w_y = g.fp * cos_b + g.h2 * sin_b - g.f, Q = z + g.fp * sin_b - g.h2 * cos_b - g.h1;
+  const double P = (z - g.h1) * cos_b + g.f * sin_b - g.h2, w2 = x * x + w_y * w_y + Q * Q;
+  if (!inside(w2, square(l.lw_min), square(l.lw_max))) return false;
+  if (!(Q > 0 && P > 0 && std::fmin(Q * Q, P * P) >= square(l.phi.cos) * w2)) return false;
+
+  // limb C
+  const double k = g.e * cos_b - g.d, N1 = z + g.e * sin_b, across2 = k * k + N1 * N1, L2 = g.L3 * g.L3;
+  const double C2 = L2 - across2;  // n3^2
+  if (!(N1 >= l.z_clear && inside(C2, least * L2, greatest_C * L2))) return false;
+  if (!inside(x - f.signs[2] * std::sqrt(C2), f.lo[2], f.hi[2])) return false;
+  if (!((z * cos_b + g.d * sin_b) * design.branch >= l.tau_p * g.L3)) return false;
+  const double across = std::sqrt(across2);
+  if (!(-k * f.side >= l.tau_c * across && std::fabs(k) * f.lam.cos <= N1 * f.lam.sin)) return false;
+  if (!(N1 * cos_b - k * sin_b >= f.mu.cos * across)) return false;
+  return !design.clearance || links_clear(design, {x, 0, z, beta});
+}
+
+Box default_box(const VoxelDesign& design) {
+  const Frame<double>& f = design.frame;
+  const Geometry<double>& g = f.g;
+  const Limits<double>& l = f.l;
+  const Box some = {{{-g.L1, g.L1}, {0, g.L1}, {l.beta_min, l.beta_max}}};
+  if (f.empty) return some;
+  // the range of n = sign |n| for |n| in [low, high]
+  const auto signed_range = [](double low, double high, int sign) {
+    return sign > 0 ? std::array{low, high} : std::array{-high, -low};
+  };
+  const auto along = [&](double L, double z) { return std::sqrt(std::fmax(0, (L - z) * (L + z))); };
+  const std::array<std::array<double, 2>, 3> n = {signed_range(along(g.L1, f.z_high), along(g.L1, f.z_low), f.signs[0]),
+                                                  signed_range(along(g.L2, f.z_high), along(g.L2, f.z_low), f.signs[1]),
+                                                  signed_range(l.tau_s * g.L3, g.L3 * l.psiC.sin, f.signs[2])};
+  const double shaft = l.lw_max * l.phi.sin;
+  Box box = {{{-shaft, shaft}, {f.z_low, f.z_high}, {l.beta_min, l.beta_max}}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    box[0][0] = std::fmax(box[0][0], f.lo[i] + n[i][0]);
+    box[0][1] = std::fmin(box[0][1], f.hi[i] + n[i][1]);
+  }
+  // limb C reaches no point of the platform's circle beyond the angle K from the line through its rail
+  const double k0 = g.e * g.e - g.L3 * g.L3 * (1 - l.tau_s * l.tau_s);
+  const double near = std::hypot(g.d, f.z_low), far = std::hypot(g.d, f.z_high);
+  const double r = k0 > 0 ? std::clamp(std::sqrt(k0), near, far) : near;
+  const double K = (r * r + k0) / (2 * g.e * r);
+  box[2][0] = std::fmax(box[2][0], -atan2(f.z_high, g.d));
+  box[2][1] = K < 1 ? std::fmin(box[2][1], acos(std::fmax(K, -1)) - atan2(f.z_low, g.d)) : box[2][0];
+  for (const auto& [low, high] : box)
+    if (!(low < high)) return some;
+  return box;
+}
+
+VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelHeights& heights)
+    : design_(design), grid_(grid), heights_(heights) {
+  const auto n = static_cast<std::size_t>(grid.cells[1] + kLanes);  // so that the last lanes may lie beyond the end
+  for (auto* list : {&heights.z, &heights.left, &heights.right}) list->resize(n);
+  const Frame<double>& f = design.frame;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double z = grid.centre(1, static_cast<std::int64_t>(j));
+    const double n1 = f.signs[0] * root_or_zero((f.g.L1 - z) * (f.g.L1 + z));
+    const double n2 = f.signs[1] * root_or_zero((f.g.L2 - z) * (f.g.L2 + z));
+    heights.z[j] = z;
+    heights.left[j] = max(f.lo[0] + n1, f.lo[1] + n2);
+    heights.right[j] = min(f.hi[0] + n1, f.hi[1] + n2);
+  }
+}
+
+VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k) const {
+  thread_local CellRuns runs;
+  const Frame<double>& f = design_.frame;
+  const double beta = grid_.centre(2, k);
+  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {runs, 0, 0, {0, false}};
+  for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights_.z.size());
+  const Section<double> s = section(f, beta);
+  const double low = *std::ranges::max_element(s.lower), high = *std::ranges::min_element(s.upper);
+  const auto begin = heights_.z.begin(), end = begin + grid_.cells[1];
+  const auto first_z = static_cast<std::size_t>(std::lower_bound(begin, end, low) - begin);
+  const auto end_z = std::max(first_z, static_cast<std::size_t>(std::upper_bound(begin, end, high) - begin));
+  const auto end_of_x = [&](CurveIndex index) {
+    const Curve<double>& c = s.curve[index];
+    return EndOfX{c.a, c.a_z, c.b, c.b_z};
+  };
+  const ColumnsAtBeta columns{end_of_x(kCurveC),
+                              end_of_x(kCurveQ),
+                              end_of_x(kCurveP),
+                              end_of_x(kCurveL),
+                              end_of_x(kCurveH),
+                              s.sign_hi[kCurveC],
+                              s.lo[kCurveC],
+                              s.hi[kCurveC],
+                              high,
+                              s.hole_end,
+                              grid_.lower[0],
+                              grid_.step[0],
+                              static_cast<double>(grid_.cells[0]),
+                              heights_.z.data(),
+                              heights_.left.data(),
+                              heights_.right.data(),
+                              first_z,
+                              end_z};
+  return {runs, first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
+}
+
+std::int64_t VoxelColumns::count(std::int64_t k, bool& touches) const {
+  const auto& [runs, first_z, end_z, tally] = find_runs(k);
+  const auto some_at = [&, &r = runs, first = first_z, last = end_z](std::size_t j) {
+    return first <= j && j < last && r.hole[j] - r.first[j] + (r.end[j] - r.after[j]) > 0;
+  };
+  const bool last_beta = k == 0 || k == grid_.cells[2] - 1;
+  if (tally.cells > 0)
+    touches =
+        touches || tally.touches || last_beta || some_at(0) || some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
+  return static_cast<std::int64_t>(tally.cells);
+}
+
+bool VoxelColumns::clear(double x, double z, double beta, bool along_x) const {
+  const Frame<double>& f = design_.frame;
+  const Pose<double> pose{x, 0, z, beta};
+  const Links<double> link = links(f.g, pose, inverse(f.g, pose, f.signs), shaft(f.g, pose));
+  for (const auto& [first, second] : kPairs) {
+    const bool moves = first == kLinkF || second == kLinkF;  // the others move along x together
+    if (moves == along_x && !(capsule_distance(link[first], link[second]) >= *design_.clearance)) return false;
+  }
+  return true;
+}
+
+}  // namespace pkm::hybrid

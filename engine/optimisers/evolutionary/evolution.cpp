@@ -1,0 +1,107 @@
+#include "engine/optimisers/evolutionary/evolution.hpp"
+
+#include <algorithm>
+
+#include "engine/optimisers/evolutionary/breeding.hpp"
+#include "engine/optimisers/option_specs.hpp"
+
+namespace pkm {
+namespace {
+
+// One run: the state that a stage carries from generation to generation.
+class Run {
+ public:
+  Run(const EvolutionPlan& plan, const StageInput& input, EvaluationTable& table, Survivors& survivors)
+      : plan_(plan),
+        input_(input),
+        table_(table),
+        survivors_(survivors),
+        breeder_(plan.breeding, input.problem.space(), input.seed) {}
+
+  StageResult operator()() {
+    breeder_.start(input_.starts, table_, room(), newcomers_);
+    while (true) {
+      const std::size_t first = evaluated_;
+      if (evaluated_ < table_.size()) input_.evaluator.evaluate(input_.problem, table_, evaluated_);
+      evaluated_ = table_.size();
+      if (survivors_.take(newcomers_)) last_advance_ = generation_;
+      const bool goes_on = report(first);
+      if (const auto reason = stop()) return ended(*reason);
+      if (!goes_on) return ended(StopReason::interrupted);
+      ++generation_;
+      breeder_.offspring(static_cast<std::uint32_t>(generation_), survivors_.population(), plan_.children, table_,
+                         room(), newcomers_);
+      if (newcomers_.empty()) return ended(StopReason::exhausted);
+    }
+  }
+
+ private:
+  std::size_t room() const {
+    return static_cast<std::size_t>(plan_.evaluations - static_cast<std::int64_t>(table_.size()));
+  }
+
+  bool report(std::size_t first) {
+    return input_.monitor.generation(
+        {generation_, first, &table_, &survivors_.population(), survivors_.best_row(), nullptr, survivors_.front()});
+  }
+
+  std::optional<StopReason> stop() const {
+    if (survivors_.satisfied()) return StopReason::target;
+    if (plan_.stall && generation_ - last_advance_ >= *plan_.stall) return StopReason::stall;
+    if (room() == 0) return StopReason::evaluations;
+    if (generation_ >= plan_.generations) return StopReason::generations;
+    return {};
+  }
+
+  StageResult ended(StopReason reason) const {
+    StageResult result{reason, survivors_.best_row()};
+    if (survivors_.front()) result.front = *survivors_.front();
+    return result;
+  }
+
+  const EvolutionPlan& plan_;
+  const StageInput& input_;
+  EvaluationTable& table_;
+  Survivors& survivors_;
+  Breeder breeder_;
+  std::int64_t generation_ = 0;
+  std::size_t evaluated_ = 0;            // rows of the table that are evaluated
+  std::vector<std::int64_t> newcomers_;  // rows of this generation's children
+  std::int64_t last_advance_ = 0;
+};
+
+}  // namespace
+
+StageResult evolve(const EvolutionPlan& plan, const StageInput& input, EvaluationTable& table, Survivors& survivors) {
+  return Run(plan, input, table, survivors)();
+}
+
+std::int64_t evaluation_limit(const EvolutionPlan& plan) {
+  return std::min(plan.evaluations, static_cast<std::int64_t>(plan.breeding.population) +
+                                        plan.generations * static_cast<std::int64_t>(plan.children));
+}
+
+std::vector<OptionSpec> evolution_options(const std::string& progress) {
+  constexpr double kMany = 1e12;
+  std::vector<OptionSpec> specs = breeding_options();
+  specs.insert(specs.begin() + 1,
+               {integer_option("generations", std::int64_t{100}, 0, 4e9, "generations after the start population"),
+                integer_option("evaluations", {}, 1, kMany, "most designs to evaluate (default: no limit)")});
+  specs.push_back(
+      integer_option("stall", {}, 1, kMany, "stop after so many generations without improvement (default: never)"));
+  specs.push_back(
+      number_option("tolerance", 1e-8, 0, 1, "relative improvement of " + progress + " that counts for stall"));
+  return specs;
+}
+
+EvolutionPlan evolution_plan(const Options& options, const DesignSpace& space) {
+  EvolutionPlan plan;
+  plan.breeding = breeding_plan(options, space);
+  plan.children = plan.breeding.population;
+  plan.generations = options.integer("generations");
+  if (options.has("evaluations")) plan.evaluations = options.integer("evaluations");
+  if (options.has("stall")) plan.stall = options.integer("stall");
+  return plan;
+}
+
+}  // namespace pkm

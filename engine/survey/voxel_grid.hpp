@@ -1,0 +1,75 @@
+// A box of voxels over three swept coordinates: cell k of axis i has its centre at lower + (k + 1/2) step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/mechanism/plan.hpp"
+#include "engine/mechanism/survey.hpp"
+
+namespace pkm {
+
+using Box = std::array<std::array<double, 2>, 3>;
+
+struct VoxelGrid {
+  std::array<std::int64_t, 3> cells{};
+  std::array<double, 3> lower{}, upper{}, step{};
+
+  VoxelGrid(const std::array<std::int64_t, 3>& n, const Box& box) : cells(n) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      lower[i] = box[i][0];
+      upper[i] = box[i][1];
+      step[i] = (upper[i] - lower[i]) / static_cast<double>(cells[i]);
+    }
+  }
+  double centre(std::size_t axis, std::int64_t k) const {
+    return lower[axis] + (static_cast<double>(k) + 0.5) * step[axis];
+  }
+  std::int64_t count() const { return cells[0] * cells[1] * cells[2]; }
+  double cell_volume() const { return step[0] * step[1] * step[2]; }
+
+  /// A map of this grid with no feasible cell.
+  VoxelMap map() const {
+    VoxelMap m;
+    m.feasible.assign(static_cast<std::size_t>(count()), 0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      m.cells[i] = cells[i];
+      m.lower[i] = lower[i];
+      m.upper[i] = upper[i];
+    }
+    return m;
+  }
+};
+
+/// The plain loop: tests every cell's centre, `feasible(c0, c1, c2)` with the coordinates in the order of the axes.
+/// Slow and obviously right; what the counts from column intervals are compared with, and all that a mechanism without
+/// column intervals needs.
+template <class Test>
+VoxelMap test_every_cell(const VoxelGrid& grid, const Test& feasible) {
+  VoxelMap map = grid.map();
+  std::size_t cell = 0;
+  for (std::int64_t i = 0; i < grid.cells[0]; ++i)
+    for (std::int64_t j = 0; j < grid.cells[1]; ++j)
+      for (std::int64_t k = 0; k < grid.cells[2]; ++k)
+        map.feasible[cell++] = feasible(grid.centre(0, i), grid.centre(1, j), grid.centre(2, k)) ? 1 : 0;
+  return map;
+}
+
+/// Volume, counts and box contact of a map.
+inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>& survey) {
+  survey.clear();
+  survey.cells = grid.count();
+  survey.cell_volume = grid.cell_volume();
+  std::size_t cell = 0;
+  const auto outer = [&](std::size_t axis, std::int64_t k) { return k == 0 || k == grid.cells[axis] - 1; };
+  for (std::int64_t i = 0; i < grid.cells[0]; ++i)
+    for (std::int64_t j = 0; j < grid.cells[1]; ++j)
+      for (std::int64_t k = 0; k < grid.cells[2]; ++k) {
+        if (!map.feasible[cell++]) continue;
+        ++survey.feasible_cells;
+        survey.touches_box = survey.touches_box || outer(0, i) || outer(1, j) || outer(2, k);
+      }
+  survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+}
+
+}  // namespace pkm

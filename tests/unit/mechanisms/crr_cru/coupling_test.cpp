@@ -1,0 +1,146 @@
+// (3CRR/R)&CRU and Quadrupteron: joint-space inertia of surveys, and statistics of their coupling indices.
+#include "engine/mechanisms/crr_cru/coupling.hpp"
+
+#include <gtest/gtest.h>
+
+#include "engine/math/statistics.hpp"
+#include "engine/problem/inertia_options.hpp"
+#include "engine/survey/survey_set.hpp"
+#include "tests/unit/mechanisms/crr_cru/golden.hpp"
+
+namespace pkm::testing::crr {
+namespace {
+
+Demand coupling(const std::string& mode = "") {
+  Demand demand;
+  demand.dci = true;
+  demand.inertia_condition = true;
+  demand.poses = true;
+  demand.mode = mode;
+  return demand;
+}
+
+/// M_q by the general way, from the equations of motion.
+Matrix<double, 4, 4> reference(const std::string& name, const std::vector<double>& p, const Pose<double>& pose,
+                               const WorkingMode& mode) {
+  const MotionState<double> state{pose, {}};
+  PoseDynamics<double> d;
+  mechanism(name).dynamics(std::span<const double>(p), mode_name(mode), {&state, 1}, {&d, 1});
+  return joint_inertia(d);
+}
+
+SurveyPlan voxels(int held, double value, const std::array<std::int64_t, 3>& cells) {
+  SurveyPlan voxels = plan(Method::voxels, held, value, limit_spec(0.2, 0.1));
+  voxels.cells = cells;
+  return voxels;
+}
+
+TEST(CrrCruCoupling, GoldenStatistics) {
+  for (const auto& entry : golden()["dci_stats"]) {
+    SurveyPlan p = voxels(3, entry["phi"], {entry["n"][0], entry["n"][1], entry["n"][2]});
+    p.limits = limit_spec(entry["smin"], entry["cmin"]);
+    p.box.emplace();
+    for (std::size_t k = 0; k < 3; ++k) (*p.box)[k] = {entry["lo"][k].get<double>(), entry["hi"][k].get<double>()};
+    const auto s = survey(entry["mechanism"], nominal(), p, coupling(mode_name(mode_of(entry["sigma"]))));
+    ASSERT_EQ(s.feasible_cells, entry["feasible"].get<std::int64_t>());
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(greatest(s.dci[i]), entry["max"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(weighted_mean(s.weight, s.dci[i]), entry["mean"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(weighted_deviation(s.weight, s.dci[i]), entry["std"][i].get<double>(), 1e-8);
+      EXPECT_NEAR(weighted_quantile(s.weight, s.dci[i], 0.95), entry["p95"][i].get<double>(), 1e-10);
+    }
+  }
+}
+
+TEST(CrrCruCoupling, SamplesEqualTheEquationsOfMotion) {
+  Uniform uniform(5);
+  for (const std::string& name : both())
+    for (const int held : {3, 0, 1, 2})
+      for (const Method method : {Method::voxels, Method::columns}) {
+        const auto p = random_design(uniform, 0.1);
+        const WorkingMode mode = {1, -1, -1, 1};
+        SurveyPlan sweep = plan(method, held, held == 3 ? 0.2 : 0.19, limit_spec(0.2, 0.1));
+        sweep.cells = {5, 6, 7};
+        if (method == Method::columns) sweep.nodes = {2, 2};
+        const auto s = survey(name, p, sweep, coupling(mode_name(mode)));
+        ASSERT_GT(s.weight.size(), 10u);
+        for (std::size_t k = 0; k < s.weight.size(); k += 7) {
+          const Matrix<double, 4, 4> M = reference(name, p, s.pose[k], mode);
+          const Vector<double, 4> index = coupling_indices(M);
+          for (std::size_t i = 0; i < 4; ++i) ASSERT_NEAR(s.dci[i][k], index[i], 1e-10) << name << " held " << held;
+          ASSERT_NEAR(s.inertia_condition[k], inertia_condition(M), 1e-10);
+        }
+      }
+}
+
+TEST(CrrCruCoupling, ColumnsAgreeWithFineVoxelsInABox) {
+  for (const std::string& name : both()) {
+    SurveyPlan fine = voxels(3, 0.35, {40, 40, 40});
+    fine.box = {{{0.05, 0.25}, {0.06, 0.30}, {0.12, 0.30}}};
+    SurveyPlan exact = plan(Method::columns, 3, 0.35, limit_spec(0.2, 0.1));
+    exact.box = fine.box;
+    const auto coarse = survey(name, nominal(), fine, coupling()), columns = survey(name, nominal(), exact, coupling());
+    EXPECT_NEAR(coarse.volume / columns.volume, 1, 2e-3);
+    double sum = 0;
+    for (const double weight : columns.weight) sum += weight;
+    EXPECT_NEAR(sum / columns.volume, 1, 1e-3);  // a fixed rule
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(weighted_mean(columns.weight, columns.dci[i]), weighted_mean(coarse.weight, coarse.dci[i]), 2e-3);
+  }
+}
+
+TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
+  Uniform uniform(11);
+  int compared = 0, kinks = 0;
+  for (const std::string& name : both())
+    for (int round = 0; round < 4; ++round) {
+      const auto p = random_design(uniform, 0.03);
+      SurveyPlan region = plan(Method::columns, 3, 0.3, limit_spec(0.2, 0.1));
+      region.box = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
+      region.held_values = {-0.6, 0.1, 0.5};
+      const auto surveyor = prepare_survey(mechanism(name), region, coupling());
+      const std::array<std::size_t, 4> by = {kL11, kL42, kL, kRodMass + 3};
+      const auto statistics = [](const auto& s) {
+        const auto worst = coupling_of(s, "worst");
+        return std::array{weighted_mean(s.weight, worst), weighted_deviation(s.weight, worst),
+                          soft_greatest(s.weight, worst, 100), weighted_mean(s.weight, s.inertia_condition)};
+      };
+      std::vector<Dual4> dual(p.begin(), p.end());
+      for (std::size_t k = 0; k < 4; ++k) dual[by[k]].v[static_cast<int>(k)] = 1;
+      Survey<Dual4> derived;
+      surveyor->survey(std::span<const Dual4>(dual), derived);
+      const auto slopes = statistics(derived);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double step = 1e-5 * p[by[k]];
+        const auto at = [&](double shift) {
+          auto moved = p;
+          moved[by[k]] += shift;
+          Survey<double> s;
+          surveyor->survey(std::span<const double>(moved), s);
+          return statistics(s);
+        };
+        const auto up = at(step), down = at(-step), up2 = at(2 * step), down2 = at(-2 * step);
+        for (std::size_t q = 0; q < slopes.size(); ++q) {
+          const double wide = (up2[q] - down2[q]) / (4 * step), narrow = (up[q] - down[q]) / (2 * step);
+          const double difference = narrow + (narrow - wide) / 3;
+          ++compared;
+          // An index has a kink where an element of M_q passes 0 at a sample: there the steps disagree.
+          if (std::fabs(narrow - wide) > 1e-6 * (1 + std::fabs(difference))) {
+            ++kinks;
+            continue;
+          }
+          EXPECT_NEAR(slopes[q].v[static_cast<int>(k)], difference, 1e-6 * (1 + std::fabs(difference)))
+              << name << " statistic " << q << " parameter " << by[k];
+        }
+      }
+    }
+  EXPECT_LT(kinks, 0.2 * compared);
+}
+
+TEST(CrrCruCoupling, TheFourthIndexIsTheSameEverywhereAtPhiZero) {
+  const auto s = survey("3crr-r-cru", nominal(), voxels(3, 0, {12, 12, 12}), coupling());
+  for (const double index : s.dci[3]) ASSERT_NEAR(index, 0.029011448, 2e-9);
+}
+
+}  // namespace
+}  // namespace pkm::testing::crr

@@ -1,0 +1,71 @@
+// Between the breaks of beta sections keep their structure, and at each break it changes.
+#include <gtest/gtest.h>
+
+#include "engine/mechanisms/hybrid/breaks.hpp"
+#include "tests/unit/mechanisms/hybrid/golden.hpp"
+
+namespace pkm::testing::hybrid {
+namespace {
+
+template <class S>
+Frame<S> frame_of(const std::vector<double>& design, const WorkingMode& mode) {
+  const std::vector<S> p(design.begin(), design.end());
+  const std::span<const S> all(p);
+  return frame(geometry(all), limits(all, no_limits(mechanism().info())), mode, 1);
+}
+
+/// Designs of the golden data, each shifted a little, so that nearly all have a workspace.
+std::vector<std::vector<double>> designs(int count) {
+  Uniform uniform(21);
+  std::vector<std::vector<double>> all;
+  const auto& golden_ones = golden()["designs"];
+  for (int i = 0; i < count; ++i) {
+    all.push_back(design_from(golden_ones[static_cast<std::size_t>(i) % golden_ones.size()]));
+    for (double& value : all.back()) value *= 1 + uniform(-0.04, 0.04);
+  }
+  return all;
+}
+
+TEST(HybridBreaks, SectionsKeepTheirStructureInBetween) {
+  constexpr int kBetas = 60;
+  int breaks = 0;
+  BreakScratch scratch;
+  StripScratch strips;
+  Structure structure;
+  for (const std::vector<double>& design : designs(30)) {
+    const auto f = frame_of<double>(design, {1, -1, -1});
+    const auto signature = [&](double beta) {
+      find_strips(section(f, beta), strips, structure);
+      return structure.signature;
+    };
+    find_stretches(f, frame_of<Dual<1>>(design, {1, -1, -1}), scratch);
+    double before = f.l.beta_min;
+    for (std::size_t i = 0; i < scratch.count; ++i) {
+      const Stretch& s = scratch.stretches[i];
+      ASSERT_GE(s.lower, before);
+      const double length = s.upper - s.lower;
+      const double inside = std::fmin(0.1 * length, 1e-6 * (f.l.beta_max - f.l.beta_min));  // of a break not followed
+      if (s.lower > before) {
+        EXPECT_EQ(signature(0.5 * (before + s.lower)), 0u);
+      }
+      const std::uint64_t expected = s.structure.signature;
+      EXPECT_NE(expected, 0u);
+      for (int k = 0; k <= kBetas; ++k)
+        ASSERT_EQ(signature(s.lower + inside + (length - 2 * inside) * k / kBetas), expected)
+            << "stretch " << i << " [" << s.lower << ", " << s.upper << "] " << k;
+      if (s.lower_known) {
+        const double beside = std::fmin(1e-5, 0.1 * length);
+        EXPECT_NE(signature(s.lower - beside), expected);
+        ++breaks;
+      }
+      before = s.upper;
+    }
+    if (before < f.l.beta_max) {
+      EXPECT_EQ(signature(0.5 * (before + f.l.beta_max)), 0u);
+    }
+  }
+  EXPECT_GT(breaks, 300);
+}
+
+}  // namespace
+}  // namespace pkm::testing::hybrid

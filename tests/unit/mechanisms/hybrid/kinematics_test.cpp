@@ -1,0 +1,278 @@
+// Hybrid robot: laws of its kinematics on random designs and poses.
+#include "tests/unit/mechanisms/hybrid/golden.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/math/dual.hpp"
+#include "engine/math/taylor.hpp"
+
+namespace pkm::testing::hybrid {
+namespace {
+
+constexpr double kRoundoff = 1e-12;
+
+/// The least of what the accuracy of the forward kinematics goes with: t_xz, t_beta, |n_i|/L_i; and their product.
+struct Distance {
+  double least = 1, product = 1;
+};
+Distance from_singularities(const Geometry<double>& g, const Pose<double>& pose, const Joints<double>& j) {
+  const Transmission<double> t = transmission(g, pose.z, j);
+  Distance d;
+  for (const double measure : {t.t_xz, std::fabs(t.t_beta), t.t[0], t.t[1], t.t[2]}) {
+    d.least = std::fmin(d.least, measure);
+    d.product *= measure;
+  }
+  return d;
+}
+
+/// Difference of two poses, of lengths relative to L1.
+double difference(const Geometry<double>& g, const Pose<double>& p, const Pose<double>& q) {
+  const double turn = std::fabs(std::remainder(p.angle - q.angle, 2 * kPi));
+  return std::fmax(std::fmax(std::fabs(p.x - q.x), std::fabs(p.y - q.y)) / g.L1,
+                   std::fmax(std::fabs(p.z - q.z) / g.L1, turn));
+}
+
+/// Where the two roots of beta or of z meet they have half of the digits.
+bool meets_another(const Assembly& a) { return a.double_z || a.double_beta; }
+
+TEST(HybridKinematics, ForwardInvertsInverseInEveryMode) {
+  Uniform uniform(1);
+  int regular = 0, near = 0, poses = 0;
+  double worst = 0, worst_near = 0;
+  while (poses < 100000) {
+    const auto g = geometry_of(random_design(uniform));
+    const Pose<double> pose = random_pose(uniform);
+    if (!inverse(g, pose, {1, 1, 1}).assembles()) continue;
+    ++poses;
+    for (const WorkingMode& mode : all_signs()) {
+      const Joints<double> j = inverse(g, pose, mode);
+      const Forward found = forward(g, j.s);
+      const Distance distance = from_singularities(g, pose, j);
+      ASSERT_EQ(found.status, Closure::ok);
+      double error = INFINITY;
+      for (const Assembly& a : found.assemblies) {
+        ASSERT_TRUE(std::isfinite(a.pose.x) && std::isfinite(a.pose.z) && std::isfinite(a.pose.angle));
+        const bool same = a.sign_z == (pose.z > 0 ? 1 : -1) && a.sign_N2 == (j.N2 > 0 ? 1 : -1);
+        if (!same && !meets_another(a)) continue;
+        error = std::fmin(error, difference(g, a.pose, pose));
+        if (same && distance.least > 0.05) {
+          EXPECT_EQ(a.mode, mode);
+        }
+      }
+      if (distance.least > 0.05) {
+        ++regular;
+        worst = std::fmax(worst, error);
+      } else {
+        ++near;
+        worst_near = std::fmax(worst_near, error * distance.product);
+      }
+    }
+  }
+  EXPECT_LT(worst, kRoundoff);
+  EXPECT_LT(worst_near, kRoundoff);
+  EXPECT_GT(regular, 100000);
+  EXPECT_GT(near, 10000);
+  std::cout << "worst relative error of " << regular << " regular solutions: " << worst << ", of " << near
+            << " near singularities, times their distances: " << worst_near << '\n';
+}
+
+TEST(HybridKinematics, EveryAssemblyHasTheDrives) {
+  Uniform uniform(2);
+  int solved = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const auto g = geometry_of(random_design(uniform));
+    const std::array<double, 4> s = {uniform(-0.2, 0.2), uniform(-0.2, 0.2), uniform(-0.2, 0.2), uniform(-0.2, 0.2)};
+    const Forward found = forward(g, s);
+    EXPECT_EQ(found.assemblies.empty(), found.status != Closure::ok);
+    for (const Assembly& a : found.assemblies) {
+      if (a.mode[0] * a.mode[1] * a.mode[2] == 0) continue;
+      const Joints<double> j = inverse(g, a.pose, a.mode);
+      const Distance distance = from_singularities(g, a.pose, j);
+      if (!j.assembles() || distance.least < 0.01) continue;
+      ++solved;
+      for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(j.s[i], s[i], 1e-12);
+    }
+  }
+  EXPECT_GT(solved, 5000);
+}
+
+TEST(HybridKinematics, DegenerateDrivesHaveAStatusAndNoPose) {
+  auto p = nominal();
+  const auto status = [&](const std::array<double, 4>& s) {
+    const Forward found = forward(geometry_of(p), s);
+    EXPECT_TRUE(found.assemblies.empty());
+    return found.status;
+  };
+  // Links A and B parallel: the carriages are as far apart as A' and B'.
+  const std::array<double, 4> parallel = {0.1, 0, 0.1 + 2 * p[kA] - p[kB1] - p[kB2], 0};
+  EXPECT_EQ(status(parallel), Closure::degenerate_xz);
+  p[kL2] = 0.25;
+  EXPECT_EQ(status(parallel), Closure::no_xz);
+  EXPECT_EQ(status({-1, 0, 1, 0}), Closure::no_xz);
+  EXPECT_EQ(status({0, 0, 0, 1}), Closure::no_beta);
+}
+
+TEST(HybridKinematics, LinksOfOneLengthInParallelModesAreDegenerateEverywhere) {
+  Uniform uniform(7);
+  int tested = 0;
+  for (int k = 0; k < 1000; ++k) {
+    auto p = random_design(uniform);
+    p[kL2] = p[kL1];
+    const auto g = geometry_of(p);
+    const Pose<double> pose = random_pose(uniform);
+    for (const WorkingMode& mode : all_signs()) {
+      const Joints<double> j = inverse(g, pose, mode);
+      if (!j.assembles() || mode[0] != mode[1]) continue;
+      ++tested;
+      EXPECT_EQ(forward(g, j.s).status, Closure::degenerate_xz);
+      EXPECT_EQ(transmission(g, pose.z, j).t_xz, 0);
+    }
+  }
+  EXPECT_GT(tested, 500);
+}
+
+TEST(HybridKinematics, PosesAcrossSingularitiesAreFinite) {
+  // Any pose, also those out of reach, on the base, or where the shaft has no length.
+  Uniform uniform(3);
+  const LimitSpec none = no_limits(mechanism().info());
+  auto p = nominal();
+  const auto test = [&](const Pose<double>& pose) {
+    const auto g = geometry_of(p);
+    for (const WorkingMode& mode : all_signs()) {
+      const Joints<double> j = inverse(g, pose, mode);
+      for (const double s : j.s) EXPECT_TRUE(std::isfinite(s));
+      for (const double margin : margins(g, limits(std::span<const double>(p), none), pose, j, 1))
+        EXPECT_TRUE(std::isfinite(margin));
+      const PoseReport report = mechanism().inspect(p, pose, mode_name(mode), none);
+      EXPECT_EQ(report.assembles, j.assembles());
+      EXPECT_TRUE(report.feasible || !report.reason.empty());
+      for (const auto& [name, value] : report.indices) EXPECT_TRUE(std::isfinite(value)) << name;
+      for (const auto& [name, value] : report.angles) EXPECT_TRUE(std::isfinite(value)) << name;
+    }
+    MotionSample at;
+    at.pose = {{pose.x, pose.y, pose.z, pose.angle}};
+    for (const double zeta : {0.0, 0.3}) EXPECT_TRUE(std::isfinite(mechanism().chain(p, at, zeta).output.angle));
+  };
+  for (int k = 0; k < 1000; ++k) test(random_pose(uniform));
+  for (const double z : {0.0, p[kL1], -p[kL1], 0.3, 0.05})
+    for (const double beta : {0.0, kPi / 2, -kPi / 2, kPi}) test({0, 0, z, beta});
+  p[kD] = p[kE];  // e cos b = d at beta = 0
+  test({0, 0, 0.2, 0});
+  test({0, 0, 0, 0});
+  p[kF] = p[kFp];  // F1 = F3
+  test({0, 0, 0, 0});
+}
+
+TEST(HybridKinematics, MarginsWithDerivativesHaveTheSameBitsAndTheSlopesOfDifferences) {
+  Uniform uniform(4);
+  const LimitSpec none = no_limits(mechanism().info());
+  int slopes = 0;
+  for (int k = 0; k < 200; ++k) {
+    const auto p = random_design(uniform);
+    const Pose<double> pose = {uniform(-0.1, 0.1), 0, uniform(0.15, 0.24), uniform(-0.4, 0.4)};
+    const std::size_t varied = static_cast<std::size_t>(uniform(0, kParameters));
+    const auto margins_at = [&](const std::vector<double>& design) {
+      std::vector<double> found;
+      mechanism().pose_margins(std::span<const double>(design), none, {&pose, 1}, found);
+      return found;
+    };
+    std::vector<Dual4> q(p.begin(), p.end()), found;
+    q[varied] = Dual4::variable(p[varied], 0);
+    mechanism().pose_margins(std::span<const Dual4>(q), none, {&pose, 1}, found);
+    const auto plain = margins_at(p);
+    ASSERT_EQ(found.size(), plain.size());
+    auto lower = p, upper = p;
+    constexpr double kStep = 1e-6;
+    lower[varied] -= kStep;
+    upper[varied] += kStep;
+    const auto below = margins_at(lower), above = margins_at(upper);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      EXPECT_EQ(found[i].a, plain[i]) << margin_names()[i];
+      EXPECT_TRUE(std::isfinite(found[i].v[0])) << margin_names()[i];
+      const double ahead = (above[i] - plain[i]) / kStep, behind = (plain[i] - below[i]) / kStep;
+      if (std::fabs(ahead - behind) > 1e-3) continue;  // a kink, or the edge of a limb's reach
+      ++slopes;
+      EXPECT_NEAR(found[i].v[0], (ahead + behind) / 2, 1e-5 * (1 + std::fabs(ahead))) << margin_names()[i];
+    }
+  }
+  EXPECT_GT(slopes, 4000);
+}
+
+template <class S>
+Geometry<S> constant(const std::vector<double>& p) {
+  const std::vector<S> q(p.begin(), p.end());
+  return geometry(std::span<const S>(q));
+}
+
+TEST(HybridKinematics, InfluenceCoefficientsAreTheDerivativesOfTheDrives) {
+  Uniform uniform(5);
+  int compared = 0;
+  while (compared < 1000) {
+    const auto p = random_design(uniform);
+    const Pose<double> pose = random_pose(uniform);
+    const WorkingMode mode = all_signs()[static_cast<std::size_t>(uniform(0, 8))];
+    const auto g = geometry_of(p);
+    const Joints<double> j = inverse(g, pose, mode);
+    if (!j.assembles() || from_singularities(g, pose, j).least < 0.05) continue;
+    ++compared;
+    Vector<double, 4> V, A;
+    for (std::size_t i = 0; i < 4; ++i) {
+      V[i] = uniform(-1, 1);
+      A[i] = uniform(-1, 1);
+    }
+    const Pose<Taylor> moving{
+        {pose.x, V[0], A[0]}, {pose.y, V[1], A[1]}, {pose.z, V[2], A[2]}, {pose.angle, V[3], A[3]}};
+    const Joints<Taylor> motion = inverse(constant<Taylor>(p), moving, mode);
+    const Influence<double> q = influence(g, pose, j), back = reversed(q);
+    const Vector<double, 4> speeds = q.G * V, drives = accelerations(q, V, A);
+    const auto scale = [](double value) { return 1 + std::fabs(value); };
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(speeds[i], motion.s[i].d, kRoundoff * scale(speeds[i]));
+      EXPECT_NEAR(drives[i], motion.s[i].dd, kRoundoff * scale(motion.s[i].dd) * scale(speeds[i] * speeds[i]));
+      EXPECT_NEAR((back.G * speeds)[i], V[i], 1e-11);
+    }
+    // and differences of G along the coordinates
+    constexpr double kStep = 1e-6;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto moved = [&](double by) {
+        Pose<double> at = pose;
+        (c == 0 ? at.x : c == 1 ? at.y : c == 2 ? at.z : at.angle) += by;
+        return influence(g, at, inverse(g, at, mode)).G;
+      };
+      const auto slope = (moved(kStep) - moved(-kStep)) * (1 / (2 * kStep));
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(q.H[i](k, c), slope(i, k), 1e-3 * (1 + std::fabs(slope(i, k))));
+    }
+  }
+}
+
+TEST(HybridKinematics, ChainTurnsBackAndGainsATurnForATurn) {
+  Uniform uniform(6);
+  int turned = 0;
+  while (turned < 2000) {
+    const auto g = geometry_of(random_design(uniform));
+    const Pose<double> pose = {uniform(-0.15, 0.15), 0, uniform(0.1, 0.3), uniform(-0.6, 0.6)};
+    const double zeta = turned % 2 == 0 ? 0 : uniform(-3, 3), theta = uniform(-10, 10);
+    const Forks<double> k = forks(shaft(g, pose), pose.angle, zeta);
+    if (!k.turns) continue;
+    ++turned;
+    EXPECT_NEAR(k.ss * k.cc - k.sc * k.cs, k.PQ, 1e-13);
+    const double gamma = output_angle(g, k, theta);
+    EXPECT_NEAR(std::remainder(input_angle(g, k, gamma) - theta, 2 * kPi), 0, 1e-11);
+    if (zeta == 0) {
+      EXPECT_NEAR(input_angle(g, k, gamma), theta, 1e-11);
+      EXPECT_LT(std::fabs(gamma - theta), kPi);
+      EXPECT_NEAR(output_angle(g, k, theta + 2 * kPi), gamma + 2 * kPi, 1e-11);
+    }
+    const Ratio<double> extremes = ratio(k);
+    const Taylor slope = output_angle(constant<Taylor>(nominal()), Forks<Taylor>{k.ss, k.sc, k.cs, k.cc, k.PQ, true},
+                                      Taylor::variable(theta));
+    EXPECT_LE(slope.d, extremes.greatest * (1 + 1e-12));
+    EXPECT_GE(slope.d, extremes.least * (1 - 1e-12));
+  }
+}
+
+}  // namespace
+}  // namespace pkm::testing::hybrid
