@@ -38,7 +38,7 @@ int team_size(int threads) {
 }
 
 Team::Team(int threads) : next_(kNoPiece) {
-  for (int i = 1; i < team_size(threads); ++i) helpers_.emplace_back([this] { help(); });
+  for (int i = 1; i < team_size(threads); ++i) helpers_.emplace_back([this, i] { help(static_cast<std::size_t>(i)); });
 }
 
 Team::~Team() {
@@ -62,7 +62,7 @@ void Team::share(std::size_t pieces, WorkRef work) {
   }
   Team* const mine = lent;
   lent = nullptr;
-  take_pieces();
+  take_pieces(0);
   lent = mine;
   for (std::uint32_t done = done_.load(std::memory_order_acquire); done != pieces;
        done = done_.load(std::memory_order_acquire))
@@ -72,7 +72,7 @@ void Team::share(std::size_t pieces, WorkRef work) {
 }
 
 /// Works on pieces until none is left.
-void Team::take_pieces() {
+void Team::take_pieces(std::size_t worker) {
   for (std::uint64_t next = next_.load(std::memory_order_acquire);;) {
     const WorkRef work(object_.load(std::memory_order_acquire), call_.load(std::memory_order_acquire));
     const std::uint32_t pieces = pieces_.load(std::memory_order_acquire);
@@ -82,7 +82,7 @@ void Team::take_pieces() {
     if (!next_.compare_exchange_weak(next, next + count, std::memory_order_acquire, std::memory_order_acquire))
       continue;
     try {
-      work(begin, begin + count);
+      work(begin, begin + count, worker);
     } catch (...) {
       const std::lock_guard lock(failing_);
       if (!failure_) failure_ = std::current_exception();
@@ -92,12 +92,12 @@ void Team::take_pieces() {
   }
 }
 
-void Team::help() {
+void Team::help(std::size_t worker) {
   for (std::uint32_t seen = 0;;) {
     await_change(jobs_, seen);
     seen = jobs_.load(std::memory_order_acquire);
     if (ends_.load(std::memory_order_relaxed)) return;
-    take_pieces();
+    take_pieces(worker);
   }
 }
 
@@ -106,11 +106,13 @@ LentTeam::~LentTeam() { lent = before_; }
 
 bool has_team() { return lent && lent->threads() > 1; }
 
+std::size_t workers() { return lent ? static_cast<std::size_t>(lent->threads()) : 1; }
+
 void share_pieces(std::size_t pieces, WorkRef work) {
   if (lent)
     lent->share(pieces, work);
   else if (pieces > 0)
-    work(0, pieces);
+    work(0, pieces, 0);
 }
 
 }  // namespace pkm

@@ -11,23 +11,28 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace pkm {
 
-/// A reference to a function object that works on the pieces [begin, end).
+/// A reference to a function object that works on the pieces [begin, end), and may ask which worker does it: two pieces
+/// that are worked on at once have different workers, so what belongs to a worker needs no lock.
 class WorkRef {
  public:
   template <class F>
   WorkRef(const F& f)
-      : object_(&f), call_([](const void* object, std::size_t begin, std::size_t end) {
-          (*static_cast<const F*>(object))(begin, end);
+      : object_(&f), call_([](const void* object, std::size_t begin, std::size_t end, std::size_t worker) {
+          if constexpr (std::is_invocable_v<const F&, std::size_t, std::size_t, std::size_t>)
+            (*static_cast<const F*>(object))(begin, end, worker);
+          else
+            (*static_cast<const F*>(object))(begin, end);
         }) {}
-  void operator()(std::size_t begin, std::size_t end) const { call_(object_, begin, end); }
+  void operator()(std::size_t begin, std::size_t end, std::size_t worker) const { call_(object_, begin, end, worker); }
 
  private:
   friend class Team;
-  using Call = void (*)(const void*, std::size_t, std::size_t);
+  using Call = void (*)(const void*, std::size_t, std::size_t, std::size_t);
   WorkRef(const void* object, Call call) : object_(object), call_(call) {}
   const void* object_;
   Call call_;
@@ -46,15 +51,15 @@ class Team {
 
   int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
-  /// Has work(begin, end) done for all of [0, pieces), each piece once, in any order and on any thread; returns when
-  /// all are done. Whoever is free takes a share of what is left, so shares get smaller towards the end. From one
-  /// thread at a time, and not from within a piece. What the work throws is thrown here, once all are done or have
-  /// failed; of several exceptions one.
+  /// Has work(begin, end), or work(begin, end, worker) with worker < threads(), done for all of [0, pieces), each piece
+  /// once, in any order and on any thread; returns when all are done. Whoever is free takes a share of what is left, so
+  /// shares get smaller towards the end. From one thread at a time, and not from within a piece. What the work throws
+  /// is thrown here, once all are done or have failed; of several exceptions one.
   void share(std::size_t pieces, WorkRef work);
 
  private:
-  void help();
-  void take_pieces();
+  void help(std::size_t worker);
+  void take_pieces(std::size_t worker);
 
   // The number of the job in the upper half, the next piece in the lower; pieces are taken by counting up, which fails
   // when the job has changed meanwhile. What belongs to a job is written while no piece can be taken; whoever sees a
@@ -86,8 +91,11 @@ class LentTeam {
 /// Whether a team of more than one thread is lent to the calling thread.
 bool has_team();
 
-/// Team::share by the team lent to this thread, if there is one; else work(0, pieces) here. What a piece computes must
-/// not depend on which thread does it. Within a piece no team is lent.
+/// How many workers share_pieces() has here, at most: what each needs of its own can be prepared.
+std::size_t workers();
+
+/// Team::share by the team lent to this thread, if there is one; else work(0, pieces, 0) here. What a piece computes
+/// must not depend on which thread does it. Within a piece no team is lent.
 void share_pieces(std::size_t pieces, WorkRef work);
 
 }  // namespace pkm

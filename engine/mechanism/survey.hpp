@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/core/team.hpp"
 #include "engine/math/scalar.hpp"
 #include "engine/model/pose.hpp"
 
@@ -55,26 +54,6 @@ void append_samples(const Survey<S>& from, Survey<S>& to) {
   append(from.pose, to.pose);
   for (std::size_t i = 0; i < to.dci.size(); ++i) append(from.dci[i], to.dci[i]);
   append(from.inertia_condition, to.inertia_condition);
-}
-
-/// Calls fill(piece, survey) for every piece in [0, pieces), which is to add the piece's samples, its feasible cells
-/// and whether they touch the box: in order, or, where a team is lent to this thread, shared out among it. The samples
-/// are the same, in the same order.
-template <class S, class Fill>
-void share_samples(std::size_t pieces, Survey<S>& survey, const Fill& fill) {
-  if (!has_team()) {
-    for (std::size_t piece = 0; piece < pieces; ++piece) fill(piece, survey);
-    return;
-  }
-  std::vector<Survey<S>> parts(pieces);
-  share_pieces(pieces, [&](std::size_t piece, std::size_t end) {
-    for (; piece < end; ++piece) fill(piece, parts[piece]);
-  });
-  for (const Survey<S>& part : parts) {
-    append_samples(part, survey);
-    survey.feasible_cells += part.feasible_cells;
-    survey.touches_box = survey.touches_box || part.touches_box;
-  }
 }
 
 /// The values of a survey with derivatives.

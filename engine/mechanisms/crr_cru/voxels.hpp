@@ -15,6 +15,7 @@
 #include "engine/mechanism/survey.hpp"
 #include "engine/mechanisms/crr_cru/frame.hpp"
 #include "engine/mechanisms/crr_cru/rings.hpp"
+#include "engine/survey/share_samples.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
 namespace pkm::crr_cru {
@@ -92,13 +93,14 @@ void share_sections(const Design<double>& d, const Held& held, const VoxelGrid& 
   const std::size_t outer = grid_axes(held).outer;
   const bool over_phi = cuts(held).outer_is_phi;
   if (!over_phi && !common.fill(d, held, grid, held_value(d.g, held))) return;
-  share_samples(static_cast<std::size_t>(grid.cells[outer]), survey, [&](std::size_t piece, Survey<double>& part) {
-    const auto k = static_cast<std::int64_t>(piece);
-    if (!over_phi)
-      visit(k, common, piece, part);
-    else if (SectionCells& cells = own(); cells.fill(d, held, grid, grid.centre(outer, k)))
-      visit(k, cells, std::size_t{0}, part);
-  });
+  share_samples(static_cast<std::size_t>(grid.cells[outer]), survey,
+                [&](std::size_t piece, Survey<double>& part, std::size_t) {
+                  const auto k = static_cast<std::int64_t>(piece);
+                  if (!over_phi)
+                    visit(k, common, piece, part);
+                  else if (SectionCells& cells = own(); cells.fill(d, held, grid, grid.centre(outer, k)))
+                    visit(k, cells, std::size_t{0}, part);
+                });
 }
 
 }  // namespace pkm::crr_cru

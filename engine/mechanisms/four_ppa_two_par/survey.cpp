@@ -6,6 +6,7 @@
 
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
+#include "engine/survey/share_samples.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {
@@ -174,7 +175,7 @@ class VoxelSurveyor final : public Surveyor {
     // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
     const bool together = !wanted.inertia() && !wanted.poses && !test;
     const Halves halves = together ? counter_.halves(g, y, grid) : Halves{grid.cells[0], grid.cells[2], false, false};
-    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part) {
+    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t) {
       thread_local ColumnConditioning<double> poses;
       counter_.visit_block(g, l, test, y, grid, block, halves,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {

@@ -6,6 +6,7 @@
 #include "engine/mechanisms/hybrid/conditioning.hpp"
 #include "engine/mechanisms/hybrid/influence.hpp"
 #include "engine/mechanisms/hybrid/voxels.hpp"
+#include "engine/survey/share_samples.hpp"
 
 namespace pkm::hybrid {
 namespace {
@@ -174,7 +175,7 @@ class VoxelSurveyor final : public Surveyor {
     const bool counts = !d.clearance && !demand_.conditioning;
     share_samples(
         static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
-        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part) {
+        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t) {
           thread_local PoseList poses;
           Conditioning<double> conditioning(d.frame, demand_, poses, part);
           const auto first = static_cast<std::int64_t>(piece) * kBetas;

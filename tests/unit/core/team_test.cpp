@@ -28,6 +28,25 @@ TEST(Team, DoesEveryPieceOnce) {
   }
 }
 
+TEST(Team, GivesPiecesThatRunAtOnceDifferentWorkers) {
+  Team team(3);
+  for (int job = 0; job < 200; ++job) {
+    std::vector<std::atomic<int>> busy(3);
+    std::atomic<int> clashes = 0;
+    team.share(100, [&](std::size_t, std::size_t, std::size_t worker) {
+      if (busy.at(worker).exchange(1) != 0) ++clashes;
+      busy[worker] = 0;
+    });
+    ASSERT_EQ(clashes, 0);
+  }
+  std::size_t alone = 7;
+  share_pieces(1, [&](std::size_t, std::size_t, std::size_t worker) { alone = worker; });
+  EXPECT_EQ(alone, 0u);
+  EXPECT_EQ(workers(), 1u);
+  const LentTeam lent(team);
+  EXPECT_EQ(workers(), 3u);
+}
+
 TEST(Team, ThrowsWhatAPieceThrowsOnAnyThread) {
   Team team(2);
   std::atomic<int> begun = 0;
