@@ -1,4 +1,5 @@
-// A box of voxels over three swept coordinates: cell k of axis i has its centre at lower + (k + 1/2) step.
+// A box of voxels over the swept coordinates, an axis without one having a single cell [0, 1]: cell k of axis i has its
+// centre at lower + (k + 1/2) step.
 #pragma once
 
 #include <array>
@@ -8,8 +9,6 @@
 #include "engine/mechanism/survey.hpp"
 
 namespace pkm {
-
-using Box = std::array<std::array<double, 2>, 3>;
 
 struct VoxelGrid {
   std::array<std::int64_t, 3> cells{};

@@ -23,6 +23,8 @@
 
 namespace pkm::crr_cru {
 
+using PlacedBody = pkm::PlacedBody<4>;
+
 /// The bodies in the order above; state and limbs as of one pose. Infinite where sin theta_i2 = 0.
 std::vector<PlacedBody> bodies(const Geometry<double>& g, const Masses<double>& b, const Limbs<double>& limbs,
                                const MotionState<double>& state);

@@ -6,12 +6,12 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// The plan's box as ranges of x, y, z, phi.
-PoseBox pose_box(const Held& held, const SurveyPlan& plan) {
+/// A box of the swept coordinates as ranges of x, y, z, phi.
+PoseBox pose_box(const Held& held, const std::optional<Box>& swept) {
   PoseBox box = kEverywhere;
-  if (!plan.box) return box;
+  if (!swept) return box;
   for (std::size_t k = 0, axis = 0; k < 4; ++k)
-    if (k != held.coordinate) box[k] = (*plan.box)[axis++];
+    if (k != held.coordinate) box[k] = (*swept)[axis++];
   return box;
 }
 
@@ -25,29 +25,33 @@ void add_inertia(const Matrix<S, 4, 4>& M_q, const Demand& demand, Survey<S>& su
   if (demand.inertia_condition) survey.inertia_condition.push_back(inertia_condition(M_q));
 }
 
-class ColumnSurveyor final : public Surveyor {
+class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
  public:
   ColumnSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
-                 const Demand& demand)
+                 const ColumnOptions& columns, const Demand& demand)
       : platform_(platform),
         mass_model_(mass_model),
         mode_(mode),
         held_(held_of(held, plan)),
-        box_(pose_box(held_, plan)),
+        box_(pose_box(held_, columns.box)),
         limits_(limits(plan.limits)),
-        tolerance_(plan.tolerance),
-        fixed_(plan.nodes[0] > 0),
+        tolerance_(columns.tolerance),
+        fixed_(columns.nodes[0] > 0),
         demand_(demand) {
     // Nodes come in the order of the swept coordinates; phi is the last of them.
     const std::size_t outer = cuts(held_).outer_is_phi ? 1 : 0;
     const int usual = needs_inertia() ? kInertiaNodes : kSampleNodes;
-    outer_rule_ = gauss_legendre(fixed_ ? plan.nodes[outer] : usual);
-    inner_rule_ = gauss_legendre(fixed_ ? plan.nodes[1 - outer] : kInertiaNodes);
+    outer_rule_ = gauss_legendre(fixed_ ? columns.nodes[outer] : usual);
+    inner_rule_ = gauss_legendre(fixed_ ? columns.nodes[1 - outer] : kInertiaNodes);
   }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
-  std::string no_derivatives() const override { return {}; }
+  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
+    run(parameters, survey);
+  }
+  void survey(std::span<const Dual4> parameters, Scratch&, Survey<Dual4>& survey) const override {
+    run(parameters, survey);
+  }
+  const SlopeSurveyor* slopes() const override { return this; }
 
  private:
   static constexpr int kSampleNodes = 32;
@@ -146,8 +150,9 @@ class ColumnSurveyor final : public Surveyor {
 }  // namespace
 
 std::unique_ptr<const Surveyor> make_column_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                     int held, const SurveyPlan& plan, const Demand& demand) {
-  return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, demand);
+                                                     int held, const SurveyPlan& plan, const ColumnOptions& columns,
+                                                     const Demand& demand) {
+  return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, columns, demand);
 }
 
 }  // namespace pkm::crr_cru

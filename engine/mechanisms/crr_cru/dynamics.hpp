@@ -18,6 +18,11 @@
 namespace pkm::crr_cru {
 
 template <class S>
+using MotionState = pkm::MotionState<S, 4>;
+template <class S>
+using PoseDynamics = pkm::PoseDynamics<S, 4>;
+
+template <class S>
 PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
   const S &l1 = g.l_1[i], &l2 = g.l_2[i];
   const S sin2 = limb.sin_2 * limb.sin_2;

@@ -4,7 +4,7 @@
 
 namespace pkm::crr_cru {
 
-std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<double, 4>& rho) {
+std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& rho) {
   const Yaw<double> y = yaw(g);
   const double kappa = (rho[3] - rho[1] - y.a_0) / y.R;
   constexpr double kRoundoff = 1e-12;

@@ -9,6 +9,6 @@ namespace pkm::crr_cru {
 
 /// Both assembly branches for slide positions: "+" with cos(phi + delta) > 0 and "-"; one where they meet, none where
 /// |sin(phi + delta)| would exceed 1. phi in (-pi, pi].
-std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<double, 4>& rho);
+std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& rho);
 
 }  // namespace pkm::crr_cru

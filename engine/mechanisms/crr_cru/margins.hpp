@@ -13,13 +13,14 @@ namespace pkm::crr_cru {
 /// and of its slide from both ends of the range; and R (kappa_p - c_min), the distance from the parallel singularity
 /// along the slides.
 template <class S>
-void add_margins(const Design<S>& d, std::span<const Pose<double>> poses, std::vector<S>& margins) {
+void add_margins(const Design<S>& d, std::span<const pkm::Pose<double>> poses, std::vector<S>& margins) {
   std::array<S, 4> inner, outer;
   for (std::size_t i = 0; i < 4; ++i) {
     inner[i] = root_or_zero(d.in2[i]);
     outer[i] = root_or_zero(d.out2[i]);
   }
-  for (const Pose<double>& pose : poses) {
+  for (const auto& any : poses) {
+    const Pose<double> pose = schoenflies(any);
     const std::array<double, 3> at = {pose.x, pose.y, pose.z};
     const auto [sin, cos] = sincos(S(pose.angle));
     const auto arm = arms(d.g, sin, cos);
@@ -40,8 +41,9 @@ void add_margins(const Design<S>& d, std::span<const Pose<double>> poses, std::v
 /// Appends the margin of a clearance limit [m] per pose. A pose that does not assemble has none: its reach is broken.
 template <class S>
 void add_clearances(const Geometry<S>& g, const LinkRadii<S>& radii, double least, const WorkingMode& mode,
-                    std::span<const Pose<double>> poses, std::vector<S>& margins) {
-  for (const Pose<double>& at : poses) {
+                    std::span<const pkm::Pose<double>> poses, std::vector<S>& margins) {
+  for (const auto& any : poses) {
+    const Pose<double> at = schoenflies(any);
     const Limbs<S> limbs = inverse(g, Pose<S>{S(at.x), S(at.y), S(at.z), S(at.angle)}, mode);
     if (limbs.assembles) margins.push_back(nearest_links(links(g, radii, limbs)).clearance - least);
   }

@@ -32,6 +32,9 @@
 
 namespace pkm::crr_cru {
 
+template <class S>
+using Pose = SchoenfliesPose<S>;
+
 /// Whether the circle of C_1..C_3 is a platform of its own, jointed to the moving one at D, or part of it.
 enum class Platform { jointed, rigid };  // (3CRR/R)&CRU, Quadrupteron
 

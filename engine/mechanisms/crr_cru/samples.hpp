@@ -7,7 +7,8 @@
 namespace pkm::crr_cru {
 
 inline Held held_of(int coordinate, const SurveyPlan& plan) {
-  return {static_cast<std::size_t>(coordinate), plan.held.kind == HeldCoordinate::Kind::middle, plan.held.value};
+  const HeldCoordinate held = how_held(plan, coordinate);
+  return {static_cast<std::size_t>(coordinate), held.kind == HeldCoordinate::Kind::middle, held.value};
 }
 
 /// Conditioning depends on phi alone.

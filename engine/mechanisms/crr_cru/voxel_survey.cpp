@@ -12,18 +12,18 @@ namespace {
 class VoxelSurveyor final : public Surveyor {
  public:
   VoxelSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
-                const Demand& demand)
+                const VoxelOptions& voxels, const Demand& demand)
       : platform_(platform),
         mass_model_(mass_model),
         mode_(mode),
         held_(held_of(held, plan)),
-        plan_(plan),
+        voxels_(voxels),
         limits_(limits(plan.limits)),
         demand_(demand) {}
 
-  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
     survey.clear();
     const Design<double> d = design(geometry(platform_, parameters), limits_);
     const VoxelGrid grid = grid_of(d);
@@ -59,7 +59,7 @@ class VoxelSurveyor final : public Surveyor {
 
  private:
   VoxelGrid grid_of(const Design<double>& d) const {
-    return {plan_.cells, plan_.box ? *plan_.box : default_box(d, held_)};
+    return {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, held_)};
   }
   /// Which coordinate each axis of the grid is: its axes are the swept coordinates in ascending order.
   std::array<int, 3> swept_coordinates() const {
@@ -196,7 +196,7 @@ class VoxelSurveyor final : public Surveyor {
   MassModel mass_model_;
   WorkingMode mode_;
   Held held_;
-  SurveyPlan plan_;
+  VoxelOptions voxels_;
   Limits limits_;
   Demand demand_;
 };
@@ -204,13 +204,14 @@ class VoxelSurveyor final : public Surveyor {
 }  // namespace
 
 std::unique_ptr<const Surveyor> make_voxel_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                    int held, const SurveyPlan& plan, const Demand& demand) {
-  return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, demand);
+                                                    int held, const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                    const Demand& demand) {
+  return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, voxels, demand);
 }
 
 VoxelMap voxel_map(Platform platform, const WorkingMode& mode, int held, std::span<const double> parameters,
-                   const SurveyPlan& plan) {
-  return VoxelSurveyor(platform, MassModel::table, mode, held, plan, {}).map(parameters);
+                   const SurveyPlan& plan, const VoxelOptions& voxels) {
+  return VoxelSurveyor(platform, MassModel::table, mode, held, plan, voxels, {}).map(parameters);
 }
 
 }  // namespace pkm::crr_cru

@@ -16,6 +16,9 @@
 namespace pkm::crr_cru {
 
 template <class S>
+using Influence = pkm::Influence<S, 4>;
+
+template <class S>
 struct Yaw {
   S a_s, a_c, a_0;  ///< [m]
   S R;              ///< hypot(a_s, a_c) [m]

@@ -20,6 +20,15 @@
 
 namespace pkm::four_ppa_two_par {
 
+template <class S>
+using MotionState = pkm::MotionState<S, 4>;
+template <class S>
+using PoseDynamics = pkm::PoseDynamics<S, 4>;
+template <class S>
+using Body = pkm::Body<S, 4>;
+template <class S>
+using Influence = pkm::Influence<S, 4>;
+
 /// A length or an angle that X determines: its rate is row Xdot, its acceleration row Xddot + bias.
 template <class S>
 struct Follower {

@@ -26,6 +26,9 @@
 
 namespace pkm::four_ppa_two_par {
 
+template <class S>
+using Pose = SchoenfliesPose<S>;
+
 /// Order of the parameters.
 enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kRp, kRs, kParameters };
 
@@ -161,7 +164,7 @@ Velocity<S> velocity(const Geometry<S>& g, const Pose<S>& pose, const Limbs<S>& 
 
 /// Every assembly mode (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its rail, both circle
 /// intersections. Up to 16; those with both C_j below the rails come first.
-std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<double, 4>& q);
+std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& q);
 
 /// Shape of the x-z section at given theta, 1 to 5 (figure 6): 1 empty, 2 one piece, 3 notched, 4 upper and lower part
 /// separate with beta = pi/2 inside, 5 separate without.

@@ -21,6 +21,8 @@ S gamma(const Geometry<S>& g, const Demand& demand) {
   return demand.characteristic_length ? S(g.a / (2 * *demand.characteristic_length)) : S(1.0);  // default L_c = a/2
 }
 
+constexpr int kY = 1;  ///< the coordinate that surveys hold
+
 /// The only mode whose poses are surveyed.
 constexpr const char* kSurveyedMode = "lower,lower";
 
@@ -35,21 +37,24 @@ SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) 
 bool needs_inertia(const Demand& demand) { return demand.dci || demand.inertia_condition; }
 bool needs_samples(const Demand& demand) { return demand.conditioning || demand.poses || needs_inertia(demand); }
 
-class ColumnSurveyor final : public Surveyor {
+class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
  public:
-  ColumnSurveyor(const SurveyPlan& plan, const Demand& demand)
-      : plan_(plan),
+  ColumnSurveyor(const SurveyPlan& plan, const ColumnOptions& columns, const Demand& demand)
+      : limits_(plan.limits),
+        held_(how_held(plan, kY)),
+        columns_(columns),
         demand_(demand),
-        inner_rule_(gauss_legendre(plan.nodes[0] > 0 ? plan.nodes[0] : kSampleNodes)),
-        theta_rule_(gauss_legendre(plan.nodes[1] > 0 ? plan.nodes[1] : kSampleNodes)) {}
+        inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
+        theta_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {}
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override {
-    if (plan_.limits.given[kClearanceMin]) throw std::logic_error(no_derivatives());
+  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
     run(parameters, survey);
   }
-  std::string no_derivatives() const override {
-    if (!plan_.limits.given[kClearanceMin]) return {};
+  void survey(std::span<const Dual4> parameters, Scratch&, Survey<Dual4>& survey) const override {
+    run(parameters, survey);
+  }
+  const SlopeSurveyor* slopes() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
+  std::string why_no_slopes() const override {
     return "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
            "such surveys have no derivatives; take an optimiser without gradients, or keep the sliders apart by h_min";
   }
@@ -62,13 +67,13 @@ class ColumnSurveyor final : public Surveyor {
     thread_local ColumnScratch<S> scratch;
     survey.clear();
     const Geometry<S> g = geometry(parameters);
-    Limits<S> l = limits(g, plan_.limits);
+    Limits<S> l = limits(g, limits_);
     std::optional<ClearanceTest> clearance;
     if constexpr (std::is_same_v<S, double>) clearance = take_clearance(g, l);
     const ClearanceTest* const test = clearance ? &*clearance : nullptr;
-    const S y = plane(g, plan_.held);
+    const S y = plane(g, held_);
     const Frame<S> f = frame(g, l, y);
-    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
+    const bool over_y = held_.kind == HeldCoordinate::Kind::integrated;
     const Integral<S> volume = volume_of(f, test, over_y, scratch);
     survey.volume = volume.value;
     survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
@@ -96,12 +101,12 @@ class ColumnSurveyor final : public Surveyor {
   Integral<S> volume_of(const Frame<S>& f, const ClearanceTest* test, bool over_y, ColumnScratch<S>& scratch) const {
     if constexpr (std::is_same_v<S, double>) {
       if (test)
-        return plan_.nodes[1] > 0 ? clear_volume_by_rule(f, *test, theta_rule_, inner_rule_, scratch)
-                                  : clear_volume(f, *test, over_y, plan_.tolerance, scratch);
+        return columns_.nodes[1] > 0 ? clear_volume_by_rule(f, *test, theta_rule_, inner_rule_, scratch)
+                                     : clear_volume(f, *test, over_y, columns_.tolerance, scratch);
     }
-    return over_y               ? volume_over_y(f.g, f.l, plan_.tolerance, scratch)
-           : plan_.nodes[1] > 0 ? fixed_rule(f, scratch)
-                                : plane_volume(f, plan_.tolerance, scratch);
+    return over_y                  ? volume_over_y(f.g, f.l, columns_.tolerance, scratch)
+           : columns_.nodes[1] > 0 ? fixed_rule(f, scratch)
+                                   : plane_volume(f, columns_.tolerance, scratch);
   }
 
   /// The volume by the study's own number of theta nodes per piece; no error is estimated.
@@ -119,33 +124,39 @@ class ColumnSurveyor final : public Surveyor {
     return result;
   }
 
-  SurveyPlan plan_;
+  LimitSpec limits_;
+  HeldCoordinate held_;
+  ColumnOptions columns_;
   Demand demand_;
   GaussRule inner_rule_, theta_rule_;
 };
 
 class VoxelSurveyor final : public Surveyor {
  public:
-  VoxelSurveyor(const SurveyPlan& plan, const Demand& demand)
-      : plan_(plan), demand_(demand), counter_(plan.cells, plan.box ? (*plan.box)[2] : kTheta) {}
+  VoxelSurveyor(const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
+      : limits_(plan.limits),
+        held_(how_held(plan, kY)),
+        voxels_(voxels),
+        demand_(demand),
+        counter_(voxels.cells, voxels.box ? (*voxels.box)[2] : kTheta) {}
 
-  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
     survey.clear();
     const Geometry<double> g = geometry(parameters);
-    Limits<double> l = limits(g, plan_.limits);
+    Limits<double> l = limits(g, limits_);
     const auto clearance = take_clearance(g, l);
     const ClearanceTest* const test = clearance ? &*clearance : nullptr;
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
-    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
+    const bool over_y = held_.kind == HeldCoordinate::Kind::integrated;
     const SampleContents<double> wanted = contents(parameters, demand_);
-    const std::int64_t planes = over_y ? plan_.held_cells : 1;
+    const std::int64_t planes = over_y ? held_.cells : 1;
     const double y_step = over_y ? g.L0 / static_cast<double>(planes) : 1;
     survey.cells = grid.count() * planes;
     survey.cell_volume = grid.cell_volume() * y_step;
     for (std::int64_t p = 0; p < planes; ++p) {
-      const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, plan_.held);
+      const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, held_);
       bool touches = false;
       survey.feasible_cells += counter_.count(g, l, test, y, grid, touches);
       survey.touches_box = survey.touches_box || touches;
@@ -155,11 +166,11 @@ class VoxelSurveyor final : public Surveyor {
   }
 
   VoxelMap map(const Geometry<double>& g) const {
-    Limits<double> l = limits(g, plan_.limits);
+    Limits<double> l = limits(g, limits_);
     const auto clearance = take_clearance(g, l);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
     VoxelMap m = grid.map();
-    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, plan_.held), grid,
+    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, held_), grid,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              for (std::int64_t j = first; j < end; ++j)
                                m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
@@ -204,28 +215,47 @@ class VoxelSurveyor final : public Surveyor {
     });
   }
 
-  SurveyPlan plan_;
+  LimitSpec limits_;
+  HeldCoordinate held_;
+  VoxelOptions voxels_;
   Demand demand_;
   VoxelCounter counter_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Demand& demand) {
+namespace {
+
+void refuse_mode(const Demand& demand) {
   if (needs_inertia(demand) && !demand.mode.empty() && demand.mode != kSurveyedMode)
     throw std::invalid_argument("workspaces of mechanism 4ppa-2par are of the working mode " +
                                 std::string(kSurveyedMode) + ", so inertia is not surveyed in the mode " + demand.mode);
-  const bool over_y = plan.held.kind == HeldCoordinate::Kind::integrated;
-  if (plan.method == Method::columns && over_y && plan.nodes[0] > 0)
-    throw std::invalid_argument(
-        "nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance instead");
-  if (plan.method == Method::columns) return std::make_unique<ColumnSurveyor>(plan, demand);
-  if (over_y && plan.held_cells < 1)
-    throw std::invalid_argument("voxels integrated over y need a number of cells for y");
-  return std::make_unique<VoxelSurveyor>(plan, demand);
 }
 
-VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan) { return VoxelSurveyor(plan, {}).map(g); }
+bool is_over_y(const SurveyPlan& plan) { return how_held(plan, kY).kind == HeldCoordinate::Kind::integrated; }
+
+}  // namespace
+
+std::unique_ptr<const Surveyor> make_column_surveyor(const SurveyPlan& plan, const ColumnOptions& columns,
+                                                     const Demand& demand) {
+  refuse_mode(demand);
+  if (is_over_y(plan) && columns.nodes[0] > 0)
+    throw std::invalid_argument(
+        "nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance instead");
+  return std::make_unique<ColumnSurveyor>(plan, columns, demand);
+}
+
+std::unique_ptr<const Surveyor> make_voxel_surveyor(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                    const Demand& demand) {
+  refuse_mode(demand);
+  if (is_over_y(plan) && how_held(plan, kY).cells < 1)
+    throw std::invalid_argument("voxels integrated over y need a number of cells for y");
+  return std::make_unique<VoxelSurveyor>(plan, voxels, demand);
+}
+
+VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan, const VoxelOptions& voxels) {
+  return VoxelSurveyor(plan, voxels, {}).map(g);
+}
 
 PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
   PoseReport report;
@@ -250,7 +280,7 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
     }
     return report;
   }
-  report.joints = limb.q;
+  report.joints = {limb.q[0], limb.q[1], limb.q[2], limb.q[3]};
   const Velocity<double> v = velocity(g, pose, limb, mode);
   report.G = v.G;
   report.det_G = v.G.determinant();

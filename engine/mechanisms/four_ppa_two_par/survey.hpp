@@ -9,9 +9,12 @@
 namespace pkm::four_ppa_two_par {
 
 /// Throws std::invalid_argument with a sentence when the plan cannot be served.
-std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Demand& demand);
+std::unique_ptr<const Surveyor> make_column_surveyor(const SurveyPlan& plan, const ColumnOptions& columns,
+                                                     const Demand& demand);
+std::unique_ptr<const Surveyor> make_voxel_surveyor(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                    const Demand& demand);
 
-VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan);
+VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan, const VoxelOptions& voxels);
 
 PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode);
 

@@ -47,8 +47,9 @@ Spin spin(const Turning& beta, const Turning& gamma) {
 }  // namespace
 
 ChainReport inspect_chain(const Geometry<double>& g, const MotionSample& at, double zeta) {
-  const Shaft<double> axis = shaft(g, at.as_pose());
-  const Vector<double, 4>&X = at.pose, &V = at.velocity, &A = at.acceleration;
+  const Pose<double> pose = schoenflies(at.pose);
+  const Shaft<double> axis = shaft(g, pose);
+  const AxisVector<double>&X = at.pose, &V = at.velocity, &A = at.acceleration;
   ChainReport report;
   report.angles = {{"phi1", acos(axis.cos_phi1)}, {"phi2", acos(axis.cos_phi2)}, {"shaft_length", axis.length}};
   report.turns = forks(axis, X[3], zeta).turns;
@@ -62,7 +63,7 @@ ChainReport inspect_chain(const Geometry<double>& g, const MotionSample& at, dou
   const Turning& theta = at.input;
   const Taylor gamma = output(still, moving, {theta.angle, theta.speed, theta.acceleration}, zeta);
   report.output = {gamma.a, gamma.d, gamma.dd};
-  report.influence = influence(still, at.as_pose(), theta.angle, zeta);
+  report.influence = influence(still, pose, theta.angle, zeta);
   report.spin = spin({X[3], V[3], A[3]}, report.output);
   return report;
 }

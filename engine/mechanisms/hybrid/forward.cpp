@@ -4,7 +4,7 @@
 
 namespace pkm::hybrid {
 
-Forward forward(const Geometry<double>& g, const std::array<double, 4>& s) {
+Forward forward(const Geometry<double>& g, const AxisVector<double>& s) {
   Forward found;
   const auto none = [&](Closure status) {
     found.status = status;

@@ -31,6 +31,6 @@ struct Forward {
 };
 
 /// Every assembly for drives s1, s2, s3, s4 [m].
-Forward forward(const Geometry<double>& g, const std::array<double, 4>& s);
+Forward forward(const Geometry<double>& g, const AxisVector<double>& s);
 
 }  // namespace pkm::hybrid

@@ -12,6 +12,9 @@
 
 namespace pkm::hybrid {
 
+template <class S>
+using Influence = pkm::Influence<S, 4>;
+
 /// Jx and Jq = diag(n1, 1, n2, n3).
 template <class S>
 struct VelocityEquation {

@@ -29,6 +29,9 @@
 
 namespace pkm::hybrid {
 
+template <class S>
+using Pose = SchoenfliesPose<S>;
+
 /// Order of the parameters: geometry, then what bounds the poses (limits.hpp), then the links' radii.
 enum ParameterIndex {
   kA,

@@ -11,6 +11,8 @@
 namespace pkm::hybrid {
 namespace {
 
+constexpr int kY = 1;  ///< the coordinate that surveys hold
+
 /// The clearance that a plan asks for.
 std::optional<double> clearance_of(const SurveyPlan& plan) {
   const std::optional<double>& given = plan.limits.given[kClearanceMin];
@@ -84,20 +86,26 @@ class Conditioning {
   SinCosOf<double> sincos_{0, 1};
 };
 
-class ColumnSurveyor final : public Surveyor {
+class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
  public:
-  ColumnSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
+  ColumnSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const ColumnOptions& columns,
+                 const Demand& demand)
       : signs_(signs),
         branch_(branch),
         plan_(plan),
+        tolerance_(columns.tolerance),
         demand_(demand),
-        fixed_(plan.nodes[0] > 0),
-        z_rule_(gauss_legendre(fixed_ ? plan.nodes[0] : kSampleNodes)),
-        beta_rule_(gauss_legendre(fixed_ ? plan.nodes[1] : kSampleNodes)) {}
+        fixed_(columns.nodes[0] > 0),
+        z_rule_(gauss_legendre(fixed_ ? columns.nodes[0] : kSampleNodes)),
+        beta_rule_(gauss_legendre(fixed_ ? columns.nodes[1] : kSampleNodes)) {}
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
-  std::string no_derivatives() const override { return {}; }
+  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
+    run(parameters, survey);
+  }
+  void survey(std::span<const Dual4> parameters, Scratch&, Survey<Dual4>& survey) const override {
+    run(parameters, survey);
+  }
+  const SlopeSurveyor* slopes() const override { return this; }
 
  private:
   static constexpr int kSampleNodes = 8;  // per strip of z and piece of beta
@@ -107,11 +115,11 @@ class ColumnSurveyor final : public Surveyor {
     thread_local ColumnScratch<S> scratch;
     survey.clear();
     const Frame<S> f = frame_of(parameters);
-    const S stroke = carriage(f.l, plan_.held);
+    const S stroke = carriage(f.l, how_held(plan_, kY));
     if (!(value_of(stroke) > 0)) return;
     find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     if (!fixed_) {
-      const Integral<S> volume = hybrid::volume(f, plan_.tolerance, scratch);
+      const Integral<S> volume = hybrid::volume(f, tolerance_, scratch);
       survey.volume = volume.value * stroke;
       survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
       survey.columns = volume.evaluations;
@@ -149,6 +157,7 @@ class ColumnSurveyor final : public Surveyor {
   WorkingMode signs_;
   int branch_;
   SurveyPlan plan_;
+  double tolerance_;
   Demand demand_;
   bool fixed_;  ///< numbers of nodes are given
   GaussRule z_rule_, beta_rule_;
@@ -156,16 +165,17 @@ class ColumnSurveyor final : public Surveyor {
 
 class VoxelSurveyor final : public Surveyor {
  public:
-  VoxelSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
-      : signs_(signs), branch_(branch), plan_(plan), demand_(demand) {}
+  VoxelSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const VoxelOptions& voxels,
+                const Demand& demand)
+      : signs_(signs), branch_(branch), plan_(plan), voxels_(voxels), demand_(demand) {}
 
-  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
     survey.clear();
     const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
-    const double stroke = carriage(d.frame.l, plan_.held);
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(d));
+    const double stroke = carriage(d.frame.l, how_held(plan_, kY));
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
     if (!(stroke > 0)) return;
@@ -199,9 +209,9 @@ class VoxelSurveyor final : public Surveyor {
 
   VoxelMap map(std::span<const double> parameters) const {
     const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(d));
     VoxelMap m = grid.map();
-    if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
+    if (!(carriage(d.frame.l, how_held(plan_, kY)) > 0)) return m;
     VoxelHeights heights;
     const VoxelColumns columns(d, grid, heights);
     for (std::int64_t k = 0; k < grid.cells[2]; ++k)
@@ -222,23 +232,29 @@ class VoxelSurveyor final : public Surveyor {
   WorkingMode signs_;
   int branch_;
   SurveyPlan plan_;
+  VoxelOptions voxels_;
   Demand demand_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
-                                              const Demand& demand) {
-  if (plan.method == Method::voxels) return std::make_unique<VoxelSurveyor>(signs, branch, plan, demand);
+std::unique_ptr<const Surveyor> make_column_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
+                                                     const ColumnOptions& columns, const Demand& demand) {
   if (clearance_of(plan))
     throw std::invalid_argument(
         "mechanism 2t1r-p-hybrid has no column surveys under a clearance (clearance_min), because links that meet end "
         "columns where no formula says; take voxels, or require the clearance of a task-workspace");
-  return std::make_unique<ColumnSurveyor>(signs, branch, plan, demand);
+  return std::make_unique<ColumnSurveyor>(signs, branch, plan, columns, demand);
 }
 
-VoxelMap voxel_map(const WorkingMode& signs, int branch, std::span<const double> parameters, const SurveyPlan& plan) {
-  return VoxelSurveyor(signs, branch, plan, {}).map(parameters);
+std::unique_ptr<const Surveyor> make_voxel_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
+                                                    const VoxelOptions& voxels, const Demand& demand) {
+  return std::make_unique<VoxelSurveyor>(signs, branch, plan, voxels, demand);
+}
+
+VoxelMap voxel_map(const WorkingMode& signs, int branch, std::span<const double> parameters, const SurveyPlan& plan,
+                   const VoxelOptions& voxels) {
+  return VoxelSurveyor(signs, branch, plan, voxels, {}).map(parameters);
 }
 
 }  // namespace pkm::hybrid
