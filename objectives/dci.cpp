@@ -57,7 +57,7 @@ ObjectiveEntry dci() {
                   mode_option(),
                   sharpness_option("max")},
       .unit = [](const EntryContext&) { return std::string("1"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("dci", mechanism); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_dynamics("dci", mechanism); },
       .demand = demand_dci,
       .make = make_dci,
   };
@@ -70,7 +70,7 @@ ObjectiveEntry dci_uniformity() {
       .direction = Direction::minimise,
       .options = {limb_option(), mode_option()},
       .unit = [](const EntryContext&) { return std::string("1"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("dci-uniformity", mechanism); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_dynamics("dci-uniformity", mechanism); },
       .demand = demand_dci,
       .make = [](const EntryContext& context) { return deviation(context.options.word("limb")); },
   };

@@ -1,4 +1,4 @@
-// An answer to "can it?" that says why not.
+// The answer to "can it?".
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 
 namespace pkm {
 
-/// One sentence saying why not; none: it can.
+/// One sentence that says why not; none: it can.
 using Refusal = std::optional<std::string>;
 
 }  // namespace pkm

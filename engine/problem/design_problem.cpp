@@ -38,8 +38,8 @@ std::string no_derivatives(const ProblemParts& parts) {
   for (std::size_t k = 0; k < used.size(); ++k) {
     if (!used[k]) continue;
     const SurveyPlan& plan = k == 0 ? parts.plan : parts.regions[k - 1].plan;
-    if (plan.method == Method::voxels) return voxels_have_no_derivatives();
-    if (const std::string reason = prepare(parts, k)->no_derivatives(); !reason.empty()) return reason;
+    if (plan.voxels()) return voxels_have_no_derivatives();
+    if (const auto surveyor = prepare(parts, k); !surveyor->slopes()) return surveyor->why_no_slopes();
   }
   for (const auto* list : {&parts.objectives, &parts.design_margins, &parts.survey_margins})
     for (const auto& q : *list)
@@ -64,10 +64,11 @@ std::vector<double> DesignProblem::parameters(std::span<const double> design) co
 
 template <class S>
 void DesignProblem::survey(std::span<const S> parameters, bool all, Surveys<S>& surveys) const {
+  thread_local Scratch scratch;
   surveys.resize(surveyors_.size());
   for (std::size_t k = 0; k < surveyors_.size(); ++k)
     if (used_[k] || (all && k == 0))
-      surveyors_[k]->survey(parameters, surveys[k]);
+      run_survey(*surveyors_[k], parameters, scratch, surveys[k]);
     else
       surveys[k].clear();
 }

@@ -8,7 +8,7 @@ namespace pkm {
 namespace {
 
 std::string no_unit(const MechanismInfo&, const SurveyPlan&) { return "1"; }
-bool always(const MechanismInfo&) { return true; }
+bool always(const Mechanism&) { return true; }
 void nothing(const EntryContext&, Demand&) {}
 
 /// A result that is a smooth function of the survey.

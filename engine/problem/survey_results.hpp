@@ -12,7 +12,7 @@ struct SurveyResult {
   std::string name;
   std::string meaning;
   std::string (*unit)(const MechanismInfo&, const SurveyPlan&);
-  bool (*available)(const MechanismInfo&);       ///< whether the mechanism's surveys can give it
+  bool (*available)(const Mechanism&);           ///< whether the mechanism's surveys can give it
   void (*demand)(const EntryContext&, Demand&);  ///< adds what the survey has to compute
   double (*value)(const Survey<double>&);
   /// With derivatives; a worst case by its smooth stand-in of that sharpness.

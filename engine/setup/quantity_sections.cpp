@@ -62,7 +62,7 @@ std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, c
 /// What an [[objective]], [[constraint]] or [[report]] made from an entry of the catalogue of objectives has in common.
 NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, const std::string& name,
                              const Options& options, StudyDraft& draft) {
-  if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
+  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
     throw table.find("type")->refusal(reason);
   const std::size_t survey = survey_read(table, entry, draft);
   Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
@@ -130,7 +130,7 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
 void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
   auto specs = entry.options(draft.info());
   allow_options(table, {"type", "name"}, specs);
-  if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
+  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
     throw table.find("type")->refusal(reason);
   // The margin's unit may follow from some options and be that of others, which are read after it is known.
   std::vector<OptionSpec> first;
@@ -160,7 +160,7 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
 }
 
 void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
-  const MechanismInfo& info = draft.info();
+  const MechanismInfo& info = *draft.parts.mechanism;
   const auto specs = entry.options(info);
   allow_options(table, {"type"}, specs);
   if (const std::string reason = entry.refusal(info); !reason.empty()) throw table.find("type")->refusal(reason);

@@ -7,6 +7,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
 #include "engine/setup/text_file.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm {
 namespace {
@@ -53,10 +54,11 @@ void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
 void warn_of_empty_workspace(Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
-  SurveyPlan plan = parts.plan;
-  if (plan.method == Method::voxels) {
-    std::int64_t cells = std::max<std::int64_t>(1, plan.held_cells);
-    for (const std::int64_t n : plan.cells) cells *= n;  // at most 2^48
+  const SurveyPlan& plan = parts.plan;
+  if (const VoxelOptions* const voxels = plan.voxels()) {
+    std::int64_t cells = 1;
+    for (const std::int64_t n : voxels->cells) cells *= n;  // at most 2^28
+    for (const HeldCoordinate& held : plan.held) cells *= std::max<std::int64_t>(1, held.cells);
     if (cells > kMostCellsOfACheck) return;
   }
   std::vector<double> design = parts.parameters;
@@ -69,20 +71,21 @@ void warn_of_empty_workspace(Study& study) {
     for (std::size_t v = 0; v < parts.space.dimension(); ++v)
       design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
   }
-  if (!parts.mechanism->refuse(design).empty()) return;
+  if (parts.mechanism->refuse(design)) return;
   Survey<double> survey;
-  parts.mechanism->prepare(plan, {})->survey(design, survey);
+  survey_once<double>(*prepare_survey(*parts.mechanism, plan, {}), design, survey);
   if (survey.volume > 0) return;
-  using Kind = HeldCoordinate::Kind;
-  const int coordinate = sweep_of(info, plan).held;
-  const std::string& held = info.coordinates[static_cast<std::size_t>(coordinate)];
-  const std::string where =
-      plan.held.kind == Kind::value
-          ? "on the plane " + held + " = " + with_unit(plan.held.value, coordinate == 3 ? "rad" : "m")
-      : plan.held.kind == Kind::middle ? "on its middle plane"
-                                       : "at any " + held;
-  study.warnings.push_back("the workspace of " + what + " is empty: no pose " + where +
-                           (plan.box ? " in the box" : "") + " is feasible");
+  std::string where;
+  for (const int coordinate : sweep_of(info, plan).held) {
+    using Kind = HeldCoordinate::Kind;
+    const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
+    const HeldCoordinate held = how_held(plan, coordinate);
+    if (held.kind == Kind::value) where += " on the plane " + axis.name + " = " + with_unit(held.value, axis.unit);
+    if (held.kind == Kind::middle) where += " on its middle plane";
+    if (held.kind == Kind::integrated) where += " at any " + axis.name;
+  }
+  study.warnings.push_back("the workspace of " + what + " is empty: no pose" + where +
+                           (plan.box() ? " in the box" : "") + " is feasible");
 }
 
 }  // namespace

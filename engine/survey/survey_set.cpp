@@ -10,37 +10,30 @@ namespace {
 
 class SurveySet final : public Surveyor, public SlopeSurveyor {
  public:
-  struct Room final : Scratch {
-    std::vector<std::unique_ptr<Scratch>> members;
-    Survey<double> one;
-    Survey<Dual4> one_with_slopes;
-  };
-
   explicit SurveySet(std::vector<std::unique_ptr<const Surveyor>> members) : members_(std::move(members)) {}
-  std::unique_ptr<Scratch> make_scratch() const override {
-    auto room = std::make_unique<Room>();
-    for (const auto& member : members_) room->members.push_back(member->make_scratch());
-    return room;
-  }
   void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    Room& room = static_cast<Room&>(scratch);
-    add_up(survey, room.one, [&](std::size_t k) { members_[k]->survey(parameters, *room.members[k], room.one); });
+    add_up(scratch, survey, [&](std::size_t k, Survey<double>& one) { members_[k]->survey(parameters, scratch, one); });
   }
   void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
-    Room& room = static_cast<Room&>(scratch);
-    add_up(survey, room.one_with_slopes,
-           [&](std::size_t k) { members_[k]->slopes()->survey(parameters, *room.members[k], room.one_with_slopes); });
+    add_up(scratch, survey,
+           [&](std::size_t k, Survey<Dual4>& one) { members_[k]->slopes()->survey(parameters, scratch, one); });
   }
   const SlopeSurveyor* slopes() const override { return members_.front()->slopes() ? this : nullptr; }
   std::string why_no_slopes() const override { return members_.front()->why_no_slopes(); }
 
  private:
+  template <class S>
+  struct Room {
+    Survey<S> one;
+  };
+
   template <class S, class Find>
-  void add_up(Survey<S>& survey, Survey<S>& one, const Find& find) const {
+  void add_up(Scratch& scratch, Survey<S>& survey, const Find& find) const {
+    Survey<S>& one = scratch.get<Room<S>>().one;
     survey.clear();
     const double share = 1.0 / static_cast<double>(members_.size());
     for (std::size_t k = 0; k < members_.size(); ++k) {
-      find(k);
+      find(k, one);
       survey.volume += one.volume * share;
       survey.cells += one.cells;
       survey.feasible_cells += one.feasible_cells;
