@@ -14,12 +14,23 @@ AxisVector<double> axis_vector(std::span<const double> values) {
   return vector;
 }
 
-std::string units_of(const Axes& axes, const std::string& behind) {
+namespace {
+
+template <class UnitOf>
+std::string each_once(const Axes& axes, const UnitOf& unit_of) {
   std::vector<std::string> units;
   for (const AxisInfo& axis : axes)
-    if (std::ranges::find(units, axis.unit + behind) == units.end()) units.push_back(axis.unit + behind);
+    if (std::ranges::find(units, unit_of(axis)) == units.end()) units.push_back(unit_of(axis));
   return join(units);
 }
+
+}  // namespace
+
+std::string units_of(const Axes& axes, const std::string& behind) {
+  return each_once(axes, [&](const AxisInfo& axis) { return axis.unit + behind; });
+}
+
+std::string force_units_of(const Axes& joints) { return each_once(joints, force_unit); }
 
 std::string axes_text(const Axes& axes, std::span<const double> values) {
   std::vector<std::string> texts;

@@ -14,6 +14,7 @@ AxisVector<double> axis_vector(std::span<const double> values);
 inline std::string force_unit(const AxisInfo& joint) { return joint.turns() ? "N m" : "N"; }
 /// Each unit once, in the order of the axes, with `behind` after it: "m/s, rad/s".
 std::string units_of(const Axes& axes, const std::string& behind = "");
+std::string force_units_of(const Axes& joints);
 
 /// "x = 0.25 m, theta = 0.5 rad"
 std::string axes_text(const Axes& axes, std::span<const double> values);

@@ -33,8 +33,7 @@ Found find(const Target& target, const DynamicsArguments& arguments) {
   const MechanismInfo& info = target.info();
   const Mechanism& mechanism = *target.mechanism;
   const Dynamics* const equations = mechanism.dynamics();
-  if (!equations)
-    throw ConfigError({"", 0, "dynamics"}, "mechanism " + info.name + " has no masses, so no dynamics");
+  if (!equations) throw ConfigError({"", 0, "dynamics"}, "mechanism " + info.name + " has no masses, so no dynamics");
   if (arguments.reactions && !mechanism.reactions())
     throw ConfigError({"", 0, "--reactions"}, "mechanism " + info.name + " has no model of the forces in its joints");
   Found f;

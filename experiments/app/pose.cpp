@@ -44,7 +44,8 @@ Found find(const Target& target, const PoseArguments& arguments) {
   f.mode = known_mode(info, arguments);
   f.at.pose = axis_vector(parse_all_assignments(arguments.at, "--at", assignable_coordinates(info)));
   const auto rates = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(mechanism, "s"));
-  const auto changes = parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(mechanism, "s^2"));
+  const auto changes =
+      parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(mechanism, "s^2"));
   if (!mechanism.velocities() && !(arguments.velocity.empty() && arguments.acceleration.empty()))
     throw ConfigError({}, "mechanism " + info.name + " has no influence coefficients, so no speeds of joints");
   f.at.velocity = axis_vector(std::span(rates).first(f.at.pose.size()));  // behind them the chain's input

@@ -52,7 +52,7 @@ void print_estimate(const Study& study, int seeds, int threads) {
 /// A given voxel box that cuts the workspace makes it look smaller than it is.
 void warn_of_box(const Study& study) {
   const auto& parts = study.problem->parts();
-  if (parts.plan.method != Method::voxels || !parts.plan.box) return;
+  if (!parts.plan.voxels() || !parts.plan.box()) return;
   const auto report = study.problem->report(study.baseline ? *study.baseline : parts.parameters);
   if (report.survey.touches_box)
     std::cerr << "pkmopt: warning: feasible cells of the " << (study.baseline ? "baseline" : "nominal design")
