@@ -27,8 +27,8 @@ struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, Works
   int threads = 0;
 };
 
-/// Holds the coordinates that --held names at their values. Others that the study holds stay as they are where its sweep
-/// serves; where another does, the study's box and cells are of other axes.
+/// Holds the coordinates that --held names at their values. Others that the study holds stay as they are where its
+/// sweep serves; where another does, the study's box and cells are of other axes.
 void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::string& text) {
   const SourcePlace place{"", 0, "--held"};
   const auto values = parse_assignments({text}, place.key, assignable_coordinates(info));
@@ -54,9 +54,9 @@ void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::string& te
         given, [&](const auto& held) { return std::ranges::find(sweep.held, held.coordinate) != sweep.held.end(); });
   };
   if (std::ranges::none_of(info.sweeps, serves))
-    throw ConfigError(place, text,
-                      most > 1 ? "coordinates that one survey can hold, with their values"
-                               : "one coordinate with its value");
+    throw ConfigError(
+        place, text,
+        most > 1 ? "coordinates that one survey can hold, with their values" : "one coordinate with its value");
   if (!serves(sweep_of(info, plan))) {
     plan.held.clear();
     plan.method = ColumnOptions();
