@@ -227,6 +227,8 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
     map.axes.push_back(axis.name);
     map.units.push_back(axis.unit);
   }
+  map.axes.resize(3);  // an axis along which nothing is swept has no name
+  map.units.resize(3, "1");
   f.map = std::move(map);
   return f;
 }
