@@ -42,13 +42,6 @@ Influence<S> influence(const Geometry<S>& g, const Pose<S>& pose, const Joints<S
   return q;
 }
 
-/// J of (s1, s3, s4) over (x, z, beta length): y stands alone with the gain 1 and is left out.
-template <class S>
-Rows3<S> homogeneous_jacobian(const S& z, const Joints<S>& j, const S& length) {
-  const S zero(0.0), one(1.0);
-  return {{{one, z / j.n1, zero}, {one, z / j.n2, zero}, {one, j.N1 / j.n3, j.N2 / j.n3 / length}}};
-}
-
 /// Least of the measures of transmission but the constraint's: LTI.
 template <class S>
 S local_transmission_index(const Transmission<S>& t) {

@@ -25,6 +25,7 @@
 
 #include "engine/core/parameter.hpp"
 #include "engine/math/scalar.hpp"
+#include "engine/mechanisms/hybrid/limbs.hpp"
 #include "engine/model/pose.hpp"
 
 namespace pkm::hybrid {
@@ -90,15 +91,16 @@ Geometry<S> geometry(std::span<const S> p) {
 /// Signs of n1, n2, n3, +1 or -1.
 using WorkingMode = std::array<int, 3>;
 
+/// The drives that limbs A, B and C have.
+inline constexpr std::array<std::size_t, 3> kDriveOfLimb = {0, 2, 3};
+
 /// Relative roundoff within which a radicand counts as 0, a limb as stretched across its rail.
 inline constexpr double kRoundoff = 1e-12;
 
 /// The limbs at a pose. Masks: bit 0 is limb A, bit 1 B, bit 2 C. Of a limb out of reach n is 0 and s where it would
 /// be then: finite, of no meaning.
 template <class S>
-struct Joints {
-  S n1, n2, n3;            ///< components of the links along the rails [m]
-  S k, N1, N2;             ///< [m], [m], [m^2]
+struct Joints : Limbs<S> {
   std::array<S, 4> s;      ///< drives s1, s2, s3, s4 [m]
   unsigned unreached = 0;  ///< limbs out of reach
   unsigned serial = 0;     ///< limbs across their rail, n = 0: serially singular
@@ -108,7 +110,7 @@ struct Joints {
 template <class S>
 Joints<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& mode) {
   const auto [sin_b, cos_b] = sincos(pose.angle);
-  const S &x = pose.x, &z = pose.z;
+  const S& x = pose.x;
   Joints<S> j;
   const auto along_rail = [&](const S& square, const S& L, std::size_t limb) {
     const double tolerance = kRoundoff * value_of(L) * value_of(L);
@@ -117,12 +119,7 @@ Joints<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& 
     if (std::fabs(value_of(square)) <= tolerance) j.serial |= bit;
     return value_of(square) > tolerance ? S(sqrt(square) * static_cast<double>(mode[limb])) : S(0.0);
   };
-  j.k = g.e * cos_b - g.d;
-  j.N1 = z + g.e * sin_b;
-  j.N2 = g.e * (z * cos_b + g.d * sin_b);
-  j.n1 = along_rail(S((g.L1 - z) * (g.L1 + z)), g.L1, 0);
-  j.n2 = along_rail(S((g.L2 - z) * (g.L2 + z)), g.L2, 1);
-  j.n3 = along_rail(S(g.L3 * g.L3 - j.k * j.k - j.N1 * j.N1), g.L3, 2);
+  static_cast<Limbs<S>&>(j) = limbs(g, pose.z, sin_b, cos_b, along_rail);
   j.s = {x - g.a + g.b1 - j.n1, pose.y, x + g.a - g.b2 - j.n2, x - g.c - j.n3};
   return j;
 }

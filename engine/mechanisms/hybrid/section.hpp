@@ -36,13 +36,13 @@ struct Frame {
   Geometry<S> g;
   Limits<S> l;
   WorkingMode signs;
-  double side;              ///< the sign of d - e cos b on the side of beta = 0
+  int branch;               ///< required sign of N2, +1 or -1
   std::array<S, 3> lo, hi;  ///< s_min and s_max of limbs A, B, C with their offsets [m]
   S sine_s, cot_c;          ///< sqrt(1 - tau_s^2), sqrt(1 - tau_c^2) / tau_c
   SinCosOf<S> lam, mu;      ///< of the greatest angles
   S tan_phi, cot_phi;
-  S z_low, z_high;  ///< what limits on z alone leave [m]
-  bool empty;       ///< which is nothing, or the branch is N2 < 0
+  S z_low, z_high;    ///< what limits on z alone leave [m]
+  bool empty = true;  ///< which is nothing, or the branch is N2 < 0
 };
 
 /// Fills z_low and z_high: the box of section 8.1 of the document, shrunk to what parallel_xz and gap leave.
@@ -86,32 +86,24 @@ void find_heights(Frame<S>& f) {
   }
 }
 
-/// @param branch  required sign of N2, +1 or -1
 template <class S>
 Frame<S> frame(const Geometry<S>& g, const Limits<S>& l, const WorkingMode& signs, int branch) {
   const std::array<S, 3> offset = {g.a - g.b1, g.b2 - g.a, g.c};
-  constexpr std::size_t kDrive[3] = {0, 2, 3};
-  Frame<S> f{g,
-             l,
-             signs,
-             value_of(g.d) < value_of(g.e) ? -1.0 : 1.0,
-             {},
-             {},
-             S(0.0),
-             S(0.0),
-             sincos(l.lam_max),
-             sincos(l.mu_max),
-             l.phi.sin / l.phi.cos,
-             l.phi.cos / l.phi.sin,
-             S(0.0),
-             S(0.0),
-             true};
+  const auto cosine_of = [](const S& sine) { return root_or_zero(S((1.0 - sine) * (1.0 + sine))); };
+  Frame<S> f{.g = g,
+             .l = l,
+             .signs = signs,
+             .branch = branch,
+             .sine_s = cosine_of(l.tau_s),
+             .cot_c = cosine_of(l.tau_c) / l.tau_c,
+             .lam = sincos(l.lam_max),
+             .mu = sincos(l.mu_max),
+             .tan_phi = l.phi.sin / l.phi.cos,
+             .cot_phi = l.phi.cos / l.phi.sin};
   for (std::size_t i = 0; i < 3; ++i) {
-    f.lo[i] = l.s_min[kDrive[i]] + offset[i];
-    f.hi[i] = l.s_max[kDrive[i]] + offset[i];
+    f.lo[i] = l.s_min[kDriveOfLimb[i]] + offset[i];
+    f.hi[i] = l.s_max[kDriveOfLimb[i]] + offset[i];
   }
-  f.sine_s = root_or_zero(S((1.0 - l.tau_s) * (1.0 + l.tau_s)));
-  f.cot_c = root_or_zero(S((1.0 - l.tau_c) * (1.0 + l.tau_c))) / l.tau_c;
   if (branch > 0) find_heights(f);
   return f;
 }
@@ -152,9 +144,9 @@ Section<S> section(const Frame<S>& f, const S& beta) {
   const Limits<S>& l = f.l;
   const S none(-1.0), all(1e4), zero(0.0), one(1.0);  // z below which, and above which, no mechanism reaches
   const auto [sin_b, cos_b] = sincos(beta);
-  const S lift = g.e * sin_b;                        // N1 = z + lift
-  const S width = (g.d - g.e * cos_b) * f.side;      // D; < 0 beyond the constraint singularity
-  const S reach2 = (g.L3 - width) * (g.L3 + width);  // n3^2 + N1^2
+  const S lift = g.e * sin_b;                          // N1 = z + lift
+  const S width = (g.d - g.e * cos_b) * home_side(g);  // D; < 0 beyond the constraint singularity
+  const S reach2 = (g.L3 - width) * (g.L3 + width);    // n3^2 + N1^2
   const S Q0 = g.fp * sin_b - g.h2 * cos_b - g.h1, w_y = g.fp * cos_b + g.h2 * sin_b - g.f;
   const S P0 = g.f * sin_b - g.h1 * cos_b - g.h2, v_0 = g.fp - g.f * cos_b - g.h1 * sin_b;  // w''_y = v_0 + z sin b
   const S& t = f.tan_phi;

@@ -11,10 +11,9 @@
 namespace pkm::hybrid {
 namespace {
 
-/// The clearance that a plan asks for.
-std::optional<double> clearance_of(const SurveyPlan& plan) {
-  const std::optional<double>& given = plan.limits.given[kClearanceMin];
-  return given.value_or(kNoClearance) > kNoClearance ? given : std::nullopt;
+/// Whether a plan asks for a clearance.
+bool with_links(const SurveyPlan& plan) {
+  return plan.limits.given[kClearanceMin].value_or(kNoClearance) > kNoClearance;
 }
 
 /// What the carriage's stroke makes of a volume of (x, z, beta): its length where y is integrated over [m], else 1, or
@@ -172,7 +171,7 @@ class VoxelSurveyor final : public Surveyor {
     thread_local VoxelHeights heights;
     const VoxelColumns columns(d, grid, heights);
     const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
-    const bool counts = !d.clearance && !demand_.conditioning;
+    const bool counts = !d.with_links && !demand_.conditioning;
     share_samples(
         static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
         [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t) {
@@ -215,8 +214,7 @@ class VoxelSurveyor final : public Surveyor {
   static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
 
   VoxelDesign design_of(std::span<const double> parameters) const {
-    return {frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_), branch_,
-            clearance_of(plan_)};
+    return {frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_), with_links(plan_)};
   }
 
   WorkingMode signs_;
@@ -230,7 +228,7 @@ class VoxelSurveyor final : public Surveyor {
 std::unique_ptr<const Surveyor> make_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
                                               const Demand& demand) {
   if (plan.method == Method::voxels) return std::make_unique<VoxelSurveyor>(signs, branch, plan, demand);
-  if (clearance_of(plan))
+  if (with_links(plan))
     throw std::invalid_argument(
         "mechanism 2t1r-p-hybrid has no column surveys under a clearance (clearance_min), because links that meet end "
         "columns where no formula says; take voxels, or require the clearance of a task-workspace");

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "engine/mechanisms/hybrid/cells.hpp"
@@ -15,11 +14,10 @@ namespace pkm::hybrid {
 /// The design whose cells are counted.
 struct VoxelDesign {
   Frame<double> frame;
-  int branch = 1;                   ///< required sign of N2
-  std::optional<double> clearance;  ///< least distance of the links as capsules [m]; none: they are left out
+  bool with_links = false;  ///< they keep their clearance as capsules; else they are left out
 };
 
-/// Whether a pose is feasible: every margin of section 7 of the document, stroke 2 apart, and the clearance asked for.
+/// Whether a pose is feasible, the carriage within its stroke.
 bool feasible(const VoxelDesign& design, double x, double z, double beta);
 
 /// A box that contains every feasible pose, as x, z, beta; where there is none, a box of some size.
@@ -50,7 +48,7 @@ class VoxelColumns {
         const auto from = static_cast<std::int64_t>(first), to = static_cast<std::int64_t>(end),
                    height = static_cast<std::int64_t>(j);
         if (!(from < to)) continue;
-        if (design_.clearance)
+        if (design_.with_links)
           visit_clear(from, to, height, k, visit);
         else
           visit(from, to, height);
