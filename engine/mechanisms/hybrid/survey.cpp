@@ -83,27 +83,43 @@ class Conditioning {
   SinCosOf<double> sincos_{0, 1};
 };
 
-class ColumnSurveyor final : public Surveyor {
+/// What surveys of either method know.
+class PlannedSurveyor : public Surveyor {
  public:
-  ColumnSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
-      : signs_(signs),
-        branch_(branch),
-        plan_(plan),
-        demand_(demand),
-        fixed_(plan.nodes[0] > 0),
-        z_rule_(gauss_legendre(fixed_ ? plan.nodes[0] : kSampleNodes)),
-        beta_rule_(gauss_legendre(fixed_ ? plan.nodes[1] : kSampleNodes)) {}
+  PlannedSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
+      : signs_(signs), branch_(branch), plan_(plan), demand_(demand) {}
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
+ protected:
+  template <class S>
+  Frame<S> frame_of(std::span<const S> parameters) const {
+    return frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_);
+  }
+
+  WorkingMode signs_;
+  int branch_;
+  SurveyPlan plan_;
+  Demand demand_;
+};
+
+class ColumnSurveyor final : public PlannedSurveyor {
+ public:
+  using PlannedSurveyor::PlannedSurveyor;
+
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    thread_local ColumnScratch<double> scratch;
+    run(parameters, scratch, survey);
+  }
+  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override {
+    thread_local ColumnScratch<Dual4> scratch;
+    run(parameters, scratch, survey);
+  }
   std::string no_derivatives() const override { return {}; }
 
  private:
   static constexpr int kSampleNodes = 8;  // per strip of z and piece of beta
 
   template <class S>
-  void run(std::span<const S> parameters, Survey<S>& survey) const {
-    thread_local ColumnScratch<S> scratch;
+  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
     survey.clear();
     const Frame<S> f = frame_of(parameters);
     const S stroke = carriage(f.l, plan_.held);
@@ -116,8 +132,7 @@ class ColumnSurveyor final : public Surveyor {
       survey.columns = volume.evaluations;
       if (!demand_.conditioning) return;
     }
-    thread_local PoseList poses;
-    Conditioning<S> conditioning(f, demand_, poses, survey);
+    Conditioning<S> conditioning(f, demand_, scratch.poses, survey);
     for (const Piece<S>& piece : scratch.pieces)
       for (std::size_t i = 0; i < beta_rule_.node.size(); ++i) {
         const MappedNode<S> at = map_node(piece, beta_rule_.node[i]);
@@ -133,10 +148,6 @@ class ColumnSurveyor final : public Surveyor {
     conditioning.finish();
   }
 
-  template <class S>
-  Frame<S> frame_of(std::span<const S> parameters) const {
-    return frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_);
-  }
   /// The design as constants of another scalar.
   template <class To, class From>
   Frame<To> still(std::span<const From> parameters) const {
@@ -145,45 +156,64 @@ class ColumnSurveyor final : public Surveyor {
     return frame_of(std::span<const To>(constants));
   }
 
-  WorkingMode signs_;
-  int branch_;
-  SurveyPlan plan_;
-  Demand demand_;
-  bool fixed_;  ///< numbers of nodes are given
-  GaussRule z_rule_, beta_rule_;
+  bool fixed_ = plan_.nodes[0] > 0;  ///< numbers of nodes are given
+  GaussRule z_rule_ = gauss_legendre(fixed_ ? plan_.nodes[0] : kSampleNodes),
+            beta_rule_ = gauss_legendre(fixed_ ? plan_.nodes[1] : kSampleNodes);
 };
 
-class VoxelSurveyor final : public Surveyor {
+class VoxelSurveyor final : public PlannedSurveyor {
  public:
-  VoxelSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
-      : signs_(signs), branch_(branch), plan_(plan), demand_(demand) {}
+  using PlannedSurveyor::PlannedSurveyor;
 
   std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
 
   void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    thread_local VoxelScratch scratch;
+    run(parameters, scratch, survey);
+  }
+
+  VoxelMap map(std::span<const double> parameters) const {
+    const VoxelDesign d = design_of(parameters);
+    const VoxelGrid grid = grid_of(d);
+    VoxelMap m = grid.map();
+    if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
+    VoxelHeights heights;
+    CellRuns runs;
+    const VoxelColumns columns(d, grid, heights);
+    for (std::int64_t k = 0; k < grid.cells[2]; ++k)
+      columns.visit(k, runs, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+        for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
+      });
+    return m;
+  }
+
+ private:
+  static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
+
+  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
     survey.clear();
     const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
+    const VoxelGrid grid = grid_of(d);
     const double stroke = carriage(d.frame.l, plan_.held);
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
     if (!(stroke > 0)) return;
-    thread_local VoxelHeights heights;
-    const VoxelColumns columns(d, grid, heights);
+    if (scratch.workers.size() < workers()) scratch.workers.resize(workers());
+    const VoxelColumns columns(d, grid, scratch.heights);
     const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
     const bool counts = !d.with_links && !demand_.conditioning;
     share_samples(
         static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
-        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t) {
-          thread_local PoseList poses;
+        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t worker) {
+          auto& [poses, runs] = scratch.workers[worker];
           Conditioning<double> conditioning(d.frame, demand_, poses, part);
           const auto first = static_cast<std::int64_t>(piece) * kBetas;
           for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) {
             if (counts) {
-              part.feasible_cells += columns.count(k, part.touches_box);
+              part.feasible_cells += columns.count(k, runs, part.touches_box);
               continue;
             }
-            columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+            columns.visit(k, runs, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
               part.feasible_cells += end - i;
               part.touches_box =
                   part.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
@@ -196,31 +226,8 @@ class VoxelSurveyor final : public Surveyor {
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
-  VoxelMap map(std::span<const double> parameters) const {
-    const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
-    VoxelMap m = grid.map();
-    if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
-    VoxelHeights heights;
-    const VoxelColumns columns(d, grid, heights);
-    for (std::int64_t k = 0; k < grid.cells[2]; ++k)
-      columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
-        for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
-      });
-    return m;
-  }
-
- private:
-  static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
-
-  VoxelDesign design_of(std::span<const double> parameters) const {
-    return {frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_), with_links(plan_)};
-  }
-
-  WorkingMode signs_;
-  int branch_;
-  SurveyPlan plan_;
-  Demand demand_;
+  VoxelDesign design_of(std::span<const double> parameters) const { return {frame_of(parameters), with_links(plan_)}; }
+  VoxelGrid grid_of(const VoxelDesign& d) const { return {plan_.cells, plan_.box ? *plan_.box : default_box(d)}; }
 };
 
 }  // namespace

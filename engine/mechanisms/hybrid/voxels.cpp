@@ -59,11 +59,10 @@ VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, Vox
   }
 }
 
-VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k) const {
-  thread_local CellRuns runs;
+VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) const {
   const Frame<double>& f = design_.frame;
   const double beta = grid_.centre(2, k);
-  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {runs, 0, 0, {0, false}};
+  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {};
   for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights_.z.size());
   const Section<double> s = section(f, beta);
   const double low = *std::ranges::max_element(s.lower), high = *std::ranges::min_element(s.upper);
@@ -92,19 +91,19 @@ VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k) const {
                               heights_.right.data(),
                               first_z,
                               end_z};
-  return {runs, first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
+  return {first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
 }
 
-std::int64_t VoxelColumns::count(std::int64_t k, bool& touches) const {
-  const auto& [runs, first_z, end_z, tally] = find_runs(k);
-  const auto some_at = [&, &r = runs, first = first_z, last = end_z](std::size_t j) {
-    return first <= j && j < last && r.hole[j] - r.first[j] + (r.end[j] - r.after[j]) > 0;
+std::int64_t VoxelColumns::count(std::int64_t k, CellRuns& runs, bool& touches) const {
+  const Columns at = find_runs(k, runs);
+  const auto some_at = [&](std::size_t j) {
+    return at.first_z <= j && j < at.end_z && runs.hole[j] - runs.first[j] + (runs.end[j] - runs.after[j]) > 0;
   };
   const bool last_beta = k == 0 || k == grid_.cells[2] - 1;
-  if (tally.cells > 0)
+  if (at.tally.cells > 0)
     touches =
-        touches || tally.touches || last_beta || some_at(0) || some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
-  return static_cast<std::int64_t>(tally.cells);
+        touches || at.tally.touches || last_beta || some_at(0) || some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
+  return static_cast<std::int64_t>(at.tally.cells);
 }
 
 bool VoxelColumns::clear(double x, double z, double beta, bool along_x) const {
