@@ -38,8 +38,9 @@ struct Shaft {
   S cos_phi1, cos_phi2;
 };
 
-template <class S>
-Shaft<S> shaft(const Geometry<S>& g, const Pose<S>& pose) {
+/// @param g  of the same scalar, or of numbers
+template <class G, class S>
+Shaft<S> shaft(const Geometry<G>& g, const Pose<S>& pose) {
   const auto [sin_b, cos_b] = sincos(pose.angle);
   const S &x = pose.x, &z = pose.z, zero(0.0);
   Shaft<S> s;
@@ -59,9 +60,9 @@ Shaft<S> shaft(const Geometry<S>& g, const Pose<S>& pose) {
 /// The matrix that takes (sin t, cos t) to (S, C), its sign such that its determinant's root is positive.
 template <class S>
 struct Forks {
-  S ss, sc, cs, cc;  ///< rows S, C [m]
-  S PQ;              ///< determinant [m^2]
-  bool turns;        ///< there is a gamma
+  S ss, sc, cs, cc;    ///< rows S, C [m]
+  S PQ;                ///< determinant [m^2]
+  bool turns = false;  ///< there is a gamma
 };
 
 /// @param zeta  phase of the forks at the two ends of the telescopic shaft [rad]
@@ -71,23 +72,23 @@ Forks<S> forks(const Shaft<S>& s, const S& beta, double zeta) {
   const S PQ = s.P * s.Q;
   const bool bent = !(value_of(PQ) > 0);
   const bool mirrored = value_of(s.Q) < 0;
-  if (bent || (mirrored && zeta != 0)) return {S(0.0), S(0.0), S(0.0), S(0.0), PQ, false};
+  if (bent || (mirrored && zeta != 0)) return {.PQ = PQ};
   const S &x = s.w[0], &wy = s.w[1], &wz = s.w[2];
   const double sign = mirrored ? -1 : 1;
   const auto [sin, cos] = sincos(zeta);
   const double by_sin = sign * sin, by_cos = sign * cos;
   const S M = wy * cos_b + wz * sin_b;
-  return {s.P * by_cos + x * M / s.length * by_sin,
-          s.T * -by_cos + (s.length * cos_b - wy * M / s.length) * by_sin,
-          (wy * wy + wz * wz) / s.length * -by_sin,
-          s.Q * by_cos - x * wy / s.length * by_sin,
-          PQ,
-          true};
+  return {.ss = s.P * by_cos + x * M / s.length * by_sin,
+          .sc = s.T * -by_cos + (s.length * cos_b - wy * M / s.length) * by_sin,
+          .cs = (wy * wy + wz * wz) / s.length * -by_sin,
+          .cc = s.Q * by_cos - x * wy / s.length * by_sin,
+          .PQ = PQ,
+          .turns = true};
 }
 
 /// Output angle [rad] for an input angle; only where the forks turn.
-template <class S>
-S output_angle(const Geometry<S>& g, const Forks<S>& k, const S& theta) {
+template <class G, class S>
+S output_angle(const Geometry<G>& g, const Forks<S>& k, const S& theta) {
   const S t = theta + g.theta0;
   const auto [sin_t, cos_t] = sincos(t);
   return theta + wrapped(S(atan2(S(k.ss * sin_t + k.sc * cos_t), S(k.cs * sin_t + k.cc * cos_t)) - t));

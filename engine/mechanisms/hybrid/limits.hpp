@@ -121,7 +121,7 @@ double home_side(const Geometry<S>& g) {
   return value_of(g.d) < value_of(g.e) ? -1 : 1;
 }
 
-/// Singularity measures of section 6, in [0, 1] (t_beta and sin_lambda signed).
+/// Singularity measures, in [0, 1] (t_beta and sin_lambda signed).
 template <class S>
 struct Transmission {
   std::array<S, 3> t;  ///< |n_i| / L_i, cosines of the links' pressure angles
@@ -132,11 +132,11 @@ struct Transmission {
 template <class S>
 Transmission<S> transmission(const Geometry<S>& g, const S& z, const Joints<S>& j) {
   const S width = root_or_zero(S(j.k * j.k + j.N1 * j.N1));  // of limb C across its rail
-  return {{magnitude(j.n1) / g.L1, magnitude(j.n2) / g.L2, magnitude(j.n3) / g.L3},
-          magnitude(S(z * (j.n1 - j.n2))) / (g.L1 * g.L2),
-          j.N2 / (g.e * g.L3),
-          value_of(width) > 0 ? S(-j.k / width) : S(0.0),
-          atan2(S(-j.k), j.N1)};
+  return {.t = {magnitude(j.n1) / g.L1, magnitude(j.n2) / g.L2, magnitude(j.n3) / g.L3},
+          .t_xz = magnitude(S(z * (j.n1 - j.n2))) / (g.L1 * g.L2),
+          .t_beta = j.N2 / (g.e * g.L3),
+          .sin_lambda = value_of(width) > 0 ? S(-j.k / width) : S(0.0),
+          .lambda = atan2(S(-j.k), j.N1)};
 }
 
 /// Calls visit(index, margin) for the margins of a pose, cheap ones first, until it answers false. Reports, pose tests,

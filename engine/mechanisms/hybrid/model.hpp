@@ -83,9 +83,21 @@ struct Geometry {
 
 template <class S>
 Geometry<S> geometry(std::span<const S> p) {
-  return {p[kA],  p[kB1], p[kB2], p[kC],      p[kD],
-          p[kE],  p[kL1], p[kL2], p[kL3],     p[kF],
-          p[kFp], p[kH1], p[kH2], p[kTheta0], {p[kRadiusA], p[kRadiusB], p[kRadiusC], p[kRadiusF], p[kRadiusP]}};
+  return {.a = p[kA],
+          .b1 = p[kB1],
+          .b2 = p[kB2],
+          .c = p[kC],
+          .d = p[kD],
+          .e = p[kE],
+          .L1 = p[kL1],
+          .L2 = p[kL2],
+          .L3 = p[kL3],
+          .f = p[kF],
+          .fp = p[kFp],
+          .h1 = p[kH1],
+          .h2 = p[kH2],
+          .theta0 = p[kTheta0],
+          .radius = {p[kRadiusA], p[kRadiusB], p[kRadiusC], p[kRadiusF], p[kRadiusP]}};
 }
 
 /// Signs of n1, n2, n3, +1 or -1.

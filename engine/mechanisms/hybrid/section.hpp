@@ -25,6 +25,8 @@
 // Source: hybrid-robot document, sections 7 and 8, whose columns in z and in x are these.
 #pragma once
 
+#include <cstdint>
+
 #include "engine/math/dual.hpp"
 #include "engine/mechanisms/hybrid/limits.hpp"
 
@@ -45,7 +47,7 @@ struct Frame {
   bool empty = true;  ///< which is nothing, or the branch is N2 < 0
 };
 
-/// Fills z_low and z_high: the box of section 8.1 of the document, shrunk to what parallel_xz and gap leave.
+/// Fills z_low and z_high: the heights of all poses, shrunk to what parallel_xz and gap leave.
 template <class S>
 void find_heights(Frame<S>& f) {
   const Geometry<S>& g = f.g;
@@ -122,6 +124,17 @@ struct Curve {
   S slope(const S& z, const S& root) const { return (a_z * (b + b_z * z) + b_z * (a + a_z * z)) / (root * 2.0); }
 };
 
+/// A column of x lies right of its left end, and left of its right one.
+enum Side : std::uint8_t { kLeft, kRight };
+inline constexpr std::size_t kSides = 2;
+
+/// An end of x at all heights: a curve of a section on one side.
+struct Edge {
+  std::uint8_t curve = 0;
+  Side side = kLeft;
+  bool operator==(const Edge&) const = default;
+};
+
 inline constexpr std::size_t kLowerEnds = 9, kUpperEnds = 9;
 /// Those at which a curve begins or ends: P at either, L at an upper, Q at a lower one.
 inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
@@ -129,13 +142,16 @@ inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
 template <class S>
 struct Section {
   std::array<Curve<S>, kCurves> curve;
-  std::array<double, kCurves> sign_lo, sign_hi;  ///< of the root in the ends of x
-  std::array<S, kCurves> lo, hi;                 ///< constants in them [m]
-  std::array<S, kLowerEnds> lower;               ///< ends of z [m]; those that do not apply cut nothing
+  std::array<std::array<double, kCurves>, kSides> signs;  ///< of the root in the ends of x
+  std::array<std::array<S, kCurves>, kSides> constants;   ///< in them [m]
+  std::array<S, kLowerEnds> lower;                        ///< ends of z [m]; those that do not apply cut nothing
   std::array<S, kUpperEnds> upper;
   S hole_end;  ///< up to this z there is a hole of x
   /// Of Q, P, L, H: their squares are ((m + m_z z) / cos(phi_max))^2 less what they have in common.
   std::array<double, 4> m, m_z;
+
+  double sign(const Edge& e) const { return signs[e.side][e.curve]; }
+  const S& constant(const Edge& e) const { return constants[e.side][e.curve]; }
 };
 
 template <class S>
@@ -193,10 +209,10 @@ Section<S> section(const Frame<S>& f, const S& beta) {
              circle(root_or_zero(hole2), S(-Q0))};
   for (std::size_t i = 0; i < kCurves; ++i) {
     const bool limb = i < 3;
-    s.lo[i] = limb ? f.lo[i] : zero;
-    s.hi[i] = limb ? f.hi[i] : zero;
-    s.sign_lo[i] = limb ? f.signs[i] : -1;
-    s.sign_hi[i] = limb ? f.signs[i] : 1;
+    s.constants[kLeft][i] = limb ? f.lo[i] : zero;
+    s.constants[kRight][i] = limb ? f.hi[i] : zero;
+    s.signs[kLeft][i] = limb ? f.signs[i] : -1;
+    s.signs[kRight][i] = limb ? f.signs[i] : 1;
   }
   s.m = {value_of(Q0), value_of(P0), value_of(l.lw_max * l.phi.cos), value_of(l.lw_min * l.phi.cos)};
   s.m_z = {1, value_of(cos_b), 0, 0};
@@ -206,12 +222,11 @@ Section<S> section(const Frame<S>& f, const S& beta) {
 /// The values of a section.
 template <class S>
 Section<double> values(const Section<S>& s) {
-  Section<double> v{{}, s.sign_lo, s.sign_hi, {}, {}, {}, {}, value_of(s.hole_end), s.m, s.m_z};
+  Section<double> v{.signs = s.signs, .hole_end = value_of(s.hole_end), .m = s.m, .m_z = s.m_z};
   for (std::size_t i = 0; i < kCurves; ++i) {
     const Curve<S>& c = s.curve[i];
     v.curve[i] = {value_of(c.a), value_of(c.a_z), value_of(c.b), value_of(c.b_z)};
-    v.lo[i] = value_of(s.lo[i]);
-    v.hi[i] = value_of(s.hi[i]);
+    for (const Side side : {kLeft, kRight}) v.constants[side][i] = value_of(s.constants[side][i]);
   }
   for (std::size_t i = 0; i < kLowerEnds; ++i) v.lower[i] = value_of(s.lower[i]);
   for (std::size_t i = 0; i < kUpperEnds; ++i) v.upper[i] = value_of(s.upper[i]);

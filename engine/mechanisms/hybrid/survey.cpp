@@ -63,9 +63,14 @@ class Conditioning {
       for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine}) list->resize(whole);
       survey_.conditioning.resize(before + whole);
       const Geometry<double>& g = frame_.g;
-      const ConditioningDesign design{
-          g.L1,      g.L2,   g.L3, g.d, g.e, {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
-          kRoundoff, length_};
+      const ConditioningDesign design{.L1 = g.L1,
+                                      .L2 = g.L2,
+                                      .L3 = g.L3,
+                                      .d = g.d,
+                                      .e = g.e,
+                                      .signs = {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
+                                      .roundoff = kRoundoff,
+                                      .length = length_};
       with_instruction_set([&]<InstructionSet set>() {
         inverse_conditions<set>(design, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), whole,
                                 survey_.conditioning.data() + before);

@@ -73,24 +73,25 @@ VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) co
     const Curve<double>& c = s.curve[index];
     return EndOfX{c.a, c.a_z, c.b, c.b_z};
   };
-  const ColumnsAtBeta columns{end_of_x(kCurveC),
-                              end_of_x(kCurveQ),
-                              end_of_x(kCurveP),
-                              end_of_x(kCurveL),
-                              end_of_x(kCurveH),
-                              s.sign_hi[kCurveC],
-                              s.lo[kCurveC],
-                              s.hi[kCurveC],
-                              high,
-                              s.hole_end,
-                              grid_.lower[0],
-                              grid_.step[0],
-                              static_cast<double>(grid_.cells[0]),
-                              heights_.z.data(),
-                              heights_.left.data(),
-                              heights_.right.data(),
-                              first_z,
-                              end_z};
+  const Edge left_C{kCurveC, kLeft}, right_C{kCurveC, kRight};
+  const ColumnsAtBeta columns{.C = end_of_x(kCurveC),
+                              .Q = end_of_x(kCurveQ),
+                              .P = end_of_x(kCurveP),
+                              .L = end_of_x(kCurveL),
+                              .H = end_of_x(kCurveH),
+                              .sign = s.sign(right_C),
+                              .lo_C = s.constant(left_C),
+                              .hi_C = s.constant(right_C),
+                              .z_high = high,
+                              .hole_end = s.hole_end,
+                              .x_lower = grid_.lower[0],
+                              .x_step = grid_.step[0],
+                              .cells = static_cast<double>(grid_.cells[0]),
+                              .z = heights_.z.data(),
+                              .left = heights_.left.data(),
+                              .right = heights_.right.data(),
+                              .first_z = first_z,
+                              .end_z = end_z};
   return {first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
 }
 

@@ -72,8 +72,8 @@ ColumnOfX column_at(const Frame<double>& f, double z, double beta) {
   if (z < *std::ranges::max_element(s.lower) || z > *std::ranges::min_element(s.upper)) return column;
   column = {-1e9, 1e9, z < s.hole_end ? s.curve[kCurveH].root(z) : 0};
   for (std::uint8_t k = 0; k < kCurveH; ++k) {
-    column.lower = std::fmax(column.lower, edge_at(s, {k, 0}, z));
-    column.upper = std::fmin(column.upper, edge_at(s, {k, 1}, z));
+    column.lower = std::fmax(column.lower, edge_at(s, {k, kLeft}, z));
+    column.upper = std::fmin(column.upper, edge_at(s, {k, kRight}, z));
   }
   return column;
 }
