@@ -1,25 +1,4 @@
-// Hybrid robot: the auxiliary R-U-P-U-R chain that turns the tool.
-//
-// The input shaft stands on the carriage along Z', the output shaft on the platform along Z'' = o; between their
-// universal joints F1 = (0, f, h1) and F3 = (x, f' cos b + h2 sin b, z + f' sin b - h2 cos b) runs a telescopic shaft
-// along w. The two joints are bent by phi1 and phi2:
-//
-//   w = F3 - F1,   Q = w.Z' = |w| cos phi1,   P = w.o = |w| cos phi2,   T = x sin b
-//
-// The input fork arm is a1 = (-sin t, cos t, 0) with t = theta + theta0. With u = w/|w| the shaft's cross axes are b1 =
-// u x a1 and a2 = cos zeta b1 + sin zeta (u x b1), out of phase by zeta, and the output fork arm is b2 = a2 x o. Times
-// |w|, its components across and along Y'' are linear in (sin t, cos t):
-//
-//   [ S ]   [  P cos zeta + (x M / |w|) sin zeta      -T cos zeta + (|w| cos b - w_y M / |w|) sin zeta ] [ sin t ]
-//   [ C ] = [ -(w_y^2 + w_z^2) / |w| sin zeta          Q cos zeta - (x w_y / |w|) sin zeta             ] [ cos t ]
-//
-// M = w_y cos b + w_z sin b. Its determinant is P Q for every zeta, so gamma = theta + wrap(atan2(S, C) - t) is
-// continuous in theta and gains 2 pi with it, and d gamma/d theta = P Q / (S^2 + C^2). Where P and Q are < 0 (mirrored
-// assembly, known for zeta = 0 only) the matrix changes its sign; where P Q <= 0 a joint is bent by a right angle or
-// more: no gamma.
-//
-// Source: hybrid-robot document, section 5, with the phase worked into its S and C; relation (27) of the paper is the
-// special case zeta = 0, T = 0.
+// Hybrid robot: the auxiliary R-U-P-U-R chain that turns the tool. Equations: README.md.
 #pragma once
 
 #include "engine/mechanisms/hybrid/model.hpp"

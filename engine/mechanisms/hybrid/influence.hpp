@@ -1,9 +1,6 @@
 // Hybrid robot: first- and second-order influence coefficients, and the indices of quality made of them.
 //
-//   Jx V = Jq q',   det Jx = z (n1 - n2) N2,   det Jq = n1 n2 n3
-//
-// Their form is the same in every working mode, which is in the signs of n1, n2, n3. All of them are infinite where
-// one of these is 0. Source: hybrid-robot document, sections 4 and 9.
+// All of them are infinite where n1, n2, n3 is 0. Equations: README.md.
 #pragma once
 
 #include "engine/mechanisms/hybrid/limits.hpp"

@@ -2,14 +2,7 @@
 //
 // What bounds them are parameters of the design: strokes, ranges of the joints, what is kept from singularities. A
 // study can set tau_s, tau_p and tau_c as limits, too, which then hold instead of the design's own; and a clearance
-// of the links other than 0.
-//
-// With lambda = atan2(d - e cos b, z + e sin b), the inclination of the plane of limb C about X,
-//
-//   t_xz = |z (n1 - n2)| / (L1 L2)   sine of the angle between links A and B
-//   N2 / (e L3)                      cosine of the angle between link C and the velocity of C' in a rotation
-//
-// Source: hybrid-robot document, sections 6 and 7.
+// of the links other than 0. Measures of singularity: README.md.
 #pragma once
 
 #include <optional>

@@ -1,20 +1,6 @@
 // Four-degree-of-freedom hybrid robot with an auxiliary rotation: geometry and inverse kinematics of one pose.
 //
-// Source: "Kinematics Analysis and Dynamic Simulation of a Novel Mixed-connection Manipulator", with its errata. A
-// 2T1R parallel stage (two P-R-R-R limbs A and B, one P-U-U limb C) stands on a carriage E that runs along Y; a
-// telescopic shaft between two universal joints turns a tool on its platform (chain.hpp).
-//
-// Frame O' on the carriage: X' along the rails of A, B and C, the first two on the line y' = z' = 0, that of C on y' =
-// d, z' = 0; Z' normal to the base. Pose (x, y, z, beta): the platform's point O'' is at (x, 0, z), the carriage at y,
-// and the platform turned by beta about X'. With b = beta
-//
-//   A'' = (-b1 + s1, 0, 0)   A' = (x - a, 0, z)     n1 = x - a + b1 - s1     n1^2 + z^2 = L1^2
-//   B'' = (b2 + s3, 0, 0)    B' = (x + a, 0, z)     n2 = x + a - b2 - s3     n2^2 + z^2 = L2^2
-//   C'' = (c + s4, d, 0)     C' = (x, e cos b, z + e sin b)
-//   n3  = x - c - s4,  k = e cos b - d,  N1 = z + e sin b                    n3^2 + k^2 + N1^2 = L3^2
-//   N2  = e (z cos b + d sin b)                                              y = s2
-//
-// The drives are ordered A, E, B, C.
+// A pose is (x, y, z, beta), the drives are ordered A, E, B, C. Frames, names and equations: README.md.
 #pragma once
 
 #include <array>

@@ -1,28 +1,8 @@
-// Hybrid robot: the feasible x-z section of one working mode at given beta.
+// Hybrid robot: the feasible x-z section of one working mode at given beta: the margins of limits.hpp, solved for z and
+// x.
 //
-// With beta held, whether a pose is feasible depends on x through strokes 1, 3, 4 and the auxiliary chain alone. All
-// other limits cut out one interval of z each, so z runs over one interval [max of lower ends, min of upper ends]:
-//
-//   z only (Frame)     z_clear, serial1, serial2, passiveA, passiveB, parallel_xz, gap
-//   limb C             k^2 + N1^2 between (L3 cos psiC_max)^2 and L3^2 (1 - tau_s^2),  N1 >= z_clear,
-//                      z cos b + d sin b >= tau_p L3
-//   its plane          D = |d - e cos b|:  D cot(lam_max) <= N1 <= D sqrt(1 - tau_c^2)/tau_c,
-//                      z sin(mu_max +- b) >= +-((d cos b - e) cos mu_max) - d sin b sin mu_max
-//   auxiliary chain    |w_y| <= Q tan(phi_max),  |w''_y| <= P tan(phi_max),  w_y^2 + Q^2 <= lw_max^2
-//
-// where w''_y = w_y cos b + w_z sin b is the shaft's component along Y'' at x = 0. Over each z, x runs between the
-// greatest of the lower and the least of the upper
-//
-//   A, B, C:  s_min + offset + n_i, s_max + offset + n_i     n_i = w_i sqrt(L^2 - ...)
-//   Q, P:     -+sqrt(Q^2 tan^2(phi_max) - w_y^2),  -+sqrt(P^2 tan^2(phi_max) - w''_y^2)
-//   L:        -+sqrt(lw_max^2 - w_y^2 - Q^2)
-//   without   (-H, H),  H = sqrt(lw_min^2 - w_y^2 - Q^2)
-//
-// Every one of these ends is a constant and a root of a product of two linear functions of z.
-//
-// The branch N2 < 0 is empty: |lambda - b| <= mu_max < pi/2 means N2 > 0.
-//
-// Source: hybrid-robot document, sections 7 and 8, whose columns in z and in x are these.
+// z runs over one interval [max of lower ends, min of upper ends]. Over each z, x runs between the greatest of the
+// lower and the least of the upper ends that are in Section::curve, less a hole. Derivation: README.md.
 #pragma once
 
 #include <cstdint>
