@@ -6,6 +6,7 @@
 
 #include "engine/math/nested_quadrature.hpp"
 #include "engine/mechanisms/hybrid/breaks.hpp"
+#include "engine/mechanisms/hybrid/conditioning.hpp"
 
 namespace pkm::hybrid {
 
@@ -17,6 +18,7 @@ struct ColumnScratch {
   std::vector<NestedPart<S>> parts;
   StripScratch strips;
   Structure structure;  ///< of a beta outside of the pieces
+  PoseList poses;       ///< whose conditioning is asked for
 };
 
 /// The structure of a section: that of the stretch around beta, followed from where it was asked for last.
