@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/math/hash.hpp"
+
 namespace pkm::crr_cru {
 namespace {
 
@@ -42,19 +44,9 @@ IntervalSet<double> column_at(const Section<double>& s, double u) {
   return column;
 }
 
-/// FNV-1a over bytes.
-class Hash {
- public:
-  void add(std::size_t byte) { value_ = (value_ ^ (byte & 0xff)) * 1099511628211u; }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037u;
-};
-
 std::uint64_t signature_of(const Section<double>& s, const std::vector<Column>& columns) {
   if (columns.empty()) return 0;
-  Hash hash;
+  Fnv1a hash;
   for (const auto* set : {&s.u, &s.v}) {
     hash.add(set->size);
     for (std::size_t i = 0; i < set->size; ++i) {
