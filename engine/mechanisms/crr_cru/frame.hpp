@@ -28,18 +28,21 @@ struct Design {
   Geometry<S> g;
   Yaw<S> yaw;
   double c_min;
-  std::array<S, 4> in2, out2;  ///< squared radii of the reaches [m^2]
+  std::array<S, 4> in, out;    ///< ends of |C_i - A_i| where |sin theta_i2| >= s_min [m]
+  std::array<S, 4> in2, out2;  ///< their squares
   PoseBox box = kEverywhere;   ///< poses outside do not count
 };
 
 template <class S>
 Design<S> design(const Geometry<S>& g, const Limits& l, const PoseBox& box = kEverywhere) {
-  Design<S> d{g, yaw(g), l.c_min, {}, {}, box};
+  Design<S> d{.g = g, .yaw = yaw(g), .c_min = l.c_min, .in = {}, .out = {}, .in2 = {}, .out2 = {}, .box = box};
   const double lost = l.s_min * l.s_min / (1 + std::sqrt((1 - l.s_min) * (1 + l.s_min)));  // 1 - sqrt(1 - s_min^2)
   for (std::size_t i = 0; i < 4; ++i) {
     const S difference = g.l_1[i] - g.l_2[i], sum = g.l_1[i] + g.l_2[i], cut = g.l_1[i] * g.l_2[i] * (2 * lost);
     d.in2[i] = difference * difference + cut;
     d.out2[i] = sum * sum - cut;
+    d.in[i] = root_or_zero(d.in2[i]);
+    d.out[i] = root_or_zero(d.out2[i]);
   }
   return d;
 }
@@ -88,19 +91,6 @@ Frame<S> frame(const Design<S>& d, const S& phi) {
     if (d.box[k][1] < value_of(range.upper)) range = {range.lower, S(d.box[k][1]), range.lower_limb, kBoxUpper};
   }
   return f;
-}
-
-/// Whether a position is feasible: the plain test of one voxel.
-inline bool feasible(const Design<double>& d, const Frame<double>& f, const Vector3<double>& at) {
-  if (f.singular) return false;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (at[k] < f.range[k].lower || at[k] > f.range[k].upper) return false;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double a = at[kPlane[i][0]] - f.center[i][kPlane[i][0]], b = at[kPlane[i][1]] - f.center[i][kPlane[i][1]];
-    const double distance2 = a * a + b * b;
-    if (distance2 < d.in2[i] || distance2 > d.out2[i]) return false;
-  }
-  return true;
 }
 
 /// What a survey holds: one coordinate at a value, or at the design's own middle: phi = 0, and the position at which

@@ -45,7 +45,7 @@ class InertiaTables {
           C[plane[0]] = at(axis[0], m) + frame_.arm[i][plane[0]];
           C[plane[1]] = at(axis[1], n) + frame_.arm[i][plane[1]];
           const Limb<double> limb = limb_at(g, i, C, mode[i]);
-          const auto share = limb.reach >= 0 ? limb_share(g, b, i, limb) : PlaneInertia<double>{};
+          const auto share = limb.reaches ? limb_share(g, b, i, limb) : PlaneInertia<double>{};
           table.pp[place] = share.pp;
           table.pq[place] = share.pq;
           table.qq[place] = share.qq;

@@ -140,7 +140,7 @@ std::array<Arm<S>, 4> arms(const Geometry<S>& g, const S& sin_phi, const S& cos_
 /// Elbow signs sigma_i = sign(sin theta_i2), +1 or -1.
 using WorkingMode = std::array<int, 4>;
 
-/// One limb at a pose. Where it does not reach, only rho, A, C, d and reach are set.
+/// One limb at a pose. Where it does not reach, only rho, A, C and d are set.
 template <class S>
 struct Limb {
   S rho;                    ///< slide position [m]
@@ -148,7 +148,7 @@ struct Limb {
   std::array<S, 2> d;       ///< C - A in the limb's plane, along p and q [m]
   std::array<S, 2> u1, u2;  ///< unit vectors along the rods, along p and q
   S sin_2, cos_2;           ///< of theta_i2
-  double reach = 0;         ///< margin [m], >= 0 where the limb assembles
+  bool reaches = false;     ///< the limb assembles: |d| is in [|l_i1 - l_i2|, l_i1 + l_i2]
 };
 
 /// A limb whose platform joint is at C.
@@ -164,8 +164,8 @@ Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int el
   limb.d = {(C[f.p] - limb.A[f.p]) * f.p_sign, (C[f.q] - limb.A[f.q]) * f.q_sign};
   const S d2 = limb.d[0] * limb.d[0] + limb.d[1] * limb.d[1];
   const double length = std::sqrt(value_of(d2)), sum = value_of(l1 + l2), difference = value_of(l1 - l2);
-  limb.reach = std::fmin(sum - length, length - std::fabs(difference));
-  if (!(limb.reach >= 0)) return limb;
+  limb.reaches = length <= sum && length >= std::fabs(difference);
+  if (!limb.reaches) return limb;
   // 1 - cos theta_2 and 1 + cos theta_2, without cancellation at the ends of the reach
   const S twice = l1 * l2 * 2.0, less = ((l1 + l2) * (l1 + l2) - d2) / twice,
           more = (d2 - (l1 - l2) * (l1 - l2)) / twice;
@@ -203,7 +203,7 @@ Limbs<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& m
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector3<S>& arm = limbs.arm[i].to_joint;
     limbs.limb[i] = limb_at(g, i, {pose.x + arm[0], pose.y + arm[1], pose.z + arm[2]}, mode[i]);
-    limbs.assembles = limbs.assembles && limbs.limb[i].reach >= 0;
+    limbs.assembles = limbs.assembles && limbs.limb[i].reaches;
   }
   return limbs;
 }

@@ -195,7 +195,7 @@ TEST(CrrCruKinematics, SingularAndCollinearPoses) {
   p = nominal();
   p[kL32] = p[kL31];
   const auto limb = limb_at(geometry_of("3crr-r-cru", p), 2, {0, 0, 0.2}, 1);
-  EXPECT_GE(limb.reach, 0);
+  EXPECT_TRUE(limb.reaches);
   EXPECT_EQ(limb.sin_2, 0);
   for (const double value : {limb.u1[0], limb.u1[1], limb.u2[0], limb.u2[1], limb.B[0]})
     EXPECT_TRUE(std::isfinite(value));
