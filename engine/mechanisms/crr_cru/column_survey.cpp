@@ -1,7 +1,7 @@
 #include "engine/mechanisms/crr_cru/columns.hpp"
 #include "engine/mechanisms/crr_cru/coupling.hpp"
-#include "engine/mechanisms/crr_cru/samples.hpp"
 #include "engine/mechanisms/crr_cru/survey.hpp"
+#include "engine/mechanisms/crr_cru/surveyor.hpp"
 
 namespace pkm::crr_cru {
 namespace {
@@ -25,19 +25,13 @@ void add_inertia(const Matrix<S, 4, 4>& M_q, const Demand& demand, Survey<S>& su
   if (demand.inertia_condition) survey.inertia_condition.push_back(inertia_condition(M_q));
 }
 
-class ColumnSurveyor final : public Surveyor {
+class ColumnSurveyor final : public SurveyorOfPlan {
  public:
   ColumnSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
                  const Demand& demand)
-      : platform_(platform),
-        mass_model_(mass_model),
-        mode_(mode),
-        held_(held_of(held, plan)),
+      : SurveyorOfPlan(platform, mass_model, mode, held, plan, demand),
         box_(pose_box(held_, plan)),
-        limits_(limits(plan.limits)),
-        tolerance_(plan.tolerance),
-        fixed_(plan.nodes[0] > 0),
-        demand_(demand) {
+        fixed_(plan.nodes[0] > 0) {
     // Nodes come in the order of the swept coordinates; phi is the last of them.
     const std::size_t outer = cuts(held_).outer_is_phi ? 1 : 0;
     const int usual = needs_inertia() ? kInertiaNodes : kSampleNodes;
@@ -45,26 +39,29 @@ class ColumnSurveyor final : public Surveyor {
     inner_rule_ = gauss_legendre(fixed_ ? plan.nodes[1 - outer] : kInertiaNodes);
   }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    thread_local ColumnScratch<double> scratch;
+    run(parameters, scratch, survey);
+  }
+  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override {
+    thread_local ColumnScratch<Dual4> scratch;
+    run(parameters, scratch, survey);
+  }
   std::string no_derivatives() const override { return {}; }
 
  private:
   static constexpr int kSampleNodes = 32;
   static constexpr int kInertiaNodes = 8;  // per piece and coordinate
 
-  bool needs_inertia() const { return demand_.dci || demand_.inertia_condition; }
-
   template <class S>
-  void run(std::span<const S> parameters, Survey<S>& survey) const {
-    thread_local ColumnScratch<S> scratch;
+  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
     survey.clear();
     const auto s = sweeping(design(geometry(platform_, parameters), limits_, box_), held_);
     find_outer_pieces(s, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     long columns = 0;
     if (!fixed_) {
       const Integral<S> volume =
-          integrate<S>([&](const S& outer) { return area_at(s, outer, scratch); }, scratch.pieces, tolerance_,
+          integrate<S>([&](const S& outer) { return area_at(s, outer, scratch); }, scratch.pieces, plan_.tolerance,
                        roundoff(s, scratch.pieces), scratch.integrals);
       survey.volume = volume.value;
       survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
@@ -87,9 +84,9 @@ class ColumnSurveyor final : public Surveyor {
           const S area = fixed_ ? area_of_columns(s, outer, inner_rule_, scratch, columns) : area_at(s, outer, scratch);
           const S weight = area * jacobian * outer_rule_.weight[i];
           if (fixed_) survey.volume += weight;
-          if (demand_.conditioning && s.cuts.outer_is_phi) add_conditioning(g, demand_, outer, weight, survey);
+          if (demand_.conditioning && s.cuts.outer_is_phi) add_conditioning(g, outer, weight, survey);
         }
-    if (demand_.conditioning && !s.cuts.outer_is_phi) add_conditioning(g, demand_, s.held, survey.volume, survey);
+    if (demand_.conditioning && !s.cuts.outer_is_phi) add_conditioning(g, s.held, survey.volume, survey);
     survey.columns = columns;
   }
 
@@ -104,7 +101,7 @@ class ColumnSurveyor final : public Surveyor {
     const auto set_phi = [&](const S& phi) {
       angle = phi;
       frame = inertia_frame(g, b, phi);
-      if (demand_.conditioning) index = conditioning_at(g, demand_, phi);
+      if (demand_.conditioning) index = conditioning_at(g, phi);
     };
     if (!s.cuts.outer_is_phi) set_phi(s.held);
     for (const Piece<S>& piece : scratch.pieces)
@@ -131,15 +128,8 @@ class ColumnSurveyor final : public Surveyor {
     return sweeping(design(geometry(platform_, std::span<const To>(values)), limits_, box_), held_);
   }
 
-  Platform platform_;
-  MassModel mass_model_;
-  WorkingMode mode_;
-  Held held_;
   PoseBox box_;
-  Limits limits_;
-  double tolerance_;
   bool fixed_;  ///< numbers of nodes are given
-  Demand demand_;
   GaussRule outer_rule_, inner_rule_;
 };
 
