@@ -20,11 +20,7 @@ struct ColumnScratch {
   Structure structure;
 };
 
-/// A break of the structure with its derivatives. There a column, or a gap beside one, closes: the places a and b of
-/// its two ends meet, and a(p, t(p)) = b(p, t(p)) gives t' = -(d(a - b)/dp) / (d(a - b)/dt). Which column it is shows a
-/// little beside the break, where the quotient is the same even if the ends meet like a square root. Where nothing is
-/// about to close, an end passes from one formula to another; the break then does not move, which is right to first
-/// order, because the area is continuous there and the changes of the two pieces cancel.
+/// A break of the structure with its derivatives: where two ends meet, that of an implicit function (README.md).
 /// @param still  the same design without derivatives, for those by t
 template <class S>
 S moving_break(const Sweeping<S>& s, const Sweeping<double>& plain, const Sweeping<Dual<1>>& still, double at,

@@ -1,11 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: equations of motion, limb by limb.
-//
-// A limb's two rods have no actuated turning, so a limb acts on its platform joint C_i with a force that depends on
-// that limb alone: in its plane M_d ddot + .., along its rail the mass of what slides. With j1 = u2^T/(l1 sin theta_2)
-// and j2 = -u1^T/(l2 sin theta_2), the rods' turning rates per velocity of C_i in the plane,
-//
-//   M_d = (m1/4 l1^2 + I1 + m2 l1^2) j1^T j1 + m2 l1 l2 cos(theta_2)/2 (j1^T j2 + j2^T j1) + (m2/4 l2^2 + I2) j2^T j2
-//   M_X = sum of J_C^T (P^T M_d P + (m_i1 + m_i2) e e^T) J_C + platforms,   J_C = [1 | z x arm_i]
+// (3CRR/R)&CRU and Quadrupteron: equations of motion, limb by limb (README.md).
 //
 // Source: as model.hpp, sections 2.2 to 3.1 with their errata; the limb-wise form follows from virtual work.
 #pragma once

@@ -1,13 +1,5 @@
-// (3CRR/R)&CRU and Quadrupteron: the feasible positions at given phi, as the tests that they are made of.
-//
-// At given phi every platform joint is the position (x, y, z) shifted by a constant. So each slide's range is a range
-// of one coordinate, and the reach of limb i, |sin theta_i2| >= s_min included, is a ring in the coordinates a, b of
-// the limb's plane:
-//
-//   rho_i = (coordinate e_i) + shift in [rho_min, rho_max]
-//   in2 <= (a - center_a)^2 + (b - center_b)^2 <= out2,   in2, out2 = l_1^2 + l_2^2 -/+ 2 l_1 l_2 sqrt(1 - s_min^2)
-//
-// Neither depends on the working mode.
+// (3CRR/R)&CRU and Quadrupteron: the feasible positions at given phi, as the ranges of slides and the rings of reaches
+// that they are made of, in closed form (README.md). Neither depends on the working mode.
 #pragma once
 
 #include <limits>

@@ -1,24 +1,6 @@
-// (3CRR/R)&CRU and Quadrupteron: geometry and inverse kinematics of one pose.
+// (3CRR/R)&CRU and Quadrupteron: geometry and inverse kinematics of one pose. Frames: README.md.
 //
-// Source: Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, with its errata; the
-// Quadrupteron is the mechanism that the other one is obtained from by decoupling. Both are one model: four limbs of
-// two rods that move in the plane normal to the limb's rail, and a platform that turns about the vertical.
-//
-//   slide    A_i = a_i + rho_i e_i
-//   elbow    B_i = A_i + l_i1 (p cos psi_i1 + q sin psi_i1),   psi_i1 = theta_i1
-//   joint    C_i = B_i + l_i2 (p cos psi_i2 + q sin psi_i2),   psi_i2 = theta_i1 + theta_i2
-//
-//   limb   e   p   q   s    a          rods move in
-//    1     x  -y   z   -1   (0, L, 0)  y-z
-//    2     y   x  -z   +1   (0, 0, L)  x-z
-//    3     z   x   y   +1   (0, 0, 0)  x-y
-//    4     y  -x  -z   -1   (L, 0, L)  x-z
-//
-// The platform's point D is the pose, N = D - (0, 0, h) the centre of the circle of radius r that C_1..C_3 sit on at
-// the angles beta_i, and C_4 = D + l (cos phi, sin phi, 0). In (3CRR/R)&CRU the circle belongs to a middle platform
-// that does not turn; in the Quadrupteron it turns with the platform, so that beta_i + phi takes the place of beta_i.
-//
-// A turn by psi about p x q is one by s psi about e: s = e . (p x q).
+// Source: Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, with its errata.
 #pragma once
 
 #include <array>

@@ -1,12 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: plane sections of the feasible positions at given phi, in closed form.
-//
-// On a plane normal to the coordinate n, with u and v the other two, a ring of limb i either cuts u alone (its plane
-// holds n and u), or v alone, or is a ring in (u, v). So the section is a product of two sets of intervals, U x V,
-// cut by one or two rings. Between breaks - ends of U, extremes of circles, circles crossing ends of V or each other -
-// the column of feasible v at u is a list of intervals whose ends are constant or run along circles, and the
-// section's area is a sum of ends' primitives:
-//
-//   integral of sqrt(R^2 - w^2) dw = (w sqrt(R^2 - w^2) + R^2 atan2(w, sqrt(R^2 - w^2))) / 2
+// (3CRR/R)&CRU and Quadrupteron: plane sections of the feasible positions at given phi, in closed form (README.md).
 //
 // What the section is made of (`Structure`) is found with doubles; values and derivatives follow from its formulas.
 #pragma once

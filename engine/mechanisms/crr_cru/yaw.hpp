@@ -1,10 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. The Jacobian does, because the three translations
-// move the slides along fixed directions; so do the forward kinematics of the yaw and the parallel singularity.
-//
-//   rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0 = R sin(phi + delta) + a_0,   det J = R cos(phi + delta)
-//
-// with a_s = l, a_c = 0, a_0 = -r sin beta_2 where the platforms are jointed, and a_s = l - r cos beta_2,
-// a_c = -r sin beta_2, a_0 = 0 where they are one.
+// (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. Why: README.md, "The yaw".
 #pragma once
 
 #include <Eigen/Core>
