@@ -45,14 +45,6 @@ InertiaFrame<S> inertia_frame(const Geometry<S>& g, const Masses<S>& b, const S&
   return f;
 }
 
-/// A limb's inertia at its joint in world axes: its plane's lower axis, both, the higher one [kg].
-template <class S>
-PlaneInertia<S> limb_share(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
-  PlaneInertia<S> share = plane_inertia(g, b, i, limb);
-  share.pq = share.pq * (kLimbs[i].p_sign * kLimbs[i].q_sign);
-  return share;
-}
-
 /// M_q at a feasible position [kg].
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const InertiaFrame<S>& f, const Vector3<S>& at,
@@ -60,7 +52,7 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const In
   std::array<PlaneInertia<S>, 4> share;
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector3<S> C = {at[0] + f.arm[i][0], at[1] + f.arm[i][1], at[2] + f.arm[i][2]};
-    share[i] = limb_share(g, b, i, limb_at(g, i, C, mode[i]));
+    share[i] = plane_inertia(g, b, i, limb_at(g, i, C, mode[i]));
   }
   return matrix_of(joint_inertia(f, share[0], share[1], share[2], share[3]));
 }

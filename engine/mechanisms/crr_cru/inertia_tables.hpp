@@ -44,8 +44,7 @@ class InertiaTables {
         for (std::int64_t n = 0; n < cells(axis[1]); ++n, ++place) {
           C[plane[0]] = at(axis[0], m) + frame_.arm[i][plane[0]];
           C[plane[1]] = at(axis[1], n) + frame_.arm[i][plane[1]];
-          const Limb<double> limb = limb_at(g, i, C, mode[i]);
-          const auto share = limb.reaches ? limb_share(g, b, i, limb) : PlaneInertia<double>{};
+          const auto share = plane_inertia(g, b, i, limb_at(g, i, C, mode[i]));
           table.pp[place] = share.pp;
           table.pq[place] = share.pq;
           table.qq[place] = share.qq;
