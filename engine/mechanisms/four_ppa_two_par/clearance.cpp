@@ -164,16 +164,9 @@ std::optional<ClearanceTest> take_clearance(const Geometry<double>& g, Limits<do
 }
 
 Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta) {
-  const double half = g.a * cos_theta / 2;
-  Placement<double> p;
-  p.sin_theta = sin_theta;
-  p.x = {x - half, g.b - x - half};
-  for (std::size_t j = 0; j < 2; ++j) {
-    p.drop[j] = root_or_zero((g.l_d - p.x[j]) * (g.l_d + p.x[j]));
-    p.z_c[j] = z + g.d + p.drop[j];
-    p.h[j] = root_or_zero((g.l_u - p.z_c[j]) * (g.l_u + p.z_c[j]));
-  }
-  return p;
+  Limbs<double> limbs;
+  for (std::size_t j = 0; j < 2; ++j) place_limb(g, x, 0.0, z, {sin_theta, cos_theta}, kLowerMode[j], j, limbs);
+  return placement(limbs, sin_theta, kLowerMode);
 }
 
 }  // namespace pkm::four_ppa_two_par

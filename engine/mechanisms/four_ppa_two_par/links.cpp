@@ -27,7 +27,7 @@ std::vector<PlacedLink> placed_links(const Geometry<double>& g, const Pose<doubl
     const double x = rail == 0 ? 0 : g.b;
     placed.push_back({"rail " + std::to_string(rail + 1), kFramePart, {{{x, 0, 0}, {x, g.L0, 0}}, g.R_s / 2}});
   }
-  const Links<double> all = links(g, placement(pose, limb, mode));
+  const Links<double> all = links(g, placement(limb, sincos(pose.angle).sin, mode));
   const std::size_t second = links_of(kGroupsPerLimb).first, platform = links_of(kPlatform).first;
   for (std::size_t i = 0; i < kLinks; ++i) {
     const char* const part = i >= platform ? kPlatformPart : i >= second ? "limb 2" : "limb 1";

@@ -48,8 +48,8 @@ struct Placement {
 };
 
 template <class S>
-Placement<S> placement(const Pose<S>& pose, const Limbs<S>& limb, WorkingMode mode) {
-  Placement<S> p{sincos(pose.angle).sin, limb.x, limb.sigma, limb.z_c, limb.h};
+Placement<S> placement(const Limbs<S>& limb, const S& sin_theta, WorkingMode mode) {
+  Placement<S> p = {.sin_theta = sin_theta, .x = limb.x, .drop = limb.sigma, .z_c = limb.z_c, .h = limb.h};
   for (std::size_t j = 0; j < 2; ++j)
     if (mode[j] == Branch::upper) p.drop[j] = -limb.sigma[j];
   return p;

@@ -40,7 +40,19 @@ struct Geometry {
 
 template <class S>
 Geometry<S> geometry(std::span<const S> p) {
-  return {p[kA], p[kB], p[kLu], p[kLd], p[kD], p[kL0], p[kRu], p[kRd], p[kDu], p[kDd], p[kD0], p[kRp], p[kRs]};
+  return {.a = p[kA],
+          .b = p[kB],
+          .l_u = p[kLu],
+          .l_d = p[kLd],
+          .d = p[kD],
+          .L0 = p[kL0],
+          .R_u = p[kRu],
+          .R_d = p[kRd],
+          .d_u = p[kDu],
+          .d_d = p[kDd],
+          .d_0 = p[kD0],
+          .R_p = p[kRp],
+          .R_s = p[kRs]};
 }
 
 /// The plane y that surveys are on where their plan names no other [m].
@@ -96,34 +108,40 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
 /// Branch of a limb: lower when the platform hangs below C_j.
 enum class Branch { lower, upper };
 using WorkingMode = std::array<Branch, 2>;
+inline constexpr WorkingMode kLowerMode = {Branch::lower, Branch::lower};
 
 /// Position of the limbs at a pose. Exists (`assembles`) where x_j is in [0, l_d] and |z_cj| <= l_u. The paper takes
 /// z_cj <= 0, C_j below its rail, but lists q for both (table 2), since q depends on z_cj^2 only.
 template <class S>
 struct Limbs {
-  std::array<S, 2> x, y, sigma, z_c, h;    ///< [m]
-  std::array<S, 4> q;                      ///< slider positions [m], eq 13
-  std::array<double, 2> reach_x, reach_z;  ///< margins [m], >= 0 where the limb assembles
+  std::array<S, 2> x, y, sigma, z_c, h;  ///< [m]
+  std::array<S, 4> q;                    ///< slider positions [m], eq 13
   bool assembles = false;
 };
 
+/// Puts limb j where it is at a pose; where it does not reach, roots are 0. S may be lanes.
+template <class S>
+[[gnu::always_inline]] inline void place_limb(const Geometry<S>& g, const S& x, const S& y, const S& z,
+                                              const SinCosOf<S>& theta, Branch branch, std::size_t j, Limbs<S>& limb) {
+  const S half = g.a * theta.cos * 0.5, shift = g.a * theta.sin * 0.5;
+  limb.x[j] = j == 0 ? S(x - half) : S(g.b - x - half);
+  limb.y[j] = j == 0 ? S(y - shift) : S(y + shift);
+  limb.sigma[j] = root_or_zero(S((g.l_d - limb.x[j]) * (g.l_d + limb.x[j])));
+  limb.z_c[j] = branch == Branch::lower ? S(z + g.d + limb.sigma[j]) : S(z + g.d - limb.sigma[j]);
+  limb.h[j] = root_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
+  limb.q[2 * j] = limb.y[j] - limb.h[j];
+  limb.q[2 * j + 1] = limb.y[j] + limb.h[j];
+}
+
 template <class S>
 Limbs<S> inverse(const Geometry<S>& g, const Pose<S>& pose, WorkingMode mode) {
-  const auto [s, c] = sincos(pose.angle);
   Limbs<S> limb;
-  limb.x = {pose.x - g.a * c * 0.5, g.b - pose.x - g.a * c * 0.5};
-  limb.y = {pose.y - g.a * s * 0.5, pose.y + g.a * s * 0.5};
   limb.assembles = true;
   for (std::size_t j = 0; j < 2; ++j) {
-    const S under = (g.l_d - limb.x[j]) * (g.l_d + limb.x[j]);
-    limb.sigma[j] = root_or_zero(under);
-    limb.z_c[j] = mode[j] == Branch::lower ? S(pose.z + g.d + limb.sigma[j]) : S(pose.z + g.d - limb.sigma[j]);
-    limb.h[j] = root_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
-    limb.reach_x[j] = std::fmin(value_of(limb.x[j]), value_of(g.l_d - limb.x[j]));
-    limb.reach_z[j] = value_of(g.l_u) - std::fabs(value_of(limb.z_c[j]));
-    limb.assembles = limb.assembles && limb.reach_x[j] >= 0 && limb.reach_z[j] >= 0;
+    place_limb(g, pose.x, pose.y, pose.z, sincos(pose.angle), mode[j], j, limb);
+    limb.assembles = limb.assembles && value_of(limb.x[j]) >= 0 && value_of(limb.x[j]) <= value_of(g.l_d) &&
+                     std::fabs(value_of(limb.z_c[j])) <= value_of(g.l_u);
   }
-  limb.q = {limb.y[0] - limb.h[0], limb.y[0] + limb.h[0], limb.y[1] - limb.h[1], limb.y[1] + limb.h[1]};
   return limb;
 }
 

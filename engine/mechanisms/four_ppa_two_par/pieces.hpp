@@ -66,23 +66,24 @@ struct Crossing {
 Crossing find_crossing(const Frame<double>& f, double low, const Signature& at_low, double high,
                        const Signature& at_high);
 
-/// A frame that does not move with the design, for another scalar.
+/// The frame of the same section for another scalar, which does not move with the design.
 template <class To, class From>
 Frame<To> constant_frame(const Frame<From>& f) {
-  const auto& g = f.g;
-  const auto& l = f.l;
   const auto v = [](const From& x) { return To(value_of(x)); };
-  return {{v(g.a), v(g.b), v(g.l_u), v(g.l_d), v(g.d), v(g.L0), v(g.R_u), v(g.R_d), v(g.d_u), v(g.d_d), v(g.d_0),
-           v(g.R_p), v(g.R_s)},
-          {v(l.sin_alpha_min), v(l.cos_alpha_min), v(l.sin_beta_min), v(l.cos_beta_min), v(l.sin_beta_max),
-           v(l.cos_beta_max), v(l.h_min), v(l.sin_par_min), v(l.sin_half), v(l.cos_half), v(l.cos_theta_min)},
-          v(f.x_min),
-          v(f.x_max),
-          v(f.z_low),
-          v(f.z_high),
-          v(f.stroke_free),
-          v(f.y),
-          f.empty};
+  const Geometry<To> g = {
+      .a = v(f.g.a), .b = v(f.g.b), .l_u = v(f.g.l_u), .l_d = v(f.g.l_d), .d = v(f.g.d), .L0 = v(f.g.L0)};
+  const Limits<To> l = {.sin_alpha_min = v(f.l.sin_alpha_min),
+                        .cos_alpha_min = v(f.l.cos_alpha_min),
+                        .sin_beta_min = v(f.l.sin_beta_min),
+                        .cos_beta_min = v(f.l.cos_beta_min),
+                        .sin_beta_max = v(f.l.sin_beta_max),
+                        .cos_beta_max = v(f.l.cos_beta_max),
+                        .h_min = v(f.l.h_min),
+                        .sin_par_min = v(f.l.sin_par_min),
+                        .sin_half = v(f.l.sin_half),
+                        .cos_half = v(f.l.cos_half),
+                        .cos_theta_min = v(f.l.cos_theta_min)};
+  return frame(g, l, v(f.y));
 }
 
 /// The theta of a crossing with its derivatives: gap(p, theta(p)) = 0 gives theta' = -(d gap/d p) / (d gap/d theta).
@@ -114,7 +115,7 @@ void closed_form_breaks(const Frame<S>& f, std::vector<Break<S>>& breaks) {
   // ends of the range of w
   at_w(f.x_min * 2.0, false, false);
   at_w(f.x_max * 2.0, true, false);
-  at_w(g.l_d * 2.0 * l.cos_half, true, false);
+  at_w(f.chord_max, true, false);
   // beta_max hands over to beta_min: a root where sigma of the limb that leans more gets to 0
   at_w(f.x_max + f.x_min, value_of(l.cos_beta_max) < 0.1, false);
   const bool parallel = value_of(l.sin_par_min) > 0;
@@ -124,7 +125,7 @@ void closed_form_breaks(const Frame<S>& f, std::vector<Break<S>>& breaks) {
     at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max + cos_phi * l.sin_beta_max), false, false);
     at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min + cos_phi * l.sin_beta_min), false, false);
     // beta_1 + beta_2 = phi begins to cut at x = b/2, and meets a limit
-    at_w(g.l_d * 2.0 * l.sin_half, true, false);
+    at_w(f.chord_min, true, false);
     at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min - cos_phi * l.sin_beta_min), false, false);
     at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max - cos_phi * l.sin_beta_max), false, false);
   }
@@ -137,9 +138,9 @@ void closed_form_breaks(const Frame<S>& f, std::vector<Break<S>>& breaks) {
     at_w(f.x_max - x, false, false);
   }
   if (value_of(other) > 0) at_w(f.x_min + root(S((g.l_d - other) * (g.l_d + other))), false, false);
-  const S upper = (g.l_d * 2.0 * l.cos_half - depth) * (g.l_d * 2.0 * l.cos_half + depth);
+  const S upper = (f.chord_max - depth) * (f.chord_max + depth);
   if (value_of(upper) > 0) at_w(root(upper), false, false);
-  const S lower = (g.l_d * 2.0 * l.sin_half - depth) * (g.l_d * 2.0 * l.sin_half + depth);
+  const S lower = (f.chord_min - depth) * (f.chord_min + depth);
   if (parallel && value_of(lower) > 0) at_w(root(lower), false, false);
   // the stroke begins to cut (a root on the side where it does), and empties a limb
   at_shift(f.y - f.stroke_free, false, true);

@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include <Eigen/LU>
-
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "engine/survey/share_samples.hpp"
@@ -226,93 +224,5 @@ std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Dema
 }
 
 VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan) { return VoxelSurveyor(plan, {}).map(g); }
-
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
-  PoseReport report;
-  const Limbs<double> limb = inverse(g, pose, mode);
-  report.assembles = limb.assembles;
-  const double c = sincos(pose.angle).cos;
-  report.angles.emplace_back("section_type", section_type(g, c));
-  if (!limb.assembles) {
-    for (std::size_t j = 0; j < 2 && report.reason.empty(); ++j) {
-      const std::string name = j == 0 ? "limb 1" : "limb 2";
-      if (limb.x[j] < 0)
-        report.reason =
-            name + ": x_" + std::to_string(j + 1) + " < 0, the platform is beyond the rail's vertical plane";
-      else if (limb.reach_x[j] < 0)
-        report.reason = name + ": out of reach of the lower bars (x_" + std::to_string(j + 1) + " > l_d)";
-      else if (limb.reach_z[j] < 0)
-        report.reason = name + ": out of reach of the upper bars (|z_c| > l_u)";
-    }
-    for (std::size_t j = 0; j < 2; ++j) {
-      report.margins.emplace_back("reach_x_" + std::to_string(j + 1), limb.reach_x[j]);
-      report.margins.emplace_back("reach_z_" + std::to_string(j + 1), limb.reach_z[j]);
-    }
-    return report;
-  }
-  report.joints = limb.q;
-  const Velocity<double> v = velocity(g, pose, limb, mode);
-  report.G = v.G;
-  report.det_G = v.G.determinant();
-  std::array<double, 2> alpha, beta, folded;
-  for (std::size_t j = 0; j < 2; ++j) {
-    alpha[j] = atan2(-limb.z_c[j], limb.h[j]);
-    folded[j] = atan2(limb.x[j], limb.sigma[j]);  // from the nearer vertical
-    beta[j] = mode[j] == Branch::lower ? folded[j] : kPi - folded[j];
-  }
-  if (v.finite) {
-    report.Jq = v.Jq;
-    report.det_Jq = v.k[0] * v.k[1] / 4;
-    if (*report.det_Jq != 0) {
-      const Eigen::Matrix4d J = v.Jq.inverse() * v.G;
-      report.J = J;
-      double columns[4][4];
-      for (int col = 0; col < 4; ++col)
-        for (int row = 0; row < 4; ++row) columns[col][row] = J(row, col) * (col == 3 ? 2 / g.a : 1);  // L_c = a/2
-      report.conditioning = inverse_condition(columns);
-    } else {
-      report.conditioning = 0;
-    }
-  } else {
-    report.conditioning = 0;
-  }
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha[j]);
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("beta_" + std::to_string(j + 1), beta[j]);
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
-  const Nearest<double> nearest = nearest_links(links(g, placement(pose, limb, mode)));
-  report.angles.emplace_back("clearance", nearest.clearance);
-
-  const auto least = [](const std::array<double, 2>& p) { return std::fmin(p[0], p[1]); };
-  double stroke = limb.q[0];
-  for (const double q : limb.q) stroke = std::fmin(stroke, std::fmin(q, g.L0 - q));
-  const double sin_1 = sincos(beta[0] + beta[1]).sin;
-  report.margins = {
-      {"reach_x_1", limb.reach_x[0]},
-      {"reach_x_2", limb.reach_x[1]},
-      {"reach_z_1", limb.reach_z[0]},
-      {"reach_z_2", limb.reach_z[1]},
-      {"below_rail_1", -limb.z_c[0]},
-      {"below_rail_2", -limb.z_c[1]},
-      {"stroke", stroke},
-      {"alpha_min", least(alpha) - asin(l.sin_alpha_min)},
-      {"beta_min", least(folded) - asin(l.sin_beta_min)},
-      {"beta_max", atan2(l.sin_beta_max, l.cos_beta_max) - std::fmax(folded[0], folded[1])},
-      {"h_min", least(limb.h) - l.h_min},
-      {"sin_par_min", std::fabs(sin_1) - l.sin_par_min},
-      {"cos_theta_min", c - l.cos_theta_min},
-  };
-  if (l.clearance_min) report.margins.emplace_back("clearance_min", nearest.clearance - *l.clearance_min);
-  report.feasible = true;
-  for (const auto& [name, margin] : report.margins) {  // the most basic tests come first
-    if (report.feasible && !(margin >= 0)) {
-      report.reason = "limit " + name + " is broken";
-      if (name == "clearance_min")
-        report.reason += ": " + link_name(nearest.first) + " and " + link_name(nearest.second) +
-                         (nearest.clearance < 0 ? " overlap" : " are too near");
-    }
-    report.feasible = report.feasible && margin >= 0;
-  }
-  return report;
-}
 
 }  // namespace pkm::four_ppa_two_par

@@ -11,11 +11,6 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// Whether a pose of the lower mode is feasible: the plain test of one cell, constraint by constraint.
-/// @param y  the plane as given, not mirrored
-bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, double y, double z, double sin_theta,
-              double cos_theta);
-
 /// The paper's box does not matter to the model; this one holds every feasible pose: x in [0, b],
 /// z in [-(l_u + l_d + d), -d], theta in [-pi/2, pi/2].
 Box default_box(const Geometry<double>& g);
