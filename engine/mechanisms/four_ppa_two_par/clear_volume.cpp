@@ -100,7 +100,7 @@ Integral<double> by_rule(const Frame<double>& f, const ClearanceTest& test, bool
 Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch) {
   constexpr double kInner = 0.02;  // so that the outer rule does not take the inner one's error for kinks
-  constexpr int kDepth = 12;       // of halvings
+  const Quadrature outer{.between = Between::kinks}, inner{.between = Between::kinks, .depth = 12};
   static const GaussRule coarse = gauss_legendre(5);
   find_pieces(f, scratch.breaks, scratch.pieces);
   double range = 0;
@@ -121,8 +121,7 @@ Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test,
         return c.slope * measure(f, t, c, test, over_y, scratch.clear);
       };
       for (const Piece<double>& piece : scratch.ranges) {
-        Integral<double> found = integrate_piece<double>(strip, piece, Between::kinks);
-        refine(strip, piece, inner_error, kDepth, found, Between::kinks);
+        const Integral<double> found = integrate_piece(strip, piece, inner_error, inner);
         area += weight * found.value;
         error += weight * found.error;
         columns += found.evaluations;
@@ -131,8 +130,7 @@ Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test,
     worst = std::fmax(worst, error);
     return area;
   };
-  Integral<double> result =
-      integrate<double>(area_at, scratch.pieces, aim, trifle * range, scratch.integrals, Between::kinks);
+  Integral<double> result = integrate<double>(area_at, scratch.pieces, aim, trifle * range, scratch.integrals, outer);
   result.value *= 2;  // even in theta
   result.error = 2 * (result.error + worst * range);
   result.evaluations = columns;

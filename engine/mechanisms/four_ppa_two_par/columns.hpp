@@ -17,7 +17,7 @@ template <class S>
 struct ColumnScratch {
   std::vector<Break<S>> breaks;
   std::vector<Piece<S>> pieces;
-  std::vector<Integral<S>> integrals;
+  std::vector<QuadraturePart<S>> integrals;
   std::vector<Piece<S>> ranges, parts;
   std::vector<Interval> clear;
   ColumnConditioning<S> poses;
