@@ -29,6 +29,12 @@
 
 namespace pkm::four_ppa_two_par {
 
+/// Storage that tests reuse.
+struct ClearanceScratch {
+  std::vector<Interval> clear;
+  NonNegativeParts finder;
+};
+
 /// No pose of the lower mode brings links of the two groups nearer than this [m]. Not for the sliders of one rail.
 double least_clearance(const Geometry<double>& g, const GroupPair& pair);
 
@@ -49,14 +55,15 @@ class ClearanceTest {
   double excess(const Placement<double>& p) const;
 
   /// Where in [low, high] what hangs is clear, along the delta of a half section.
-  /// @param ranges  overwritten
-  void clear_ranges(const Frame<double>& f, const Section<double>& t, const Half<double>& h, std::size_t leaning,
-                    double low, double high, std::vector<Interval>& ranges) const;
+  /// @return  in scratch.clear
+  const std::vector<Interval>& clear_ranges(const Frame<double>& f, const Section<double>& t, const Half<double>& h,
+                                            std::size_t leaning, double low, double high,
+                                            ClearanceScratch& scratch) const;
 
   /// The parts of one column inside such a range on which links are clear, as heights over its lower end [m].
-  /// @param parts  overwritten
-  void clear_parts(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
-                   std::vector<Interval>& parts) const;
+  /// @return  in scratch.clear
+  const std::vector<Interval>& clear_parts(const Frame<double>& f, const Section<double>& t,
+                                           const Column<double>& column, ClearanceScratch& scratch) const;
 
  private:
   double excess(const Placement<double>& p, const std::vector<GroupPair>& pairs) const;

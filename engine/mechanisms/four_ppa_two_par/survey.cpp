@@ -24,8 +24,12 @@ constexpr const char* kSurveyedMode = "lower,lower";
 
 template <class S>
 SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
-  SampleContents<S> c{
-      demand.conditioning, demand.poses, demand.dci, demand.inertia_condition, gamma(geometry(parameters), demand), {}};
+  SampleContents<S> c{.conditioning = demand.conditioning,
+                      .poses = demand.poses,
+                      .dci = demand.dci,
+                      .inertia_condition = demand.inertia_condition,
+                      .gamma = gamma(geometry(parameters), demand),
+                      .masses = {}};
   if (c.inertia()) c.masses = masses(parameters);
   return c;
 }
@@ -41,10 +45,14 @@ class ColumnSurveyor final : public Surveyor {
         inner_rule_(gauss_legendre(plan.nodes[0] > 0 ? plan.nodes[0] : kSampleNodes)),
         theta_rule_(gauss_legendre(plan.nodes[1] > 0 ? plan.nodes[1] : kSampleNodes)) {}
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
+  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    thread_local ColumnScratch<double> scratch;
+    run(parameters, scratch, survey);
+  }
   void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override {
     if (plan_.limits.given[kClearanceMin]) throw std::logic_error(no_derivatives());
-    run(parameters, survey);
+    thread_local ColumnScratch<Dual4> scratch;
+    run(parameters, scratch, survey);
   }
   std::string no_derivatives() const override {
     if (!plan_.limits.given[kClearanceMin]) return {};
@@ -56,8 +64,7 @@ class ColumnSurveyor final : public Surveyor {
   static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
-  void run(std::span<const S> parameters, Survey<S>& survey) const {
-    thread_local ColumnScratch<S> scratch;
+  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
     survey.clear();
     const Geometry<S> g = geometry(parameters);
     Limits<S> l = limits(g, plan_.limits);
@@ -130,6 +137,28 @@ class VoxelSurveyor final : public Surveyor {
   std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
 
   void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+    thread_local VoxelScratch scratch;
+    run(parameters, scratch, survey);
+  }
+
+  VoxelMap map(const Geometry<double>& g) const {
+    Limits<double> l = limits(g, plan_.limits);
+    const auto clearance = take_clearance(g, l);
+    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
+    VoxelMap m = grid.map();
+    ColumnBlock columns;
+    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, plan_.held), grid, columns,
+                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+                             for (std::int64_t j = first; j < end; ++j)
+                               m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
+                           });
+    return m;
+  }
+
+ private:
+  static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
+
+  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
     survey.clear();
     const Geometry<double> g = geometry(parameters);
     Limits<double> l = limits(g, plan_.limits);
@@ -145,37 +174,22 @@ class VoxelSurveyor final : public Surveyor {
     for (std::int64_t p = 0; p < planes; ++p) {
       const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, plan_.held);
       bool touches = false;
-      survey.feasible_cells += counter_.count(g, l, test, y, grid, touches);
+      survey.feasible_cells += counter_.count(g, l, test, y, grid, scratch, touches);
       survey.touches_box = survey.touches_box || touches;
-      if (needs_samples(demand_)) sample(g, l, wanted, test, y, grid, survey);
+      if (needs_samples(demand_)) sample(g, l, wanted, test, y, grid, scratch, survey);
     }
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
-  VoxelMap map(const Geometry<double>& g) const {
-    Limits<double> l = limits(g, plan_.limits);
-    const auto clearance = take_clearance(g, l);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
-    VoxelMap m = grid.map();
-    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, plan_.held), grid,
-                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-                             for (std::int64_t j = first; j < end; ++j)
-                               m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
-                           });
-    return m;
-  }
-
- private:
-  static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
-
   void sample(const Geometry<double>& g, const Limits<double>& l, const SampleContents<double>& wanted,
-              const ClearanceTest* test, double y, const VoxelGrid& grid, Survey<double>& survey) const {
+              const ClearanceTest* test, double y, const VoxelGrid& grid, VoxelScratch& scratch,
+              Survey<double>& survey) const {
     // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
     const bool together = !wanted.inertia() && !wanted.poses && !test;
-    const Halves halves = together ? counter_.halves(g, y, grid) : Halves{grid.cells[0], grid.cells[2], false, false};
-    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t) {
-      thread_local ColumnConditioning<double> poses;
-      counter_.visit_block(g, l, test, y, grid, block, halves,
+    const Halves halves = together ? counter_.halves(g, y, grid) : counter_.whole();
+    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t worker) {
+      ColumnConditioning<double>& poses = scratch.workers[worker].poses;
+      counter_.visit_block(g, l, test, y, grid, block, halves, scratch.workers[worker].columns,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
                              const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};

@@ -66,12 +66,12 @@ void VoxelCounter::fill_block(const Geometry<double>& g, const Limits<double>& l
 }
 
 std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test,
-                                 double y, const VoxelGrid& grid, bool& touches) const {
-  if (test) return count_clear(g, l, *test, y, grid, touches);
+                                 double y, const VoxelGrid& grid, VoxelScratch& scratch, bool& touches) const {
+  scratch.workers.resize(std::max(scratch.workers.size(), workers()));
+  if (test) return count_clear(g, l, *test, y, grid, scratch, touches);
   constexpr std::int64_t kColumns = 64;  // of eight thetas: a microsecond's work, to be shared out
   const Halves part = halves(g, y, grid);
-  thread_local std::vector<CellTally> tallies;
-  std::vector<CellTally>& found = tallies;                         // this thread's, also for the others of the team
+  std::vector<CellTally>& found = scratch.tallies;
   const std::int64_t parts = (part.xs + kColumns - 1) / kColumns;  // of each block
   found.resize(blocks(part) * static_cast<std::size_t>(parts));
   const auto block_of = [&](std::size_t piece) { return static_cast<std::int64_t>(piece) / parts * kLanes; };
@@ -100,13 +100,15 @@ std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>
 }
 
 std::int64_t VoxelCounter::count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test,
-                                       double y, const VoxelGrid& grid, bool& touches) const {
+                                       double y, const VoxelGrid& grid, VoxelScratch& scratch, bool& touches) const {
   std::int64_t total = 0;
   touches = false;
-  visit_columns(g, l, &test, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-    total += end - first;
-    touches = touches || i == 0 || i == cells_[0] - 1 || first == 0 || end == cells_[1] || k == 0 || k == cells_[2] - 1;
-  });
+  visit_columns(g, l, &test, y, grid, scratch.workers[0].columns,
+                [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+                  total += end - first;
+                  touches = touches || i == 0 || i == cells_[0] - 1 || first == 0 || end == cells_[1] || k == 0 ||
+                            k == cells_[2] - 1;
+                });
   return total;
 }
 

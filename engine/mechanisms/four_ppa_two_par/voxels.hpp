@@ -7,6 +7,7 @@
 
 #include "engine/mechanisms/four_ppa_two_par/cells.hpp"
 #include "engine/mechanisms/four_ppa_two_par/clearance.hpp"
+#include "engine/mechanisms/four_ppa_two_par/conditioning.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
 namespace pkm::four_ppa_two_par {
@@ -19,7 +20,7 @@ Box default_box(const Geometry<double>& g);
 /// even in theta where the grid is, and symmetric in x where the box is.
 struct Halves {
   std::int64_t xs, thetas;  ///< from the first
-  bool mirrored_x, mirrored_theta;
+  bool mirrored_x = false, mirrored_theta = false;
   bool centre_x = false, centre_theta = false;  ///< the last one is its own image
 
   /// How many columns the one at x index i and theta index k stands for.
@@ -27,6 +28,17 @@ struct Halves {
     return (mirrored_x && !(centre_x && i == xs - 1) ? 2 : 1) *
            (mirrored_theta && !(centre_theta && k == thetas - 1) ? 2 : 1);
   }
+};
+
+/// What a survey's threads need, each for itself.
+struct VoxelWorker {
+  ColumnBlock columns;
+  ColumnConditioning<double> poses;
+};
+/// Storage that surveys reuse.
+struct VoxelScratch {
+  std::vector<CellTally> tallies;
+  std::vector<VoxelWorker> workers;
 };
 
 /// Counts cells of grids with a fixed number of cells.
@@ -40,9 +52,10 @@ class VoxelCounter {
   /// @param test     what a clearance limit leaves to be tested pose by pose, or null
   /// @param touches  set when a feasible cell lies on the grid's outer layer
   std::int64_t count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
-                     const VoxelGrid& grid, bool& touches) const;
+                     const VoxelGrid& grid, VoxelScratch& scratch, bool& touches) const;
 
   Halves halves(const Geometry<double>& g, double y, const VoxelGrid& grid) const;
+  Halves whole() const { return {.xs = cells_[0], .thetas = cells_[2]}; }
   /// How many blocks of neighbouring thetas there are.
   std::size_t blocks(const Halves& part) const { return static_cast<std::size_t>((part.thetas + kLanes - 1) / kLanes); }
 
@@ -50,8 +63,8 @@ class VoxelCounter {
   /// k of one block. There is one run at most, unless `test` cuts it.
   template <class Visit>
   void visit_block(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
-                   const VoxelGrid& grid, std::size_t block, const Halves& part, const Visit& visit) const {
-    thread_local ColumnBlock columns;
+                   const VoxelGrid& grid, std::size_t block, const Halves& part, ColumnBlock& columns,
+                   const Visit& visit) const {
     const auto k_block = static_cast<std::int64_t>(block) * kLanes;
     fill_block(g, l, y, grid, k_block, part, columns);
     for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k)
@@ -69,9 +82,10 @@ class VoxelCounter {
   /// The same for the whole grid.
   template <class Visit>
   void visit_columns(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test, double y,
-                     const VoxelGrid& grid, const Visit& visit) const {
-    const Halves all{cells_[0], cells_[2], false, false};
-    for (std::size_t block = 0; block < blocks(all); ++block) visit_block(g, l, test, y, grid, block, all, visit);
+                     const VoxelGrid& grid, ColumnBlock& columns, const Visit& visit) const {
+    const Halves all = whole();
+    for (std::size_t block = 0; block < blocks(all); ++block)
+      visit_block(g, l, test, y, grid, block, all, columns, visit);
   }
 
   double sin_theta(std::int64_t k) const { return sin_[static_cast<std::size_t>(k)]; }
@@ -93,7 +107,7 @@ class VoxelCounter {
     if (start < end) visit(i, start, end, k);
   }
   std::int64_t count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test, double y,
-                           const VoxelGrid& grid, bool& touches) const;
+                           const VoxelGrid& grid, VoxelScratch& scratch, bool& touches) const;
   void fill_block(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
                   std::int64_t k_block, const Halves& part, ColumnBlock& block) const;
   ColumnsAtThetas columns(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
