@@ -1,16 +1,6 @@
-// 4PPa-2PaR: geometry, limits and kinematics of one pose.
+// 4PPa-2PaR: geometry, limits and kinematics of one pose. Frames and names: README.md.
 //
 // Source: "Kinematics analysis and optimal design of a 3T1R parallel mechanism", equation numbers are that paper's.
-//
-// Two rails along y at x = 0 and x = b in the plane z = 0, z up. Sliders 1, 2 run on rail 1 and 3, 4 on rail 2; q_i is
-// the slider's y. Limb j = 1, 2: its two upper bars (length l_u) meet at C_j below the rail, a lower parallelogram
-// (length l_d) hangs D_j from C_j in the x-z plane, and the platform's joint P_j lies d below D_j.
-//
-//   P_1, P_2 = (x, y, z) -/+ (a/2)(cos theta, sin theta, 0)
-//   x_1 = x - a c/2 = l_d sin(beta_1),   x_2 = b - x - a c/2 = l_d sin(beta_2)
-//   y_1 = y - a s/2,                     y_2 = y + a s/2
-//   sigma_j = l_d |cos(beta_j)|,         h_j = l_u cos(alpha_j) = half the slider spacing
-//   lower branch: z_cj = z + d + sigma_j; upper branch: z_cj = z + d - sigma_j
 #pragma once
 
 #include <array>
