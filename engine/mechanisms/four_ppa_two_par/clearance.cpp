@@ -164,10 +164,4 @@ std::optional<ClearanceTest> take_clearance(const Geometry<double>& g, Limits<do
   return test;
 }
 
-Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta) {
-  Limbs<double> limbs;
-  for (std::size_t j = 0; j < 2; ++j) place_limb(g, x, 0.0, z, {sin_theta, cos_theta}, kLowerMode[j], j, limbs);
-  return placement(limbs, sin_theta, kLowerMode);
-}
-
 }  // namespace pkm::four_ppa_two_par

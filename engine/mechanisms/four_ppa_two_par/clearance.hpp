@@ -1,8 +1,8 @@
 // 4PPa-2PaR: a clearance limit on one design, taken apart for surveys of the lower mode.
 //
 // Of the pairs of links, most need no look at a pose: README.md, Clearance. Those that a bound clears are dropped; the
-// others are tested pose by pose, boxes first. Among them, what hangs from C_j (all but sliders and upper bars) keeps its
-// mutual distances when z alone changes.
+// others are tested pose by pose, boxes first. Among them, what hangs from C_j (all but sliders and upper bars) keeps
+// its mutual distances when z alone changes.
 #pragma once
 
 #include <vector>
@@ -64,8 +64,5 @@ class ClearanceTest {
 /// Takes the clearance limit out of `l`: what is one of h or beta goes into l.h_min and l.sin_beta_min, the rest into a
 /// test. None: nothing is left to test.
 std::optional<ClearanceTest> take_clearance(const Geometry<double>& g, Limits<double>& l);
-
-/// The links' places in the lower mode, from the centre of a voxel.
-Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta);
 
 }  // namespace pkm::four_ppa_two_par

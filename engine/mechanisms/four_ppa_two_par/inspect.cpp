@@ -37,6 +37,10 @@ void add_velocities(const Geometry<double>& g, const Velocity<double>& v, PoseRe
   report.conditioning = inverse_condition(columns);
 }
 
+[[gnu::noinline]] double lower_clearance(const Geometry<double>& g, double x, double z, double s, double c) {
+  return nearest_links(links(g, lower_placement(g, x, z, s, c))).clearance;
+}
+
 }  // namespace
 
 PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
@@ -47,12 +51,11 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
   report.angles.emplace_back("section_type", section_type(g, c));
   std::array<double, kMargins> margin;
   margin.fill(std::numeric_limits<double>::infinity());
-  visit_margins<Angles::in_radians>(
-      g, l, c, mode, limb, [](std::size_t) {},
-      [&](std::size_t index, double part) {
-        margin[index] = std::fmin(margin[index], part);
-        return true;
-      });
+  visit_margins<Angles::in_radians>(g, l, pose.x, pose.y, pose.z, sincos(pose.angle), mode,
+                                    [&](std::size_t index, double part) {
+                                      margin[index] = std::fmin(margin[index], part);
+                                      return true;
+                                    });
   const auto list = [&](std::size_t index) { report.margins.emplace_back(kMarginNames[index], margin[index]); };
   if (!limb.assembles) {
     report.reason = out_of_reach(limb, margin);
@@ -88,12 +91,9 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
 
 bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, double y, double z, double sin_theta,
               double cos_theta) {
-  Limbs<double> limbs;
-  const auto place = [&](std::size_t j) { place_limb(g, x, y, z, {sin_theta, cos_theta}, kLowerMode[j], j, limbs); };
   const auto holds = [](std::size_t, double margin) { return margin >= 0; };
-  if (!visit_margins<Angles::by_sides>(g, l, cos_theta, kLowerMode, limbs, place, holds)) return false;
-  return !l.clearance_min ||
-         nearest_links(links(g, placement(limbs, sin_theta, kLowerMode))).clearance >= *l.clearance_min;
+  if (!visit_margins<Angles::by_sides>(g, l, x, y, z, {sin_theta, cos_theta}, kLowerMode, holds)) return false;
+  return !l.clearance_min || lower_clearance(g, x, z, sin_theta, cos_theta) >= *l.clearance_min;
 }
 
 }  // namespace pkm::four_ppa_two_par

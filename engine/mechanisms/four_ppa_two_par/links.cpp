@@ -2,6 +2,12 @@
 
 namespace pkm::four_ppa_two_par {
 
+Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta) {
+  Limbs<double> limbs;
+  for (std::size_t j = 0; j < 2; ++j) place_limb(g, x, 0.0, z, {sin_theta, cos_theta}, kLowerMode[j], j, limbs);
+  return placement(limbs, sin_theta, kLowerMode);
+}
+
 std::string link_name(std::size_t link) {
   for (int limb = 0; limb < 2; ++limb) {
     const std::string of_limb = " of limb " + std::to_string(limb + 1);

@@ -27,6 +27,9 @@ Placement<S> placement(const Limbs<S>& limb, const S& sin_theta, WorkingMode mod
   return p;
 }
 
+/// The links' places in the lower mode, from the centre of a voxel.
+Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta);
+
 // Links in groups that keep together. Each limb has, in the plane of its rail, two sliders, four upper bars and the
 // upper connector's side along y; in the plane y = y_j the upper connector's upright side with two lower bars, and the
 // lower connector.

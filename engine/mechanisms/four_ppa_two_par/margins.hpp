@@ -43,12 +43,18 @@ S beta(const Corner<S>& lean, Branch branch) {
 
 /// Calls keep(index, margin) until it says no; returns whether it never did. A margin may come in parts, the least of
 /// which counts. All but the clearance, which joints do not tell.
-/// @param place  place(j) puts limb j into `limbs`, if it is not there yet
-template <Angles angles, class S, class Place, class Keep>
-[[gnu::always_inline]] inline bool visit_margins(const Geometry<S>& g, const Limits<S>& l, const S& cos_theta,
-                                                 WorkingMode mode, const Limbs<S>& limbs, const Place& place,
+template <Angles angles, class S, class Keep>
+[[gnu::always_inline]] inline bool visit_margins(const Geometry<S>& g, const Limits<S>& l, const S& x, const S& y,
+                                                 const S& z, const SinCosOf<S>& theta, WorkingMode mode,
                                                  const Keep& keep) {
   constexpr bool sides = angles == Angles::by_sides;
+  Limbs<S> limbs;
+  for (std::size_t j = 0; j < 2; ++j) {
+    if constexpr (sides)
+      limbs.x[j] = limb_x(g, x, theta.cos, j);  // most poses fail there, before a root is taken
+    else
+      place_limb(g, x, y, z, theta, mode[j], j, limbs);
+  }
   const auto above = [](const Corner<S>& at, const S& sine) -> S {
     if constexpr (sides)
       return at.opposite - at.hypotenuse * sine;
@@ -61,29 +67,32 @@ template <Angles angles, class S, class Place, class Keep>
     else
       return atan2(sine, cosine) - at.radians();
   };
-  const auto limb = [&](std::size_t j) {
-    place(j);
-    const Corner<S> up = alpha(g, limbs, j), down = lean(g, limbs, j);
+  const auto across = [&](std::size_t j) __attribute__((always_inline)) {
+    const Corner<S> down = lean(g, limbs, j);
     return keep(kReachX + j, limbs.x[j]) && keep(kReachX + j, S(g.l_d - limbs.x[j])) &&  // eq 12
            keep(kFirstLimit + kBetaMin, above(down, l.sin_beta_min)) &&                  // eq 17
-           keep(kFirstLimit + kBetaMax, below(down, l.sin_beta_max, l.cos_beta_max)) &&  // eq 20
-           keep(kReachZ + j, S(g.l_u - magnitude(limbs.z_c[j]))) &&                      // eq 12
-           keep(kBelowRail + j, S(-limbs.z_c[j])) &&                                     // eq 12
-           keep(kFirstLimit + kAlphaMin, above(up, l.sin_alpha_min)) &&                  // eq 17
-           keep(kFirstLimit + kHMin, S(limbs.h[j] - l.h_min)) &&                         // eq 19
+           keep(kFirstLimit + kBetaMax, below(down, l.sin_beta_max, l.cos_beta_max));    // eq 20
+  };
+  const auto along = [&](std::size_t j) __attribute__((always_inline)) {
+    if constexpr (sides) place_limb(g, x, y, z, theta, mode[j], j, limbs);
+    const Corner<S> up = alpha(g, limbs, j);
+    return keep(kReachZ + j, S(g.l_u + limbs.z_c[j])) && keep(kReachZ + j, S(g.l_u - limbs.z_c[j])) &&  // eq 12
+           keep(kBelowRail + j, S(-limbs.z_c[j])) &&                                                    // eq 12
+           keep(kFirstLimit + kAlphaMin, above(up, l.sin_alpha_min)) &&                                 // eq 17
+           keep(kFirstLimit + kHMin, S(limbs.h[j] - l.h_min)) &&                                        // eq 19
            keep(kStroke, limbs.q[2 * j]) && keep(kStroke, S(g.L0 - limbs.q[2 * j + 1]));
   };
-  const auto sine_of_sum = [&]() -> S {  // of beta_1 + beta_2
+  const auto parallel = [&]() -> S {  // |sin(beta_1 + beta_2)|, eq 15
     const Corner<S> one = lean(g, limbs, 0), two = lean(g, limbs, 1);
     if constexpr (sides) {
       const S p = one.opposite * two.adjacent, q = two.opposite * one.adjacent;
-      return (mode[0] == mode[1] ? S(p + q) : S(p - q)) / (g.l_d * g.l_d);
+      return magnitude(mode[0] == mode[1] ? S(p + q) : S(p - q)) - l.sin_par_min * g.l_d * g.l_d;
     } else {
-      return sincos(S(beta(one, mode[0]) + beta(two, mode[1]))).sin;
+      return magnitude(sincos(S(beta(one, mode[0]) + beta(two, mode[1]))).sin) - l.sin_par_min;
     }
   };
-  return keep(kFirstLimit + kCosThetaMin, S(cos_theta - l.cos_theta_min)) && limb(0) && limb(1) &&
-         keep(kFirstLimit + kSinParMin, S(magnitude(sine_of_sum()) - l.sin_par_min));  // eq 15
+  return keep(kFirstLimit + kCosThetaMin, S(theta.cos - l.cos_theta_min)) && across(0) && across(1) && along(0) &&
+         along(1) && keep(kFirstLimit + kSinParMin, parallel());
 }
 
 /// What the limits leave of the lower mode's lengths [m].

@@ -109,12 +109,19 @@ struct Limbs {
   bool assembles = false;
 };
 
+/// x_j at a pose's x.
+template <class S>
+[[gnu::always_inline]] inline S limb_x(const Geometry<S>& g, const S& x, const S& cos_theta, std::size_t j) {
+  const S half = g.a * cos_theta * 0.5;
+  return j == 0 ? S(x - half) : S(g.b - x - half);
+}
+
 /// Puts limb j where it is at a pose; where it does not reach, roots are 0. S may be lanes.
 template <class S>
 [[gnu::always_inline]] inline void place_limb(const Geometry<S>& g, const S& x, const S& y, const S& z,
                                               const SinCosOf<S>& theta, Branch branch, std::size_t j, Limbs<S>& limb) {
-  const S half = g.a * theta.cos * 0.5, shift = g.a * theta.sin * 0.5;
-  limb.x[j] = j == 0 ? S(x - half) : S(g.b - x - half);
+  const S shift = g.a * theta.sin * 0.5;
+  limb.x[j] = limb_x(g, x, theta.cos, j);
   limb.y[j] = j == 0 ? S(y - shift) : S(y + shift);
   limb.sigma[j] = root_or_zero(S((g.l_d - limb.x[j]) * (g.l_d + limb.x[j])));
   limb.z_c[j] = branch == Branch::lower ? S(z + g.d + limb.sigma[j]) : S(z + g.d - limb.sigma[j]);

@@ -46,13 +46,10 @@ std::array<S, kMargins> margins(const Geometry<S>& g, const Limits<S>& l, const 
                                 const SinCosOf<S>& theta, WorkingMode mode) {
   std::array<S, kMargins> least;
   least.fill(S(1e9));
-  Limbs<S> limbs;
-  visit_margins<angles>(
-      g, l, theta.cos, mode, limbs, [&](std::size_t j) { place_limb(g, x, y, z, theta, mode[j], j, limbs); },
-      [&](std::size_t index, const S& part) {
-        least[index] = select(part < least[index], part, least[index]);
-        return true;
-      });
+  visit_margins<angles>(g, l, x, y, z, theta, mode, [&](std::size_t index, const S& part) {
+    least[index] = select(part < least[index], part, least[index]);
+    return true;
+  });
   return least;
 }
 
