@@ -22,27 +22,21 @@ enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kRp, k
 /// Order of the pose-level limits.
 enum LimitIndex { kAlphaMin, kBetaMin, kBetaMax, kHMin, kSinParMin, kCosThetaMin, kClearanceMin, kLimits };
 
-/// Lengths [m], names as in the paper.
+/// Lengths [m], names as in the paper; kAll has them in the order of the parameters.
 template <class S>
 struct Geometry {
   S a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s;
+
+  using G = Geometry;
+  static constexpr std::array<S G::*, kParameters> kAll = {&G::a,   &G::b,   &G::l_u, &G::l_d, &G::d,   &G::L0, &G::R_u,
+                                                           &G::R_d, &G::d_u, &G::d_d, &G::d_0, &G::R_p, &G::R_s};
 };
 
 template <class S>
 Geometry<S> geometry(std::span<const S> p) {
-  return {.a = p[kA],
-          .b = p[kB],
-          .l_u = p[kLu],
-          .l_d = p[kLd],
-          .d = p[kD],
-          .L0 = p[kL0],
-          .R_u = p[kRu],
-          .R_d = p[kRd],
-          .d_u = p[kDu],
-          .d_d = p[kDd],
-          .d_0 = p[kD0],
-          .R_p = p[kRp],
-          .R_s = p[kRs]};
+  Geometry<S> g;
+  for (std::size_t i = 0; i < g.kAll.size(); ++i) g.*g.kAll[i] = p[i];
+  return g;
 }
 
 /// The plane y that surveys are on where their plan names no other [m].
@@ -62,7 +56,20 @@ struct Limits {
   S sin_half, cos_half;  ///< of phi/2
   S cos_theta_min;
   std::optional<double> clearance_min;  ///< [m]; none: no capsule is looked at
+
+  using L = Limits;
+  static constexpr std::array<S L::*, 11> kAll = {
+      &L::sin_alpha_min, &L::cos_alpha_min, &L::sin_beta_min, &L::cos_beta_min, &L::sin_beta_max, &L::cos_beta_max,
+      &L::h_min,         &L::sin_par_min,   &L::sin_half,     &L::cos_half,     &L::cos_theta_min};
 };
+
+/// A Geometry or Limits for another scalar, in which they do not move with the design.
+template <class To, template <class> class Values, class From>
+Values<To> constant(const Values<From>& from) {
+  Values<To> to{};
+  for (std::size_t i = 0; i < to.kAll.size(); ++i) to.*to.kAll[i] = To(value_of(from.*from.kAll[i]));
+  return to;
+}
 
 /// Thresholds given by the study, or derived from the bars' and sliders' sizes (eqs 17 and 19).
 template <class S>

@@ -71,21 +71,7 @@ Crossing find_crossing(const Frame<double>& f, double low, const Signature& at_l
 /// The frame of the same section for another scalar, which does not move with the design.
 template <class To, class From>
 Frame<To> constant_frame(const Frame<From>& f) {
-  const auto v = [](const From& x) { return To(value_of(x)); };
-  const Geometry<To> g = {
-      .a = v(f.g.a), .b = v(f.g.b), .l_u = v(f.g.l_u), .l_d = v(f.g.l_d), .d = v(f.g.d), .L0 = v(f.g.L0)};
-  const Limits<To> l = {.sin_alpha_min = v(f.l.sin_alpha_min),
-                        .cos_alpha_min = v(f.l.cos_alpha_min),
-                        .sin_beta_min = v(f.l.sin_beta_min),
-                        .cos_beta_min = v(f.l.cos_beta_min),
-                        .sin_beta_max = v(f.l.sin_beta_max),
-                        .cos_beta_max = v(f.l.cos_beta_max),
-                        .h_min = v(f.l.h_min),
-                        .sin_par_min = v(f.l.sin_par_min),
-                        .sin_half = v(f.l.sin_half),
-                        .cos_half = v(f.l.cos_half),
-                        .cos_theta_min = v(f.l.cos_theta_min)};
-  return frame(g, l, v(f.y));
+  return frame(constant<To>(f.g), constant<To>(f.l), To(value_of(f.y)));
 }
 
 /// The theta of a crossing with its derivatives: gap(p, theta(p)) = 0 gives theta' = -(d gap/d p) / (d gap/d theta).

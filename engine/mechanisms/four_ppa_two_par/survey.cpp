@@ -147,7 +147,8 @@ class VoxelSurveyor final : public Surveyor {
     const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
     VoxelMap m = grid.map();
     ColumnBlock columns;
-    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, plan_.held), grid, columns,
+    const double y = plane(g, plan_.held);
+    counter_.visit_columns({.g = g, .l = l, .test = clearance ? &*clearance : nullptr, .y = y, .grid = grid}, columns,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              for (std::int64_t j = first; j < end; ++j)
                                m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
@@ -173,23 +174,25 @@ class VoxelSurveyor final : public Surveyor {
     survey.cell_volume = grid.cell_volume() * y_step;
     for (std::int64_t p = 0; p < planes; ++p) {
       const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, plan_.held);
+      const VoxelPlane at{.g = g, .l = l, .test = test, .y = y, .grid = grid};
       bool touches = false;
-      survey.feasible_cells += counter_.count(g, l, test, y, grid, scratch, touches);
+      survey.feasible_cells += counter_.count(at, scratch, touches);
       survey.touches_box = survey.touches_box || touches;
-      if (needs_samples(demand_)) sample(g, l, wanted, test, y, grid, scratch, survey);
+      if (needs_samples(demand_)) sample(at, wanted, scratch, survey);
     }
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
-  void sample(const Geometry<double>& g, const Limits<double>& l, const SampleContents<double>& wanted,
-              const ClearanceTest* test, double y, const VoxelGrid& grid, VoxelScratch& scratch,
+  void sample(const VoxelPlane& at, const SampleContents<double>& wanted, VoxelScratch& scratch,
               Survey<double>& survey) const {
+    const Geometry<double>& g = at.g;
+    const VoxelGrid& grid = at.grid;
     // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
-    const bool together = !wanted.inertia() && !wanted.poses && !test;
-    const Halves halves = together ? counter_.halves(g, y, grid) : counter_.whole();
+    const bool together = !wanted.inertia() && !wanted.poses && !at.test;
+    const Halves halves = together ? counter_.halves(at) : counter_.whole();
     share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t worker) {
       ColumnConditioning<double>& poses = scratch.workers[worker].poses;
-      counter_.visit_block(g, l, test, y, grid, block, halves, scratch.workers[worker].columns,
+      counter_.visit_block(at, block, halves, scratch.workers[worker].columns,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
                              const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
@@ -203,14 +206,14 @@ class VoxelSurveyor final : public Surveyor {
                              if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
                              const double weight = survey.cell_volume * halves.images(i, k);
                              for (std::int64_t j = first; j < end; ++j) {
-                               const auto at = static_cast<std::size_t>(j - first);
+                               const auto n = static_cast<std::size_t>(j - first);
                                Coupling<double> inertia{};
                                if (wanted.inertia())
                                  inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma,
-                                                                  {poses.z_c[0][at], poses.z_c[1][at]}),
+                                                                  {poses.z_c[0][n], poses.z_c[1][n]}),
                                                     wanted.inertia_condition);
-                               add_sample(wanted, weight, {x, y, grid.centre(1, j), grid.centre(2, k)},
-                                          wanted.conditioning ? poses.index[at] : 0, inertia, part);
+                               add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
+                                          wanted.conditioning ? poses.index[n] : 0, inertia, part);
                              }
                            });
     });

@@ -18,8 +18,10 @@ VoxelCounter::VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::
   }
 }
 
-Halves VoxelCounter::halves(const Geometry<double>& g, double y, const VoxelGrid& grid) const {
-  const bool middle = y == g.L0 / 2, theta = middle && even_;
+Halves VoxelCounter::halves(const VoxelPlane& plane) const {
+  const Geometry<double>& g = plane.g;
+  const VoxelGrid& grid = plane.grid;
+  const bool middle = plane.y == g.L0 / 2, theta = middle && even_;
   const bool x = middle && grid.lower[0] == 0 && grid.upper[0] == g.b;
   return {.xs = x ? (cells_[0] + 1) / 2 : cells_[0],
           .thetas = theta ? (cells_[2] + 1) / 2 : cells_[2],
@@ -29,8 +31,8 @@ Halves VoxelCounter::halves(const Geometry<double>& g, double y, const VoxelGrid
           .centre_theta = cells_[2] % 2 == 1};
 }
 
-ColumnsAtThetas VoxelCounter::columns(const Geometry<double>& g, const Limits<double>& l, double y,
-                                      const VoxelGrid& grid, std::int64_t k_block, const Halves& part) const {
+ColumnsAtThetas VoxelCounter::columns(const VoxelPlane& plane, std::int64_t k_block, const Halves& part) const {
+  const auto& [g, l, test, y, grid] = plane;
   const auto k = static_cast<std::size_t>(k_block);
   const Ranges<double> in = ranges(g, l);
   return {.a = g.a,
@@ -57,27 +59,26 @@ ColumnsAtThetas VoxelCounter::columns(const Geometry<double>& g, const Limits<do
           .columns = part.xs};
 }
 
-void VoxelCounter::fill_block(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                              std::int64_t k_block, const Halves& part, ColumnBlock& block) const {
+void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, const Halves& part,
+                              ColumnBlock& block) const {
   block.first.resize(static_cast<std::size_t>(cells_[0] * kLanes));
   block.end.resize(static_cast<std::size_t>(cells_[0] * kLanes));
-  const ColumnsAtThetas at = columns(g, l, y, grid, k_block, part);
+  const ColumnsAtThetas at = columns(plane, k_block, part);
   with_instruction_set([&]<InstructionSet set>() { fill<set>(at, block); });
 }
 
-std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test,
-                                 double y, const VoxelGrid& grid, VoxelScratch& scratch, bool& touches) const {
+std::int64_t VoxelCounter::count(const VoxelPlane& plane, VoxelScratch& scratch, bool& touches) const {
   scratch.workers.resize(std::max(scratch.workers.size(), workers()));
-  if (test) return count_clear(g, l, *test, y, grid, scratch, touches);
+  if (plane.test) return count_clear(plane, scratch.workers[0].columns, touches);
   constexpr std::int64_t kColumns = 64;  // of eight thetas: a microsecond's work, to be shared out
-  const Halves part = halves(g, y, grid);
+  const Halves part = halves(plane);
   std::vector<CellTally>& found = scratch.tallies;
   const std::int64_t parts = (part.xs + kColumns - 1) / kColumns;  // of each block
   found.resize(blocks(part) * static_cast<std::size_t>(parts));
   const auto block_of = [&](std::size_t piece) { return static_cast<std::int64_t>(piece) / parts * kLanes; };
   share_pieces(found.size(), [&](std::size_t piece, std::size_t end) {
     for (; piece < end; ++piece) {
-      const ColumnsAtThetas at = columns(g, l, y, grid, block_of(piece), part);
+      const ColumnsAtThetas at = columns(plane, block_of(piece), part);
       const std::int64_t from = static_cast<std::int64_t>(piece) % parts * kColumns;
       found[piece] = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });
     }
@@ -99,16 +100,13 @@ std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>
   return static_cast<std::int64_t>(total);
 }
 
-std::int64_t VoxelCounter::count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test,
-                                       double y, const VoxelGrid& grid, VoxelScratch& scratch, bool& touches) const {
+std::int64_t VoxelCounter::count_clear(const VoxelPlane& plane, ColumnBlock& columns, bool& touches) const {
   std::int64_t total = 0;
   touches = false;
-  visit_columns(g, l, &test, y, grid, scratch.workers[0].columns,
-                [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-                  total += end - first;
-                  touches = touches || i == 0 || i == cells_[0] - 1 || first == 0 || end == cells_[1] || k == 0 ||
-                            k == cells_[2] - 1;
-                });
+  visit_columns(plane, columns, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+    total += end - first;
+    touches = touches || i == 0 || i == cells_[0] - 1 || first == 0 || end == cells_[1] || k == 0 || k == cells_[2] - 1;
+  });
   return total;
 }
 
