@@ -16,7 +16,7 @@ template <class S>
 struct ColumnScratch {
   std::vector<Break<S>> breaks;
   std::vector<Piece<S>> pieces;
-  std::vector<Integral<S>> integrals;
+  std::vector<QuadraturePart<S>> integrals;
   Structure structure;
 };
 
