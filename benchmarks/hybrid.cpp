@@ -62,9 +62,7 @@ using hybrid::VoxelDesign;
 VoxelDesign nominal() {
   const std::vector<double> p = designs(1)[0];
   const std::span<const double> all(p);
-  return {hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1),
-          1,
-          {}};
+  return {hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1)};
 }
 
 /// The plain loop over the same cells; fails if the survey counts others.

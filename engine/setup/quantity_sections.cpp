@@ -160,10 +160,10 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
 }
 
 void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
-  const MechanismInfo& info = *draft.parts.mechanism;
+  const MechanismInfo& info = draft.info();
   const auto specs = entry.options(info);
   allow_options(table, {"type"}, specs);
-  if (const std::string reason = entry.refusal(info); !reason.empty()) throw table.find("type")->refusal(reason);
+  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty()) throw table.find("type")->refusal(reason);
   const Options options = read_options(table, specs);
   LimitSpec& all = draft.parts.plan.limits;
   LimitSpec own;

@@ -1,5 +1,6 @@
 #include "engine/mechanisms/hybrid/inspect.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/mechanisms/hybrid/influence.hpp"
@@ -69,22 +70,23 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
   const Margins<double> m = margins(g, l, pose, j, branch);
   report.assembles = j.assembles();
   report.joints = {j.s[0], j.s[1], j.s[2], j.s[3]};
-  constexpr std::size_t kDriveOfLimb[3] = {0, 2, 3};
   for (std::size_t limb = 0; limb < 3; ++limb)
     if (j.unreached & bit(limb)) (*report.joints)[kDriveOfLimb[limb]] = kAbsent;
   for (std::size_t i = 0; i < kMargins; ++i)
-    report.margins.emplace_back(margin_names()[i], report.assembles || i <= kReach3 ? m[i] : kAbsent);
+    report.margins.emplace_back(kMarginNames[i].name, report.assembles || i <= kReach3 ? m[i] : kAbsent);
   if (!report.assembles) {
     report.reason = out_of_reach(j);
     return report;
   }
   add_velocity(g, pose, j, report);
   add_transmission(g, pose, j, report);
-  report.feasible = feasible(pose.z, m);
-  if (report.feasible) return report;
-  report.reason = "the platform is not above the base";
-  for (std::size_t i = kMargins; i-- > 0;)  // the first that is broken
-    if (!(m[i] >= 0)) report.reason = "limit " + margin_names()[i] + " is broken";
+  const auto broken = std::ranges::find_if(m, [](double margin) { return !(margin >= 0); });
+  if (broken != m.end())
+    report.reason =
+        "limit " + std::string(kMarginNames[static_cast<std::size_t>(broken - m.begin())].name) + " is broken";
+  else if (!(pose.z > 0))
+    report.reason = "the platform is not above the base";
+  report.feasible = report.reason.empty();
   return report;
 }
 

@@ -63,11 +63,6 @@ MechanismInfo make_info() {
   return i;
 }
 
-/// Pose margins in one unit: lengths as they are, angles and ratios at the length e.
-bool is_length(std::size_t margin) {
-  return (margin >= kStroke1 && margin <= kZClearance) || margin == kCarriageGap || margin >= kAuxLength;
-}
-
 /// The platform and links A and B stretched along their rails, by link C.
 template <class S>
 S size_of(std::span<const S> p) {
@@ -219,7 +214,8 @@ class Hybrid final : public Mechanism,
     for (const pkm::Pose<double>& at : poses) {
       const SchoenfliesPose<S> pose{S(at[0]), S(at[1]), S(at[2]), S(at[3])};
       const Margins<S> found = hybrid::margins(g, l, pose, inverse(g, pose, mode.signs), mode.branch);
-      for (std::size_t i = 0; i < kMargins; ++i) margins.push_back(is_length(i) ? found[i] : S(found[i] * g.e));
+      for (std::size_t i = 0; i < kMargins; ++i)  // in one unit: lengths as they are, angles and ratios at the length e
+        margins.push_back(kMarginNames[i].kind == MarginKind::length ? found[i] : S(found[i] * g.e));
     }
   }
 

@@ -189,12 +189,12 @@ TEST(HybridKinematics, MarginsWithDerivativesHaveTheSameBitsAndTheSlopesOfDiffer
     upper[varied] += kStep;
     const auto below = margins_at(lower), above = margins_at(upper);
     for (std::size_t i = 0; i < plain.size(); ++i) {
-      EXPECT_EQ(found[i].a, plain[i]) << margin_names()[i];
-      EXPECT_TRUE(std::isfinite(found[i].v[0])) << margin_names()[i];
+      EXPECT_EQ(found[i].a, plain[i]) << kMarginNames[i].name;
+      EXPECT_TRUE(std::isfinite(found[i].v[0])) << kMarginNames[i].name;
       const double ahead = (above[i] - plain[i]) / kStep, behind = (plain[i] - below[i]) / kStep;
       if (std::fabs(ahead - behind) > 1e-3) continue;  // a kink, or the edge of a limb's reach
       ++slopes;
-      EXPECT_NEAR(found[i].v[0], (ahead + behind) / 2, 1e-5 * (1 + std::fabs(ahead))) << margin_names()[i];
+      EXPECT_NEAR(found[i].v[0], (ahead + behind) / 2, 1e-5 * (1 + std::fabs(ahead))) << kMarginNames[i].name;
     }
   }
   EXPECT_GT(slopes, 4000);

@@ -31,9 +31,10 @@ Survey<S> survey(const std::vector<S>& p, const WorkingMode& mode, const SurveyP
 }
 
 template <class S>
-Frame<S> frame_of(const std::vector<S>& p, const WorkingMode& mode, const LimitSpec& spec = no_thresholds()) {
+Frame<S> frame_of(const std::vector<S>& p, const WorkingMode& mode, const LimitSpec& spec = no_thresholds(),
+                  int branch = 1) {
   const std::span<const S> all(p);
-  return frame(geometry(all), limits(all, spec), mode, 1);
+  return frame(geometry(all), limits(all, spec), mode, branch);
 }
 
 /// Mean of two designs of the golden data, each shifted a little, so that nearly all have a workspace.
@@ -58,6 +59,7 @@ std::vector<Case> random_cases(int count, int seed) {
 struct ColumnOfX {
   double lower = 1, upper = 0, hole = 0;
   bool empty() const { return !(lower <= upper); }
+  bool holds(double x) const { return x >= lower && x <= upper && std::fabs(x) >= hole; }
   double length() const {
     if (empty()) return 0;
     return upper - lower - std::fmax(0, std::fmin(upper, hole) - std::fmax(lower, -hole));
@@ -70,8 +72,8 @@ ColumnOfX column_at(const Frame<double>& f, double z, double beta) {
   if (z < *std::ranges::max_element(s.lower) || z > *std::ranges::min_element(s.upper)) return column;
   column = {-1e9, 1e9, z < s.hole_end ? s.curve[kCurveH].root(z) : 0};
   for (std::uint8_t k = 0; k < kCurveH; ++k) {
-    column.lower = std::fmax(column.lower, edge_at(s, {k, 0}, z));
-    column.upper = std::fmin(column.upper, edge_at(s, {k, 1}, z));
+    column.lower = std::fmax(column.lower, edge_at(s, {k, kLeft}, z));
+    column.upper = std::fmin(column.upper, edge_at(s, {k, kRight}, z));
   }
   return column;
 }
@@ -98,7 +100,7 @@ TEST(HybridColumns, OfZEndWhereThePlainTestChanges) {
   int found = 0;
   for (const auto& entry : golden()["zcolumn"]) {
     SCOPED_TRACE(entry.dump());
-    const VoxelDesign design{frame_of(design_of(entry), {1, -1, -1}), 1, {}};
+    const VoxelDesign design{frame_of(design_of(entry), {1, -1, -1})};
     const double x = entry["x"], beta = entry["beta"];
     const auto at = [&](double z) { return feasible(design, x, z, beta); };
     ASSERT_LE(entry["intervals"].size(), 1u);
@@ -132,7 +134,7 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
       EXPECT_NEAR(found.volume, grid["volume"].get<double>(), 1e-12 * found.volume);
       EXPECT_NEAR(weighted_mean(found.weight, found.conditioning), grid["gci"].get<double>(), 1e-12);
     }
-    const Box box = default_box({frame_of(p, mode), 1, {}});
+    const Box box = default_box({frame_of(p, mode)});
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t end = 0; end < 2; ++end)
         EXPECT_NEAR(box[i][end], entry["box"][i][end].get<double>(), 1e-14) << i << " " << end;
@@ -181,25 +183,28 @@ TEST(HybridVoxels, ConvergeToTheColumns) {
   }
 }
 
-TEST(HybridVoxels, ThePlainTestIsThatOfTheMargins) {
+// The closed forms state the margins once more: they hold the poses whose margins hold, and the pose test the same.
+TEST(HybridColumns, OfXHoldThePosesWhoseMarginsDo) {
   Uniform uniform(7);
   int inside = 0;
-  for (const Case& c : random_cases(60, 8))
-    for (const int branch : {1, -1})
-      for (const bool with_links : {false, true}) {
-        VoxelDesign design{frame_of(c.p, c.mode), branch, {}};
-        if (with_links) design.clearance = 0;
-        const Frame<double>& f = design.frame;
-        for (int i = 0; i < 400; ++i) {
-          const Pose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]), uniform(0.15, 0.3),
-                                  uniform(-0.7, 0.7)};
-          const Margins<double> m = margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), branch);
-          const bool expected = std::all_of(m.begin(), with_links ? m.end() : m.begin() + kCapsules,
-                                            [](double margin) { return margin >= 0; });
-          ASSERT_EQ(feasible(design, pose.x, pose.z, pose.angle), expected);
-          inside += expected;
-        }
+  for (const Case& c : random_cases(120, 8))
+    for (const int branch : {1, -1}) {
+      const VoxelDesign design{frame_of(c.p, c.mode, no_thresholds(), branch)}, with_links{design.frame, true};
+      const Frame<double>& f = design.frame;
+      for (int i = 0; i < 400; ++i) {
+        const Pose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]), uniform(0.15, 0.3),
+                                uniform(-0.7, 0.7)};
+        const Margins<double> m = margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), branch);
+        const auto holds = [&](std::size_t count) {
+          return std::all_of(m.begin(), m.begin() + count, [](double margin) { return margin >= 0; });
+        };
+        const bool in_range = pose.angle >= f.l.beta_min && pose.angle <= f.l.beta_max;
+        ASSERT_EQ(in_range && column_at(f, pose.z, pose.angle).holds(pose.x), holds(kCapsules));
+        ASSERT_EQ(feasible(design, pose.x, pose.z, pose.angle), holds(kCapsules));
+        ASSERT_EQ(feasible(with_links, pose.x, pose.z, pose.angle), holds(kMargins));
+        inside += holds(kMargins);
       }
+    }
   EXPECT_GT(inside, 3000);
 }
 
@@ -209,7 +214,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
     for (const bool with_links : {false, true}) {
       SurveyPlan voxels = plan(Method::voxels, {19, 17, 23});
       if (with_links) voxels.limits.given[kClearanceMin] = 0.004;
-      const VoxelDesign design{frame_of(c.p, c.mode, voxels.limits), 1, voxels.limits.given[kClearanceMin]};
+      const VoxelDesign design{frame_of(c.p, c.mode, voxels.limits), with_links};
       const Box box = default_box(design), wide = {{{-0.3, 0.3}, {0.0, 0.35}, {-1.2, 1.2}}};
       for (const bool given : {false, true}) {
         if (given) voxels.box = wide;
@@ -232,7 +237,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
 // The branch N2 < 0 keeps nothing within the range of the universal joint at C'.
 TEST(HybridVoxels, TheOtherBranchIsEmpty) {
   for (const Case& c : random_cases(9, 2)) {
-    const VoxelDesign design{frame_of(c.p, c.mode), -1, {}};
+    const VoxelDesign design{frame_of(c.p, c.mode, no_thresholds(), -1)};
     const VoxelGrid grid({15, 15, 40}, {{{-0.3, 0.3}, {0.05, 0.3}, {-1.5, 1.5}}});
     Survey<double> found;
     summarise(grid,
