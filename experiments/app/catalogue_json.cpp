@@ -75,7 +75,7 @@ Json limits_json(const MechanismInfo& info, const std::string& group) {
                       {"min", limit.lower},
                       {"max", limit.upper},
                       {"constraint", limit.group},
-                      {"derivation", limit.derivation.empty() ? Json() : Json(limit.derivation)},
+                      {"derivation", text_or_null(limit.derivation)},
                       {"meaning", limit.meaning}});
   return list;
 }
@@ -175,7 +175,7 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   json["integrated_unit"] = usual.integrates ? Json(unit_of_product(info, integrated)) : Json();
   json["size"] = said_by(mechanism.size(), [](const Size& size) { return size.meaning(); });
   json["size_unit"] = said_by(mechanism.size(), [](const Size& size) { return size.unit(); });
-  json["characteristic_length"] = info.characteristic_length.empty() ? Json() : Json(info.characteristic_length);
+  json["characteristic_length"] = text_or_null(info.characteristic_length);
   json["objectives"] = serving(catalogues.objectives, mechanism);
   json["constraints"] = serving(catalogues.constraints, mechanism);
   json["parameters"] = parameters_json(info.parameters);

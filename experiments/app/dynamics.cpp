@@ -80,7 +80,7 @@ Json reactions_json(const Reactions& reactions) {
     joints[joint.name] = {{"on", joint.on}, {"force", joint.force}, {"couple", couple}};
   }
   Json json = {{"joints", joints}};
-  json["reason"] = reactions.reason.empty() ? Json() : Json(reactions.reason);
+  json["reason"] = text_or_null(reactions.reason);
   json["equations"] = reactions.equations;
   json["unknowns"] = reactions.unknowns;
   json["rank"] = reactions.rank;
@@ -95,7 +95,7 @@ Json dynamics_json(const Mechanism& mechanism, const Found& f) {
                {"pose", axes_json(info.coordinates, f.at)},
                {"feasible", f.pose.feasible},
                {"assembles", f.pose.assembles},
-               {"reason", f.pose.reason.empty() ? Json() : Json(f.pose.reason)}};
+               {"reason", text_or_null(f.pose.reason)}};
   for (const char* key : {"joints", "J", "Mq", "dci", "tau", "coriolis", "gravity", "joint_speeds", "power"})
     json[key] = nullptr;
   if (f.dynamics) {

@@ -76,7 +76,7 @@ Json poses_json(const Target& target, const AxisVector<double>& joints, const Jo
   for (const auto& [assembly, platform] : solutions) {
     Json pose = values_by_name(info.coordinates, assembly.pose);
     pose["mode"] = assembly.mode;
-    pose["working_mode"] = assembly.working_mode.empty() ? Json() : Json(assembly.working_mode);
+    pose["working_mode"] = text_or_null(assembly.working_mode);
     pose["double_roots"] = assembly.double_roots;
     if (motion.given) {
       pose["velocity"] = platform ? values_by_name(info.coordinates, platform->velocity) : Json();
@@ -87,7 +87,7 @@ Json poses_json(const Target& target, const AxisVector<double>& joints, const Jo
   return {{"mechanism", info.name},
           {"joints", values_by_name(info.joints, joints)},
           {"status", status.word},
-          {"reason", status.reason.empty() ? Json() : Json(status.reason)},
+          {"reason", text_or_null(status.reason)},
           {"poses", poses}};
 }
 

@@ -68,11 +68,6 @@ Found find(const Target& target, const PoseArguments& arguments) {
   return f;
 }
 
-template <class T>
-Json json_or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
-
 Json matrix_or_null(const std::optional<AxisMatrix<double>>& matrix) { return matrix ? matrix_json(*matrix) : Json(); }
 
 /// The pose's angles and the chain's, with its output.
@@ -110,7 +105,7 @@ Json pose_json(const Mechanism& mechanism, const Found& f) {
                {"pose", axes_json(info.coordinates, f.at.pose)},
                {"feasible", report.feasible},
                {"assembles", report.assembles},
-               {"reason", report.reason.empty() ? Json() : Json(report.reason)},
+               {"reason", text_or_null(report.reason)},
                {"joints", axes_json(info.joints, report.joints)},
                {"J", matrix_or_null(report.J)},
                {"Jq", matrix_or_null(report.Jq)},

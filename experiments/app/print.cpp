@@ -6,11 +6,16 @@
 
 namespace pkm {
 
+std::string formatted(const char* format, double value) {
+  if (std::isnan(value)) return "-";
+  std::array<char, 40> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
 std::string number(double value, std::string_view unit) {
   if (std::isnan(value)) return "not computed";
-  std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.12g", value);
-  std::string text = buffer.data();
+  std::string text = formatted("%.12g", value);
   if (unit != "1" && !unit.empty()) text += " " + std::string(unit);
   return text;
 }

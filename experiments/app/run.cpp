@@ -13,6 +13,7 @@
 #include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 
 namespace pkm {
@@ -85,12 +86,6 @@ std::string seed_file(const std::string& output, std::uint64_t seed) {
   const std::filesystem::path path(output);
   return (path.parent_path() / (path.stem().string() + "-seed-" + std::to_string(seed) + path.extension().string()))
       .string();
-}
-
-std::string digits(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
 }
 
 /// Says which of the seeds is under way.

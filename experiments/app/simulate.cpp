@@ -82,14 +82,8 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
 Json run_json(const MechanismInfo& info, const std::string& mode, const Simulation& run) {
   Json states = Json::array();
   for (const auto& state : run.states) states.push_back(state_json(info, state));
-  Json json = {{"mechanism", info.name},
-               {"mode", mode},
-               {"imbalance", run.imbalance},
-               {"turned_over", run.turned_over},
-               {"states", states}};
-  json["stopped"] = nullptr;
-  if (!run.stopped.empty()) json["stopped"] = run.stopped;
-  return json;
+  return {{"mechanism", info.name},         {"mode", mode},     {"imbalance", run.imbalance},
+          {"turned_over", run.turned_over}, {"states", states}, {"stopped", text_or_null(run.stopped)}};
 }
 
 void print_run(const MechanismInfo& info, const std::string& mode, const Simulation& run) {

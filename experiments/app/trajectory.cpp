@@ -133,11 +133,9 @@ Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
                {"joints", axes_json(info.joints, p.joints)},
                {"speeds", axes_json(info.joints, p.speeds)},
                {"accelerations", axes_json(info.joints, p.accelerations)}};
-  json["conditioning"] = nullptr;
-  if (p.conditioning) json["conditioning"] = *p.conditioning;
+  json["conditioning"] = json_or_null(p.conditioning);
   json["feasible"] = p.feasible;
-  json["reason"] = nullptr;
-  if (!p.reason.empty()) json["reason"] = p.reason;
+  json["reason"] = text_or_null(p.reason);
   if (mechanism.dynamics()) {
     json["forces"] = axes_json(info.joints, p.forces);
     json["power"] = axes_json(info.joints, p.power);
