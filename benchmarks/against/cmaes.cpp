@@ -18,6 +18,7 @@
 #include <pagmo/problem.hpp>
 
 #include "constraints/all.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/study/run_study.hpp"
 #include "objectives/all.hpp"
 

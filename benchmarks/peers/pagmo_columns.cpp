@@ -7,6 +7,7 @@
 
 #include "benchmarks/peers/pagmo_search.hpp"
 #include "constraints/all.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/optimisers/evolutionary/order.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/front_keeper.hpp"
 #include "engine/optimisers/option_specs.hpp"
+#include "engine/optimisers/order.hpp"
 
 namespace pkm {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/optimisers/evolutionary/order.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/order.hpp"
+#include "engine/problem/front.hpp"
 
 namespace pkm {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "engine/optimisers/evolutionary/evolution.hpp"
-#include "engine/optimisers/evolutionary/order.hpp"
 #include "engine/optimisers/option_specs.hpp"
+#include "engine/optimisers/order.hpp"
 
 namespace pkm {
 namespace {

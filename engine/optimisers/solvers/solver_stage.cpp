@@ -9,9 +9,9 @@
 
 #include <Eigen/QR>
 
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/front_keeper.hpp"
 #include "engine/optimisers/option_specs.hpp"
-#include "engine/optimisers/solvers/start.hpp"
+#include "engine/optimisers/start.hpp"
 #include "engine/problem/replay.hpp"
 
 namespace pkm {

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/optimisers/evolutionary/order.hpp"
 #include "engine/optimisers/optimiser.hpp"
+#include "engine/optimisers/order.hpp"
 #include "engine/optimisers/solvers/goal.hpp"
 
 namespace pkm {

@@ -9,6 +9,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 
