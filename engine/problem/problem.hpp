@@ -64,18 +64,4 @@ inline double violation(std::span<const double> margins) {
   return sum;
 }
 
-/// Feasibility rules for one objective (Deb 2000): status first, then the objective among feasible designs, the
-/// violation among the others. A failed evaluation is worse than everything. Strict weak order; equal rows keep their
-/// order of evaluation where a sort is stable.
-inline bool better(const EvaluationTable& table, Direction direction, std::size_t a, std::size_t b) {
-  const Status sa = table.status[a], sb = table.status[b];
-  if (sa != sb) return sa < sb;
-  if (sa == Status::failed) return false;
-  if (sa == Status::feasible) {
-    const double fa = table.objective_row(a)[0], fb = table.objective_row(b)[0];
-    return direction == Direction::maximise ? fa > fb : fa < fb;
-  }
-  return violation(table.margin_row(a)) < violation(table.margin_row(b));
-}
-
 }  // namespace pkm

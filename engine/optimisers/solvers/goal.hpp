@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "engine/optimisers/optimiser.hpp"
-#include "engine/optimisers/order.hpp"
+#include "engine/problem/order.hpp"
 
 namespace pkm {
 
