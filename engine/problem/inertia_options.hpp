@@ -36,19 +36,29 @@ inline void demand_dci(const EntryContext& context, Demand& demand) {
   demand.mode = mode_of(context);
 }
 
+template <class S>
+struct CouplingField {
+  std::vector<S> of_samples;
+};
+
 /// Of every sample: the coupling index of one joint, of the joint where it is largest, or the mean over the joints.
-/// Valid until the next call on this thread.
+/// Valid until the next call with this scratch.
 /// @param limb  "1" to "4", "worst" or "mean"
 template <class S>
-const std::vector<S>& coupling_of(const Survey<S>& survey, const std::string& limb) {
+const std::vector<S>& coupling_of(const Survey<S>& survey, const std::string& limb, Scratch& scratch) {
   if (limb != "worst" && limb != "mean") return survey.dci[static_cast<std::size_t>(limb[0] - '1')];
-  thread_local std::vector<S> field;
+  std::vector<S>& field = scratch.get<CouplingField<S>>().of_samples;
   field.resize(survey.dci[0].size());
   for (std::size_t k = 0; k < field.size(); ++k) {
     const S &a = survey.dci[0][k], &b = survey.dci[1][k], &c = survey.dci[2][k], &d = survey.dci[3][k];
     field[k] = limb == "worst" ? max(max(a, b), max(c, d)) : S(((a + b) + (c + d)) * 0.25);
   }
   return field;
+}
+template <class S>
+std::vector<S> coupling_of(const Survey<S>& survey, const std::string& limb) {
+  Scratch scratch;
+  return coupling_of(survey, limb, scratch);
 }
 
 inline OptionSpec limb_option() {

@@ -72,9 +72,13 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
     Demand own;
     entry.demand(context, own);
     add_demand(table, own, region ? region->demand : draft.parts.demand);
-    const std::string meaning = entry.detail ? entry.detail(context) : entry.meaning;
-    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), survey, entry.reads_survey, {},
-            {}};
+    return {.name = name,
+            .unit = entry.unit(context),
+            .meaning = entry.detail ? entry.detail(context) : entry.meaning,
+            .direction = entry.direction,
+            .quantity = entry.make(context),
+            .survey = survey,
+            .reads_survey = entry.reads_survey};
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());
   }

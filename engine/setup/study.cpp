@@ -53,7 +53,7 @@ void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
 void warn_of_empty_workspace(Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
-  SurveyPlan plan = parts.plan;
+  const SurveyPlan& plan = parts.plan;
   if (plan.method == Method::voxels) {
     std::int64_t cells = std::max<std::int64_t>(1, plan.held_cells);
     for (const std::int64_t n : plan.cells) cells *= n;  // at most 2^48
@@ -70,9 +70,11 @@ void warn_of_empty_workspace(Study& study) {
       design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
   }
   if (!parts.mechanism->refuse(design).empty()) return;
-  Survey<double> survey;
-  parts.mechanism->prepare(plan, {})->survey(design, survey);
-  if (survey.volume > 0) return;
+  try {
+    if (study.problem->workspace(design).volume > 0) return;
+  } catch (const std::exception&) {
+    return;  // a mass that is not positive has a message of its own when the design is evaluated
+  }
   using Kind = HeldCoordinate::Kind;
   const int coordinate = sweep_of(info, plan).held;
   const std::string& held = info.coordinates[static_cast<std::size_t>(coordinate)];
@@ -139,14 +141,14 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_regions(root, draft);
   read_motions(root, draft);
   read_quantities(root, draft);
-  read_references(root, draft);
-  read_stages(root, draft);
-  read_run_sections(root, draft);
   try {
-    draft.study.problem = std::make_shared<const DesignProblem>(std::move(draft.parts));
+    draft.study.problem = std::make_shared<const DesignProblem>(draft.parts);
   } catch (const std::invalid_argument& reason) {
     throw root.find("workspace").value_or(*root.find("mechanism")).refusal(reason.what());
   }
+  read_references(root, draft);
+  read_stages(root, draft);
+  read_run_sections(root, draft);
   warn_of_empty_workspace(draft.study);
   return std::move(draft.study);
 }

@@ -12,6 +12,7 @@
 namespace pkm::test {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAre;
 
 Scores line(std::initializer_list<double> at) {
