@@ -20,7 +20,7 @@ class Sphere final : public Problem {
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
   const std::vector<MarginInfo>& margins() const override { return margins_; }
   const std::vector<ReportInfo>& reports() const override { return reports_; }
-  void evaluate(std::span<const double> design, EvaluationSlot result) const override {
+  void evaluate(std::span<const double> design, Scratch&, EvaluationSlot result) const override {
     double sum = 0;
     for (const double x : design) sum += x * x;
     result.objectives[0] = sum;

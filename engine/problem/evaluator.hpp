@@ -22,6 +22,9 @@ class Evaluator {
 class SerialEvaluator final : public Evaluator {
  public:
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
+
+ private:
+  Scratch scratch_;
 };
 
 /// By a team of threads: it shares out the designs, or, where they are few and take long, what surveys have to share
@@ -29,12 +32,13 @@ class SerialEvaluator final : public Evaluator {
 class ParallelEvaluator final : public Evaluator {
  public:
   /// @param threads  0: as many as the machine has cores
-  explicit ParallelEvaluator(int threads = 0) : team_(threads) {}
+  explicit ParallelEvaluator(int threads = 0) : team_(threads), scratch_(static_cast<std::size_t>(team_.threads())) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
   int threads() const { return team_.threads(); }
 
  private:
   Team team_;
+  std::vector<Scratch> scratch_;  ///< of each worker
 };
 
 }  // namespace pkm

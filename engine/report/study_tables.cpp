@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
 #include "engine/report/standing.hpp"
 
 namespace pkm {

@@ -72,9 +72,13 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
     Demand own;
     entry.demand(context, own);
     add_demand(table, own, region ? region->demand : draft.parts.demand);
-    const std::string meaning = entry.detail ? entry.detail(context) : entry.meaning;
-    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), survey, entry.reads_survey, {},
-            {}};
+    return {.name = name,
+            .unit = entry.unit(context),
+            .meaning = entry.detail ? entry.detail(context) : entry.meaning,
+            .direction = entry.direction,
+            .quantity = entry.make(context),
+            .survey = survey,
+            .reads_survey = entry.reads_survey};
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());
   }
@@ -163,7 +167,8 @@ void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry
   const MechanismInfo& info = draft.info();
   const auto specs = entry.options(info);
   allow_options(table, {"type"}, specs);
-  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty()) throw table.find("type")->refusal(reason);
+  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
+    throw table.find("type")->refusal(reason);
   const Options options = read_options(table, specs);
   LimitSpec& all = draft.parts.plan.limits;
   LimitSpec own;

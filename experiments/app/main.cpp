@@ -12,6 +12,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/core/instruction_set.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/version.hpp"
