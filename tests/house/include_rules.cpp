@@ -19,12 +19,19 @@ struct Library {
   Words folders;
 };
 const std::vector<Library> kLibraries = {
-    {"hdf5", {"engine/storage"}},    {"H5", {"engine/storage"}},
-    {"xxh", {"engine/storage"}},     {"Random123/", {"engine/math"}},
-    {"toml++/", {"engine/setup"}},   {"muParser", {"engine/math"}},
-    {"mpi.h", {"engine/problem"}},   {"nlopt", {"engine/optimisers"}},
-    {"coin", {"engine/optimisers"}}, {"Ip", {"engine/optimisers"}},
-    {"spdlog/", {"engine/study"}},   {"nlohmann/", {"engine/report", "experiments/app"}},
+    {"hdf5", {"engine/storage"}},
+    {"H5", {"engine/storage"}},
+    {"xxh", {"engine/storage"}},
+    {"Random123/", {"engine/math"}},
+    {"toml++/", {"engine/setup"}},
+    {"muParser", {"engine/math"}},
+    {"omp.h", {"engine/core"}},
+    {"mpi.h", {"engine/problem"}},
+    {"nlopt", {"engine/optimisers"}},
+    {"coin", {"engine/optimisers"}},
+    {"Ip", {"engine/optimisers"}},
+    {"spdlog/", {"engine/study"}},
+    {"nlohmann/", {"engine/report", "experiments/app"}},
     {"CLI/", {"experiments/app"}},
 };
 // May be included everywhere.
