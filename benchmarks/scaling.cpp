@@ -63,7 +63,7 @@ void run_ga(benchmark::State& state, const Problem& problem, std::int64_t popula
 void threads(benchmark::State& state) {
   const Study study = paper_study();
   ParallelEvaluator evaluator(static_cast<int>(state.range(0)));
-  run_ga(state, *study.problem, 200, 50, evaluator);
+  with_team(evaluator.threads(), [&] { run_ga(state, *study.problem, 200, 50, evaluator); });
 }
 BENCHMARK(threads)
     ->Name("scaling/threads")

@@ -60,18 +60,20 @@ void SerialEvaluator::evaluate(const Problem& problem, EvaluationTable& table, s
 
 void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   constexpr double kWorthSharing = 5e-6, kLong = 200e-6;  // s
-  const std::size_t end = table.size(), count = end - first, team = static_cast<std::size_t>(threads());
+  const std::size_t end = table.size(), count = end - first;
   const double each = seconds_each(table, first);
-  const std::size_t rounds = (count + team - 1) / team;
-  const bool uneven = 4 * count < 3 * rounds * team;  // shared out, a quarter of the threads' time would be waiting
-  if (team == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing))
-    return evaluate_rows(problem, table, first, end, scratch_.front());
-  if (count == 1 || (uneven && each > kLong)) {
-    const LentTeam within(team_);
+  if (threads_ == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing)) {
+    const WithoutTeam alone;
     return evaluate_rows(problem, table, first, end, scratch_.front());
   }
-  team_.share(count, [&](std::size_t begin, std::size_t stop, std::size_t worker) {
-    evaluate_rows(problem, table, first + begin, first + stop, scratch_[worker]);
+  with_team(threads_, [&] {
+    const std::size_t team = workers(), rounds = (count + team - 1) / team;
+    if (scratch_.size() < team) scratch_.resize(team);
+    const bool uneven = 4 * count < 3 * rounds * team;  // shared out, a quarter of the threads' time would be waiting
+    if (uneven && each > kLong) return evaluate_rows(problem, table, first, end, scratch_.front());
+    share_pieces(count, [&](std::size_t begin, std::size_t stop, std::size_t worker) {  // of one design, what is within
+      evaluate_rows(problem, table, first + begin, first + stop, scratch_[worker]);
+    });
   });
 }
 

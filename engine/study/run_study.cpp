@@ -67,7 +67,14 @@ class Run final : public Monitor {
     contents_.algorithms = kAlgorithms;
   }
 
+  /// By one team for all stages.
   RunOutcome run() {
+    RunOutcome outcome;
+    with_team(evaluator_.threads(), [&] { outcome = run_stages(); });
+    return outcome;
+  }
+
+  RunOutcome run_stages() {
     clock_.first([&] {
       if (recorded_.empty()) write(StudyState::running);  // a new study's file precedes its first evaluation
     });

@@ -19,10 +19,15 @@ struct Library {
   Words folders;
 };
 const std::vector<Library> kLibraries = {
-    {"hdf5.h", {"engine/storage"}},  {"xxhash.h", {"engine/storage"}},
-    {"Random123/", {"engine/math"}}, {"toml++/", {"engine/setup"}},
-    {"muParser.h", {"engine/math"}}, {"nlopt.h", {"engine/optimisers"}},
-    {"Ip", {"engine/optimisers"}},   {"nlohmann/", {"engine/report", "experiments/app"}},
+    {"hdf5.h", {"engine/storage"}},
+    {"xxhash.h", {"engine/storage"}},
+    {"Random123/", {"engine/math"}},
+    {"toml++/", {"engine/setup"}},
+    {"muParser.h", {"engine/math"}},
+    {"nlopt.h", {"engine/optimisers"}},
+    {"omp.h", {"engine/core"}},
+    {"Ip", {"engine/optimisers"}},
+    {"nlohmann/", {"engine/report", "experiments/app"}},
     {"CLI/", {"experiments/app"}},
 };
 // May be included everywhere.

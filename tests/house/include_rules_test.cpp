@@ -95,9 +95,11 @@ TEST(IncludeRules, FindWhatNobodyMayInclude) {
 TEST(IncludeRules, FindAnOutsideLibraryOutOfPlace) {
   EXPECT_THAT(broken_rules("engine/storage/a.hpp", "#include <hdf5.h>\n"),
               ElementsAre("engine/storage/a.hpp includes hdf5.h: may appear in .cpp files only"));
-  EXPECT_THAT(broken_rules("engine/study/a.cpp", "#include <hdf5.h>\n#include <nlopt.h>\n#include <CLI/CLI.hpp>\n"),
+  EXPECT_THAT(broken_rules("engine/study/a.cpp",
+                           "#include <hdf5.h>\n#include <nlopt.h>\n#include <omp.h>\n#include <CLI/CLI.hpp>\n"),
               ElementsAre("engine/study/a.cpp includes hdf5.h: belongs to engine/storage",
                           "engine/study/a.cpp includes nlopt.h: belongs to engine/optimisers",
+                          "engine/study/a.cpp includes omp.h: belongs to engine/core",
                           "engine/study/a.cpp includes CLI/CLI.hpp: belongs to experiments/app"));
   EXPECT_THAT(broken_rules("engine/storage/a.cpp", "#include <nlohmann/json.hpp>\n"),
               ElementsAre("engine/storage/a.cpp includes nlohmann/json.hpp: "

@@ -83,7 +83,9 @@ TEST_P(OptimiserContract, ThreadsDoNotMatter) {
   const Outcome one = run(*optimiser, problem, 3);
   for (const int threads : {1, 2, 7}) {
     ParallelEvaluator parallel(threads);
-    EXPECT_TRUE(same_bits(one, run(*optimiser, problem, 3, 1 << 30, &parallel))) << threads << " threads";
+    with_team(threads, [&] {
+      EXPECT_TRUE(same_bits(one, run(*optimiser, problem, 3, 1 << 30, &parallel))) << threads << " threads";
+    });
   }
 }
 
