@@ -68,7 +68,8 @@ void read_stages(const ConfigValue& root, StudyDraft& draft) {
       for (const NamedQuantity& o : objectives) spec.fields.emplace_back(o.name, o.unit);
       if (spec.kind == OptionKind::word) spec.choices = names_of(objectives);
     }
-    Stage stage{&entry, read_options(table, specs), nullptr, table.place().line, {}};
+    Stage stage{
+        std::make_shared<const OptimiserEntry>(entry), read_options(table, specs), nullptr, table.place().line, {}};
     if (const Refusal reason = refusal_of(entry, stage.options, *draft.study.problem))
       throw table.find("optimiser")->refusal(*reason);
     if (entry.capabilities(stage.options).needs_front && draft.study.stages.empty())
