@@ -9,6 +9,7 @@
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 
 namespace pkm::benchmarks {

@@ -1,18 +1,7 @@
-// (3CRR/R)&CRU and Quadrupteron: their bodies and joints, one by one.
+// (3CRR/R)&CRU and Quadrupteron: their bodies and joints, one by one, in the order of README.md. pose_dynamics() is
+// the sum of these bodies' terms, limb by limb.
 //
-// Rods 11, 12, 21, .. 42 (i1 next to the slide, i2 next to the platform), then the middle and the moving platform, or
-// the one platform of the Quadrupteron. With the rods' turning rates per Xdot (rows)
-//
-//   jpsi_1 = u2^T P J_C/(l1 sin theta_2),   jpsi_2 = -u1^T P J_C/(l2 sin theta_2),   P = [p; q], J_C = [1 | z x arm_i]
-//   rod 1   J_v = e e^T J_C + l1 n1 jpsi_1/2                     J_omega = s e jpsi_1
-//   rod 2   J_v = e e^T J_C + l1 n1 jpsi_1 + l2 n2 jpsi_2/2      J_omega = s e jpsi_2
-//
-// Source: as model.hpp, sections 2.2 to 2.4 with their errata. pose_dynamics() (dynamics.hpp) is the sum of
-// these bodies' terms, limb by limb.
-//
-// A slide has no joint with its rail in these equations: it only moves along it, the actuator moves it, and what it
-// feels across the rail goes into the ground. So "a1" is what slide 1 and rod 11 do to each other, and the actuator
-// gives the force along the rail plus m_s (rhoddot - g . e). The payload is part of the platform that carries D.
+// Source: as model.hpp, sections 2.2 to 2.4 with their errata.
 #pragma once
 
 #include <array>

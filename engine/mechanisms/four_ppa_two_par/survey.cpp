@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include <Eigen/LU>
-
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "engine/survey/share_samples.hpp"
@@ -28,8 +26,12 @@ constexpr const char* kSurveyedMode = "lower,lower";
 
 template <class S>
 SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
-  SampleContents<S> c{
-      demand.conditioning, demand.poses, demand.dci, demand.inertia_condition, gamma(geometry(parameters), demand), {}};
+  SampleContents<S> c{.conditioning = demand.conditioning,
+                      .poses = demand.poses,
+                      .dci = demand.dci,
+                      .inertia_condition = demand.inertia_condition,
+                      .gamma = gamma(geometry(parameters), demand),
+                      .masses = {}};
   if (c.inertia()) c.masses = masses(parameters);
   return c;
 }
@@ -47,11 +49,11 @@ class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
         inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
         theta_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {}
 
-  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
-    run(parameters, survey);
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<double>>(), survey);
   }
-  void survey(std::span<const Dual4> parameters, Scratch&, Survey<Dual4>& survey) const override {
-    run(parameters, survey);
+  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<Dual4>>(), survey);
   }
   const SlopeSurveyor* slopes() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
   std::string why_no_slopes() const override {
@@ -63,8 +65,7 @@ class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
   static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
-  void run(std::span<const S> parameters, Survey<S>& survey) const {
-    thread_local ColumnScratch<S> scratch;
+  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
     survey.clear();
     const Geometry<S> g = geometry(parameters);
     Limits<S> l = limits(g, limits_);
@@ -142,7 +143,29 @@ class VoxelSurveyor final : public Surveyor {
 
   std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
 
-  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<VoxelScratch>(), survey);
+  }
+
+  VoxelMap map(const Geometry<double>& g) const {
+    Limits<double> l = limits(g, limits_);
+    const auto clearance = take_clearance(g, l);
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
+    VoxelMap m = grid.map();
+    ColumnBlock columns;
+    const double y = plane(g, held_);
+    counter_.visit_columns({.g = g, .l = l, .test = clearance ? &*clearance : nullptr, .y = y, .grid = grid}, columns,
+                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+                             for (std::int64_t j = first; j < end; ++j)
+                               m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
+                           });
+    return m;
+  }
+
+ private:
+  static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
+
+  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
     survey.clear();
     const Geometry<double> g = geometry(parameters);
     Limits<double> l = limits(g, limits_);
@@ -157,38 +180,25 @@ class VoxelSurveyor final : public Surveyor {
     survey.cell_volume = grid.cell_volume() * y_step;
     for (std::int64_t p = 0; p < planes; ++p) {
       const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, held_);
+      const VoxelPlane at{.g = g, .l = l, .test = test, .y = y, .grid = grid};
       bool touches = false;
-      survey.feasible_cells += counter_.count(g, l, test, y, grid, touches);
+      survey.feasible_cells += counter_.count(at, scratch, touches);
       survey.touches_box = survey.touches_box || touches;
-      if (needs_samples(demand_)) sample(g, l, wanted, test, y, grid, survey);
+      if (needs_samples(demand_)) sample(at, wanted, scratch, survey);
     }
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
-  VoxelMap map(const Geometry<double>& g) const {
-    Limits<double> l = limits(g, limits_);
-    const auto clearance = take_clearance(g, l);
-    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
-    VoxelMap m = grid.map();
-    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, held_), grid,
-                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-                             for (std::int64_t j = first; j < end; ++j)
-                               m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
-                           });
-    return m;
-  }
-
- private:
-  static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
-
-  void sample(const Geometry<double>& g, const Limits<double>& l, const SampleContents<double>& wanted,
-              const ClearanceTest* test, double y, const VoxelGrid& grid, Survey<double>& survey) const {
+  void sample(const VoxelPlane& at, const SampleContents<double>& wanted, VoxelScratch& scratch,
+              Survey<double>& survey) const {
+    const Geometry<double>& g = at.g;
+    const VoxelGrid& grid = at.grid;
     // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
-    const bool together = !wanted.inertia() && !wanted.poses && !test;
-    const Halves halves = together ? counter_.halves(g, y, grid) : Halves{grid.cells[0], grid.cells[2], false, false};
-    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t) {
-      thread_local ColumnConditioning<double> poses;
-      counter_.visit_block(g, l, test, y, grid, block, halves,
+    const bool together = !wanted.inertia() && !wanted.poses && !at.test;
+    const Halves halves = together ? counter_.halves(at) : counter_.whole();
+    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t worker) {
+      ColumnConditioning<double>& poses = scratch.workers[worker].poses;
+      counter_.visit_block(at, block, halves, scratch.workers[worker].columns,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
                              const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
@@ -202,14 +212,14 @@ class VoxelSurveyor final : public Surveyor {
                              if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
                              const double weight = survey.cell_volume * halves.images(i, k);
                              for (std::int64_t j = first; j < end; ++j) {
-                               const auto at = static_cast<std::size_t>(j - first);
+                               const auto n = static_cast<std::size_t>(j - first);
                                Coupling<double> inertia{};
                                if (wanted.inertia())
                                  inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma,
-                                                                  {poses.z_c[0][at], poses.z_c[1][at]}),
+                                                                  {poses.z_c[0][n], poses.z_c[1][n]}),
                                                     wanted.inertia_condition);
-                               add_sample(wanted, weight, {x, y, grid.centre(1, j), grid.centre(2, k)},
-                                          wanted.conditioning ? poses.index[at] : 0, inertia, part);
+                               add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
+                                          wanted.conditioning ? poses.index[n] : 0, inertia, part);
                              }
                            });
     });
@@ -255,94 +265,6 @@ std::unique_ptr<const Surveyor> make_voxel_surveyor(const SurveyPlan& plan, cons
 
 VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan, const VoxelOptions& voxels) {
   return VoxelSurveyor(plan, voxels, {}).map(g);
-}
-
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
-  PoseReport report;
-  const Limbs<double> limb = inverse(g, pose, mode);
-  report.assembles = limb.assembles;
-  const double c = sincos(pose.angle).cos;
-  report.angles.emplace_back("section_type", section_type(g, c));
-  if (!limb.assembles) {
-    for (std::size_t j = 0; j < 2 && report.reason.empty(); ++j) {
-      const std::string name = j == 0 ? "limb 1" : "limb 2";
-      if (limb.x[j] < 0)
-        report.reason =
-            name + ": x_" + std::to_string(j + 1) + " < 0, the platform is beyond the rail's vertical plane";
-      else if (limb.reach_x[j] < 0)
-        report.reason = name + ": out of reach of the lower bars (x_" + std::to_string(j + 1) + " > l_d)";
-      else if (limb.reach_z[j] < 0)
-        report.reason = name + ": out of reach of the upper bars (|z_c| > l_u)";
-    }
-    for (std::size_t j = 0; j < 2; ++j) {
-      report.margins.emplace_back("reach_x_" + std::to_string(j + 1), limb.reach_x[j]);
-      report.margins.emplace_back("reach_z_" + std::to_string(j + 1), limb.reach_z[j]);
-    }
-    return report;
-  }
-  report.joints = {limb.q[0], limb.q[1], limb.q[2], limb.q[3]};
-  const Velocity<double> v = velocity(g, pose, limb, mode);
-  report.G = v.G;
-  report.det_G = v.G.determinant();
-  std::array<double, 2> alpha, beta, folded;
-  for (std::size_t j = 0; j < 2; ++j) {
-    alpha[j] = atan2(-limb.z_c[j], limb.h[j]);
-    folded[j] = atan2(limb.x[j], limb.sigma[j]);  // from the nearer vertical
-    beta[j] = mode[j] == Branch::lower ? folded[j] : kPi - folded[j];
-  }
-  if (v.finite) {
-    report.Jq = v.Jq;
-    report.det_Jq = v.k[0] * v.k[1] / 4;
-    if (*report.det_Jq != 0) {
-      const Eigen::Matrix4d J = v.Jq.inverse() * v.G;
-      report.J = J;
-      double columns[4][4];
-      for (int col = 0; col < 4; ++col)
-        for (int row = 0; row < 4; ++row) columns[col][row] = J(row, col) * (col == 3 ? 2 / g.a : 1);  // L_c = a/2
-      report.conditioning = inverse_condition(columns);
-    } else {
-      report.conditioning = 0;
-    }
-  } else {
-    report.conditioning = 0;
-  }
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha[j]);
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("beta_" + std::to_string(j + 1), beta[j]);
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
-  const Nearest<double> nearest = nearest_links(links(g, placement(pose, limb, mode)));
-  report.angles.emplace_back("clearance", nearest.clearance);
-
-  const auto least = [](const std::array<double, 2>& p) { return std::fmin(p[0], p[1]); };
-  double stroke = limb.q[0];
-  for (const double q : limb.q) stroke = std::fmin(stroke, std::fmin(q, g.L0 - q));
-  const double sin_1 = sincos(beta[0] + beta[1]).sin;
-  report.margins = {
-      {"reach_x_1", limb.reach_x[0]},
-      {"reach_x_2", limb.reach_x[1]},
-      {"reach_z_1", limb.reach_z[0]},
-      {"reach_z_2", limb.reach_z[1]},
-      {"below_rail_1", -limb.z_c[0]},
-      {"below_rail_2", -limb.z_c[1]},
-      {"stroke", stroke},
-      {"alpha_min", least(alpha) - asin(l.sin_alpha_min)},
-      {"beta_min", least(folded) - asin(l.sin_beta_min)},
-      {"beta_max", atan2(l.sin_beta_max, l.cos_beta_max) - std::fmax(folded[0], folded[1])},
-      {"h_min", least(limb.h) - l.h_min},
-      {"sin_par_min", std::fabs(sin_1) - l.sin_par_min},
-      {"cos_theta_min", c - l.cos_theta_min},
-  };
-  if (l.clearance_min) report.margins.emplace_back("clearance_min", nearest.clearance - *l.clearance_min);
-  report.feasible = true;
-  for (const auto& [name, margin] : report.margins) {  // the most basic tests come first
-    if (report.feasible && !(margin >= 0)) {
-      report.reason = "limit " + name + " is broken";
-      if (name == "clearance_min")
-        report.reason += ": " + link_name(nearest.first) + " and " + link_name(nearest.second) +
-                         (nearest.clearance < 0 ? " overlap" : " are too near");
-    }
-    report.feasible = report.feasible && margin >= 0;
-  }
-  return report;
 }
 
 }  // namespace pkm::four_ppa_two_par

@@ -1,10 +1,10 @@
-// 4PPa-2PaR: the surveys of a plan, and the report on one pose.
+// 4PPa-2PaR: the surveys of a plan.
 #pragma once
 
 #include <memory>
 
 #include "engine/mechanism/mechanism.hpp"
-#include "engine/mechanisms/four_ppa_two_par/model.hpp"
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 
 namespace pkm::four_ppa_two_par {
 
@@ -15,7 +15,5 @@ std::unique_ptr<const Surveyor> make_voxel_surveyor(const SurveyPlan& plan, cons
                                                     const Demand& demand);
 
 VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan, const VoxelOptions& voxels);
-
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode);
 
 }  // namespace pkm::four_ppa_two_par

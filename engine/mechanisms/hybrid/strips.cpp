@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/hash.hpp"
 #include "engine/mechanisms/hybrid/meetings.hpp"
 
 namespace pkm::hybrid {
@@ -226,18 +227,17 @@ void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, 
 
 std::uint64_t signature_of(const Structure& structure) {
   if (structure.strips.empty()) return 0;
-  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-  const auto mix = [&](std::uint64_t word) { hash = (hash ^ word) * 1099511628211u; };
+  Fnv1a hash;
   const auto mix_end = [&](const StripEnd& e) {
-    mix(static_cast<std::uint64_t>(e.kind));
-    mix(e.index + 16u * (e.first.curve + 16u * (e.first.side + 2u * (e.second.curve + 16u * e.second.side))));
+    hash.add(static_cast<std::uint64_t>(e.kind));
+    hash.add(e.index + 16u * (e.first.curve + 16u * (e.first.side + 2u * (e.second.curve + 16u * e.second.side))));
   };
   for (const Strip& strip : structure.strips) {
     mix_end(strip.from);
     mix_end(strip.to);
-    mix(strip.left.curve + 16u * strip.right.curve + 256u * (strip.left.side + 2u * strip.right.side));
+    hash.add(strip.left.curve + 16u * strip.right.curve + 256u * (strip.left.side + 2u * strip.right.side));
   }
-  return hash | 1;
+  return hash.value() | 1;
 }
 
 /// The ends of z in force, as numbers of the lower and the upper one.

@@ -49,11 +49,11 @@ TEST(CrrCruGolden, RatesOfEveryCase) {
     const auto g = geometry_of(entry["mechanism"], design_of(entry));
     const Limbs<double> limbs = inverse(g, pose_of(entry["X"]), mode_of(entry["sigma"]));
     const auto &V = entry["Xd"], &W = entry["Xdd"];
-    const Eigen::Vector4d v(V[0], V[1], V[2], V[3]), w(W[0], W[1], W[2], W[3]);
-    const Eigen::Matrix4d J = jacobian(limbs.arm), rate = jacobian_rate(limbs.arm, v[3]);
-    const Eigen::Vector4d speed = J * v, acceleration = J * w + rate * v;
-    for (int i = 0; i < 4; ++i) {
-      const auto limb = static_cast<std::size_t>(i);
+    const Vector<double, 4> v{{V[0], V[1], V[2], V[3]}}, w{{W[0], W[1], W[2], W[3]}};
+    const Influence<double> q = influence(limbs.arm);
+    const Vector<double, 4> speed = q.G * v, acceleration = accelerations(q, v, w);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t limb = i;
       EXPECT_NEAR(speed[i], entry["qd"][i].get<double>(), kRoundoff * 10);
       EXPECT_NEAR(acceleration[i], entry["qdd"][i].get<double>(), kRoundoff * 100);
       const auto& arm = limbs.arm[limb];

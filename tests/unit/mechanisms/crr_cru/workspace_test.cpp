@@ -6,6 +6,7 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/crr_cru/columns.hpp"
+#include "engine/mechanisms/crr_cru/margins.hpp"
 #include "engine/mechanisms/crr_cru/voxels.hpp"
 #include "tests/unit/mechanisms/crr_cru/golden.hpp"
 
@@ -42,6 +43,19 @@ Held held_of(const Case& c) { return {static_cast<std::size_t>(c.held), false, c
 
 Design<double> design_of_case(const Case& c) { return design(geometry_of(c.name, c.p), limits(c.limits)); }
 
+/// Whether a position is feasible, by the ranges and rings that sections and rows are made of.
+bool in_frame(const Design<double>& d, const Frame<double>& f, const Vector3<double>& at) {
+  if (f.singular) return false;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (at[k] < f.range[k].lower || at[k] > f.range[k].upper) return false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double a = at[kLimbs[i].p] - f.center[i][kLimbs[i].p], b = at[kLimbs[i].q] - f.center[i][kLimbs[i].q];
+    const double distance2 = a * a + b * b;
+    if (distance2 < d.in2[i] || distance2 > d.out2[i]) return false;
+  }
+  return true;
+}
+
 SurveyPlan voxels(const Case& c, std::array<std::int64_t, 3> cells) {
   SurveyPlan p = plan(Method::voxels, c.held, c.value, c.limits);
   p.cells = cells;
@@ -73,7 +87,7 @@ TEST(CrrCruVoxels, CountsFromRowsEqualThePlainLoop) {
       const VoxelGrid grid(cells, default_box(d, held_of(c)));
       const VoxelMap plain = test_every_cell(grid, [&](double x0, double x1, double x2) {
         const auto at = pose_at(c, x0, x1, x2);
-        return feasible(d, frame(d, at[3]), {at[0], at[1], at[2]});
+        return keeps_limits(d, {at[0], at[1], at[2], at[3]});
       });
       Survey<double> expected;
       summarise(grid, plain, expected);
@@ -111,18 +125,28 @@ TEST(CrrCruVoxels, PosesOfTheOtherBranchDoNotCount) {
   }
 }
 
-TEST(CrrCruVoxels, PoseTestAgreesWithTheInspection) {
+// One statement of the limits, and what else knows of them: the report, which has s_min as a margin of its own, the
+// rings and ranges of one phi, and the reach of the inverse kinematics.
+TEST(CrrCruVoxels, FramesAndInspectionAgreeWithTheStatedMargins) {
   int inside = 0;
   Uniform uniform(3);
   for (const Case& c : random_cases(60, 3)) {
-    const Design<double> d = design_of_case(c);
+    const Design<double> d = design_of_case(c), bare = design(d.g, {});
     for (int i = 0; i < 300; ++i) {
       const Pose<double> pose{uniform(-0.05, 0.45), uniform(-0.05, 0.45), uniform(0, 0.45), uniform(-2, 2)};
+      const bool keeps = keeps_limits(d, pose);
+      inside += keeps;
+      EXPECT_EQ(in_frame(d, frame(d, pose.angle), {pose.x, pose.y, pose.z}), keeps);
+      bool reaches = true;
+      state_margins(bare, pose,
+                    [&](std::size_t which, double margin) { reaches = reaches && (which >= kStroke || margin >= 0); });
       for (const char* mode : {"-,-,+,-", "+,+,-,+"}) {
         const PoseReport r = mechanism(c.name).inspect(c.p, pose, mode, c.limits);
-        EXPECT_EQ(feasible(d, frame(d, pose.angle), {pose.x, pose.y, pose.z}), r.feasible) << r.reason;
+        EXPECT_EQ(r.feasible, keeps) << r.reason;
+        EXPECT_EQ(r.assembles, reaches);
         EXPECT_EQ(r.reason.empty(), r.feasible);
-        inside += r.feasible;
+        for (std::size_t which = 0; which < r.margins.size(); ++which)
+          EXPECT_EQ(r.margins[which].first, kMarginNames[which]);
       }
     }
   }
@@ -150,7 +174,7 @@ TEST(CrrCruColumns, SectionsEqualTheSumOfTheirCells) {
         at[s.cuts.normal] = s.cuts.outer_is_phi ? s.held : outer;
         at[s.cuts.u] = u0 + (u1 - u0) * (i + 0.5) / kSteps;
         at[s.cuts.v] = v0 + (v1 - v0) * (j + 0.5) / kSteps;
-        cells += feasible(s.design, f, at);
+        cells += in_frame(s.design, f, at);
       }
     const double whole = (u1 - u0) * (v1 - v0);
     const double expected = whole * static_cast<double>(cells) / (kSteps * kSteps);
@@ -218,7 +242,7 @@ TEST(CrrCruColumns, VolumesEqualVoxelsAtFourResolutionsAndAQuasiRandomCount) {
           const double share = 0.5 + i * step[k];
           at[k] = -0.05 + 0.5 * (share - std::floor(share));
         }
-        inside += feasible(d, f, at);
+        inside += in_frame(d, f, at);
       }
       EXPECT_NEAR(inside * 0.125 / kPoints / exact, 1, 1e-4);
     }

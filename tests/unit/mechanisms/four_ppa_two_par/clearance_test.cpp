@@ -10,6 +10,7 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
 
@@ -92,7 +93,7 @@ TEST(FourPpaLinks, BarsHaveTheirLengthsInEveryMode) {
     const WorkingMode mode = {i & 1 ? Branch::lower : Branch::upper, i & 2 ? Branch::lower : Branch::upper};
     const auto limb = inverse(g, pose, mode);
     if (!limb.assembles) continue;
-    const auto all = links(g, placement(pose, limb, mode));
+    const auto all = links(g, placement(limb, sincos(pose.angle).sin, mode));
     for (int j = 0; j < 2; ++j) {
       const auto of = [&](LinkGroup group, std::size_t k) { return all[links_of(group_of(j, group)).first + k]; };
       const auto& slider_1 = of(kSliders, 0).axis;
@@ -247,7 +248,7 @@ TEST(FourPpaClearance, DerivativesEqualDifferences) {
     const auto g = geometry(std::span<const S>(all));
     const Pose<S> pose{S(0.13) + step, S(1.25), S(-1.2) + step * 0.5, S(0.7) - step * 2.0};
     const WorkingMode mode = {Branch::lower, Branch::lower};
-    return nearest_links(links(g, placement(pose, inverse(g, pose, mode), mode))).clearance;
+    return nearest_links(links(g, placement(inverse(g, pose, mode), sincos(pose.angle).sin, mode))).clearance;
   };
   const Dual4 exact = at(Dual4::variable(0, 0));
   EXPECT_EQ(exact.a, at(0.0));

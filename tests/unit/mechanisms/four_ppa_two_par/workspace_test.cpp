@@ -6,6 +6,7 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/columns.hpp"
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
 
