@@ -1,5 +1,6 @@
 #include "engine/report/study_tables.hpp"
 
+#include <algorithm>
 #include <span>
 
 #include "engine/problem/front.hpp"
