@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/mechanisms/all.hpp"
+#include "engine/mechanism/mechanism.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/problem/design_problem.hpp"
 

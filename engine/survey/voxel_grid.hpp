@@ -55,12 +55,15 @@ VoxelMap test_every_cell(const VoxelGrid& grid, const Test& feasible) {
 }
 
 /// Volume, counts and box contact of a map.
-inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>& survey) {
+/// @param swept  number of coordinates: the axes behind them touch nothing
+inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>& survey, std::size_t swept = 3) {
   survey.clear();
   survey.cells = grid.count();
   survey.cell_volume = grid.cell_volume();
   std::size_t cell = 0;
-  const auto outer = [&](std::size_t axis, std::int64_t k) { return k == 0 || k == grid.cells[axis] - 1; };
+  const auto outer = [&](std::size_t axis, std::int64_t k) {
+    return axis < swept && (k == 0 || k == grid.cells[axis] - 1);
+  };
   for (std::int64_t i = 0; i < grid.cells[0]; ++i)
     for (std::int64_t j = 0; j < grid.cells[1]; ++j)
       for (std::int64_t k = 0; k < grid.cells[2]; ++k) {

@@ -144,9 +144,8 @@ void print_report(const Target& target, const DesignProblem& problem, const Desi
 int evaluate(const Catalogues& catalogues, const DesignArguments& arguments, int threads) {
   const Target target = find_target(catalogues, arguments);
   const auto problem = target.study ? target.study->problem : default_problem(target, catalogues);
-  Team team(threads);
-  const LentTeam lent(team);
-  const DesignReport report = problem->report(target.parameters);
+  DesignReport report;
+  with_team(threads, [&] { report = problem->report(target.parameters); });
   if (arguments.json)
     print_json(std::cout, report_json(*problem, report));
   else

@@ -47,11 +47,10 @@ void report(const ReportArguments& arguments, const Session& session) {
     if (std::error_code none; std::filesystem::equivalent(file, output, none))
       throw ConfigError({"", 0, "--output"}, output, "another file than the study's own");
   page_parts();  // or say at once that there are none
-  Team team(arguments.threads);
-  const LentTeam lent(team);
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
-  const std::string page = html_page(page_data(studies, program_words()));
+  std::string page;
+  with_team(arguments.threads, [&] { page = html_page(page_data(studies, program_words())); });
   replace_file(output, page);
   char size[32];
   std::snprintf(size, sizeof size, "%.1f MB", 1e-6 * static_cast<double>(page.size()));

@@ -36,9 +36,10 @@ void print_estimate(const Study& study, int seeds, int threads) {
   for (std::size_t i = 0; i < problem.space().dimension(); ++i) table.design(0)[i] = problem.space().from_unit(i, 0.5);
   using Clock = std::chrono::steady_clock;
   double seconds = 1e30;
+  Scratch scratch;
   for (int i = 0; i < 3 && (i == 0 || seconds < 1); ++i) {  // the first one also warms up
     const auto begin = Clock::now();
-    problem.evaluate(table.design(0), table.slot(0));
+    problem.evaluate(table.design(0), scratch, table.slot(0));
     seconds = std::min(seconds, std::chrono::duration<double>(Clock::now() - begin).count());
   }
   std::int64_t limit = 0;

@@ -14,7 +14,7 @@
 namespace pkm {
 
 void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "Number of threads (default: one per core)")
+  command.add_option("--threads", threads, "Number of threads (default: OMP_NUM_THREADS, else one per core)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
 }

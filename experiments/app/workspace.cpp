@@ -176,22 +176,22 @@ int workspace(const Catalogues& catalogues, const WorkspaceArguments& arguments)
     if (!file.empty()) files.push_back(file);
   refuse_existing(files, arguments.force);
   if (!arguments.html.empty()) page_parts();  // or say at once that there are none
-  Team team(arguments.threads);
-  const LentTeam lent(team);
-  const SurveyPlan plan = plan_of(target, arguments);
-  const std::string mode = known_mode(target.info(), arguments);
-  const WorkspaceFields found = fields_of(target, plan, mode);
-  write_workspace(arguments, target, found);
-  if (!arguments.csv.empty()) replace_file(arguments.csv, workspace_table(found).text());
-  if (!arguments.html.empty()) {
-    const auto motions = target.study ? target.study->motions : std::vector<NamedMotion>();
-    const Views views = views_of(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
-    replace_file(arguments.html, html_page(page_data(views, program_words())));
-  }
-  if (arguments.json)
-    print_json(std::cout, workspace_json(target, found, files));
-  else
-    print_workspace(target, found, files);
+  with_team(arguments.threads, [&] {
+    const SurveyPlan plan = plan_of(target, arguments);
+    const std::string mode = known_mode(target.info(), arguments);
+    const WorkspaceFields found = fields_of(target, plan, mode);
+    write_workspace(arguments, target, found);
+    if (!arguments.csv.empty()) replace_file(arguments.csv, workspace_table(found).text());
+    if (!arguments.html.empty()) {
+      const auto motions = target.study ? target.study->motions : std::vector<NamedMotion>();
+      const Views views = views_of(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
+      replace_file(arguments.html, html_page(page_data(views, program_words())));
+    }
+    if (arguments.json)
+      print_json(std::cout, workspace_json(target, found, files));
+    else
+      print_workspace(target, found, files);
+  });
   return kDone;
 }
 
