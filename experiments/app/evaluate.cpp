@@ -16,7 +16,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kUsualCells = 40;
+constexpr std::int64_t kBareCells = 40;
 
 /// The problem of a bare mechanism: exact columns where it has them, else voxels, no limits, and every objective that
 /// serves it by its defaults.
@@ -25,7 +25,7 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
   parts.mechanism = target.mechanism;
   parts.parameters = target.parameters;
   parts.plan.limits = target.limits;
-  if (!target.mechanism->columns()) parts.plan.method = equal_cells(target.info().sweeps.front(), kUsualCells);
+  if (!target.mechanism->columns()) parts.plan.method = equal_cells(target.info().sweeps.front(), kBareCells);
   for (const auto& entry : catalogues.objectives) {
     if (needs_options(entry.options) || !entry.refusal(*target.mechanism).empty()) continue;
     const Options options = default_options(entry.options);

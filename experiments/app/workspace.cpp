@@ -105,8 +105,10 @@ std::int64_t feasible_cells(const WorkspaceFields& workspace) {
 Json workspace_json(const Target& target, const WorkspaceFields& workspace, const std::vector<std::string>& files) {
   const Extents extents = extents_of(workspace);
   Json held = Json::array();
-  for (const WorkspaceAxis& axis : workspace.held)
-    held.push_back({{"name", axis.name}, {"value", axis.lower}, {"unit", axis.unit}, {"why", workspace.held_note}});
+  for (std::size_t i = 0; i < workspace.held.size(); ++i) {
+    const WorkspaceAxis& axis = workspace.held[i];
+    held.push_back({{"name", axis.name}, {"value", axis.lower}, {"unit", axis.unit}, {"why", workspace.held_note[i]}});
+  }
   Json json = {{"mechanism", target.info().name},
                {"design", target.words},
                {"parameters", values_by_name(target.info().parameters, target.parameters)},
@@ -143,8 +145,9 @@ void print_workspace(const Target& target, const WorkspaceFields& workspace, con
   std::vector<Row> head = {{"mechanism", target.info().name}};
   if (target.study) head.push_back({"study", target.study->name});
   head.push_back({"design", target.words});
-  for (const WorkspaceAxis& axis : workspace.held)
-    head.push_back({axis.name, number(axis.lower, axis.unit), workspace.held_note});
+  for (std::size_t i = 0; i < workspace.held.size(); ++i)
+    head.push_back(
+        {workspace.held[i].name, number(workspace.held[i].lower, workspace.held[i].unit), workspace.held_note[i]});
   head.push_back(
       {"feasible cells", std::to_string(feasible_cells(workspace)) + " of " + std::to_string(workspace.cells())});
   head.push_back({"volume", number(workspace.volume, workspace.volume_unit)});
