@@ -4,6 +4,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm::benchmarks {

@@ -135,14 +135,15 @@ void fine_grid(benchmark::State& state, const Mechanism& mechanism, std::vector<
   if (parameters.empty())
     for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
   Survey<double> result;
-  Team team(2);
-  const auto by_one = [&] { surveyor->survey(parameters, result); };
-  const auto by_two = [&] {
-    const LentTeam lent(team);
+  const auto by_one = [&] {
+    const WithoutTeam alone;
     surveyor->survey(parameters, result);
   };
-  const Duel duel =
-      take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+  const auto by_two = [&] { surveyor->survey(parameters, result); };
+  Duel duel;
+  with_team(2, [&] {
+    duel = take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+  });
   state.counters["efficiency_percent"] = 100 * duel.ratio() / 2;
 }
 void fine_four_ppa(benchmark::State& state) { fine_grid(state, four_ppa(), optimal_design(), 512); }

@@ -60,6 +60,11 @@ std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& in
   return poses;
 }
 
+template <class S>
+struct Margins {
+  std::vector<S> of_poses;
+};
+
 class TaskWorkspace final : public Quantity {
  public:
   TaskWorkspace(const EntryContext& context)
@@ -71,15 +76,11 @@ class TaskWorkspace final : public Quantity {
         sharpness_(context.options.number("sharpness")) {}
 
   double value(const DesignView<double>& design) const override {
-    thread_local std::vector<double> margins;
-    margins.clear();
-    append_pose_margins(mechanism_, design.parameters, limits_, poses_, margins);
+    const std::vector<double>& margins = margins_of(design);
     return least(margins) - wanted_;
   }
   Dual4 smooth(const DesignView<Dual4>& design) const override {
-    thread_local std::vector<Dual4> margins;
-    margins.clear();
-    mechanism_.derivatives()->pose_margins(design.parameters, limits_, poses_, margins);
+    const std::vector<Dual4>& margins = margins_of(design);
     const double shift = least(margins).a;
     Dual4 sum(0.0);
     for (const Dual4& margin : margins) sum += exp((margin - shift) * -sharpness_);
@@ -91,6 +92,14 @@ class TaskWorkspace final : public Quantity {
   }
 
  private:
+  template <class S>
+  const std::vector<S>& margins_of(const DesignView<S>& design) const {
+    std::vector<S>& margins = design.scratch.template get<Margins<S>>().of_poses;
+    margins.clear();
+    append_pose_margins<S>(mechanism_, design.parameters, limits_, poses_, margins);
+    return margins;
+  }
+
   const Mechanism& mechanism_;  ///< the problem's, which outlives its quantities
   LimitSpec limits_;
   std::vector<Pose<double>> poses_;

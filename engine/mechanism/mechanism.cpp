@@ -85,8 +85,8 @@ std::string volume_unit(const MechanismInfo& info, const SurveyPlan& plan) {
   return unit_of_product(info, measured);
 }
 
-void append_pose_margins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
-                         std::span<const Pose<double>> poses, std::vector<double>& margins) {
+void append_margins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
+                    std::span<const Pose<double>> poses, std::vector<double>& margins) {
   if (const PoseMargins* ability = mechanism.pose_margins()) return ability->append(parameters, limits, poses, margins);
   for (const Pose<double>& pose : poses) {
     const PoseReport report = mechanism.inspect(parameters, pose, mechanism.info().modes.front(), limits);

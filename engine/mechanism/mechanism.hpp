@@ -113,9 +113,9 @@ inline LimitSpec no_limits(const MechanismInfo& info) {
   return {std::vector<std::optional<double>>(info.limits.size()), std::vector<bool>(info.limits.size(), false)};
 }
 
-/// The pose margins of one pose by the ability, else those of inspect, NaN counting as broken: appended.
-void append_pose_margins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
-                         std::span<const Pose<double>> poses, std::vector<double>& margins);
+/// The margins of poses by the ability, else those of inspect, NaN counting as broken: appended.
+void append_margins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
+                    std::span<const Pose<double>> poses, std::vector<double>& margins);
 
 /// The ability for numbers, or its derivatives.
 template <class S>
@@ -140,6 +140,15 @@ void find_design_margins(const Mechanism& mechanism, std::span<const S> paramete
     mechanism.design_tests()->test(parameters, limits, margins);
   else
     mechanism.derivatives()->design_margins(parameters, limits, margins);
+}
+
+template <class S>
+void append_pose_margins(const Mechanism& mechanism, std::span<const S> parameters, const LimitSpec& limits,
+                         std::span<const Pose<double>> poses, std::vector<S>& margins) {
+  if constexpr (std::is_same_v<S, double>)
+    append_margins(mechanism, parameters, limits, poses, margins);
+  else
+    mechanism.derivatives()->pose_margins(parameters, limits, poses, margins);
 }
 
 using MechanismList = std::vector<std::shared_ptr<const Mechanism>>;

@@ -11,6 +11,14 @@
 #include "engine/problem/survey_results.hpp"
 
 namespace pkm {
+namespace {
+
+template <class S>
+struct Room {
+  std::vector<S> values, thresholds, stack;
+};
+
+}  // namespace
 
 using Origin = ExpressionName::Origin;
 
@@ -86,7 +94,7 @@ void Expression::refuse_idle_options(const Options& options, const Demand& deman
 
 template <class S>
 S Expression::value(const DesignView<S>& design) const {
-  thread_local std::vector<S> values, thresholds;
+  auto& [values, thresholds, stack] = design.scratch.template get<Room<S>>();
   values.resize(names_.size());
   thresholds.resize(limits_.given.size());
   if (uses(Origin::threshold)) find_thresholds<S>(design.mechanism, design.parameters, limits_, thresholds);
@@ -104,12 +112,12 @@ S Expression::value(const DesignView<S>& design) const {
         break;
       case Origin::survey:
         if constexpr (std::is_same_v<S, double>)
-          values[i] = survey_results()[index].value(*design.survey);
+          values[i] = survey_results()[index].value(*design.survey, design.scratch);
         else
-          values[i] = survey_results()[index].smooth(*design.survey, sharpness_);
+          values[i] = survey_results()[index].smooth(*design.survey, sharpness_, design.scratch);
     }
   }
-  return formula_.value(std::span<const S>(values));
+  return formula_.value(std::span<const S>(values), stack);
 }
 
 template double Expression::value(const DesignView<double>&) const;

@@ -53,16 +53,21 @@ inline void demand_dci(const EntryContext& context, Demand& demand) {
   demand.mode = mode_of(context);
 }
 
+template <class S>
+struct CouplingField {
+  std::vector<S> of_samples;
+};
+
 /// Of every sample: the coupling index of one joint, of the joint where it is largest, or the mean over the joints.
-/// Valid until the next call on this thread.
+/// Valid until the next call with this scratch.
 /// @param limb  "1" to "8", "worst" or "mean"
 template <class S>
-const std::vector<S>& coupling_of(const Survey<S>& survey, const std::string& limb) {
+const std::vector<S>& coupling_of(const Survey<S>& survey, const std::string& limb, Scratch& scratch) {
   if (limb != "worst" && limb != "mean") return survey.dci[static_cast<std::size_t>(limb[0] - '1')];
-  thread_local std::vector<S> field;
+  std::vector<S>& field = scratch.get<CouplingField<S>>().of_samples;
   std::size_t joints = 0;
   while (joints < survey.dci.size() && !survey.dci[joints].empty()) ++joints;
-  field.assign(survey.dci[0].size(), S{});
+  field.resize(survey.dci[0].size());
   // Pairs of joints, pairs of pairs: the order in which four are compared and added.
   std::array<S, kMostJoints> at;
   for (std::size_t k = 0; k < field.size(); ++k) {
@@ -73,6 +78,11 @@ const std::vector<S>& coupling_of(const Survey<S>& survey, const std::string& li
     field[k] = limb == "worst" ? at[0] : S(at[0] * (1.0 / static_cast<double>(joints)));
   }
   return field;
+}
+template <class S>
+std::vector<S> coupling_of(const Survey<S>& survey, const std::string& limb) {
+  Scratch scratch;
+  return coupling_of(survey, limb, scratch);
 }
 
 inline OptionSpec limb_option() {

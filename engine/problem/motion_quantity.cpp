@@ -34,6 +34,11 @@ Wrench<double> wrench_of(const Options& options) {
   return wrench;
 }
 
+template <class S>
+struct Loads {
+  std::vector<S> of_samples;
+};
+
 class AlongMotion final : public Quantity {
  public:
   AlongMotion(const EntryContext& context, AppendLoads<double> append, AppendLoads<Dual4> append_smooth)
@@ -53,7 +58,7 @@ class AlongMotion final : public Quantity {
   }
 
   double value(const DesignView<double>& design) const override {
-    thread_local std::vector<double> loads;
+    std::vector<double>& loads = design.scratch.get<Loads<double>>().of_samples;
     if (collect(design, append_, loads) < samples_.size()) return std::numeric_limits<double>::quiet_NaN();
     double greatest = 0;
     for (const double load : loads) {
@@ -63,7 +68,7 @@ class AlongMotion final : public Quantity {
     return greatest;
   }
   Dual4 smooth(const DesignView<Dual4>& design) const override {
-    thread_local std::vector<Dual4> loads;
+    std::vector<Dual4>& loads = design.scratch.get<Loads<Dual4>>().of_samples;
     if (collect(design, append_smooth_, loads) < samples_.size())
       return Dual4(std::numeric_limits<double>::quiet_NaN());
     return power_mean(loads, sharpness_);
@@ -89,10 +94,10 @@ class AlongMotion final : public Quantity {
   template <class S>
   std::size_t collect(const DesignView<S>& design, AppendLoads<S> append, std::vector<S>& loads) const {
     loads.clear();
-    thread_local DriveScratch<S> scratch;
-    return drive_along<S>(
-        *design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_, scratch,
-        [&](std::size_t, const Drive<S>& drive) { append(joint_, drive.forces, drive.speeds, loads); });
+    return drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
+                          design.scratch.template get<DriveScratch<S>>(), [&](std::size_t, const Drive<S>& drive) {
+                            append(joint_, drive.forces, drive.speeds, loads);
+                          });
   }
 
   std::string name_;

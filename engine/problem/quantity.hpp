@@ -22,6 +22,7 @@ struct DesignView {
   const Mechanism& mechanism;
   std::span<const S> parameters;  ///< all of the mechanism's parameters
   const Survey<S>* survey;        ///< null for design-level quantities
+  Scratch& scratch;               ///< what quantities overwrite, from design to design
 };
 
 class Quantity {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
 #include "engine/report/standing.hpp"
 
 namespace pkm {

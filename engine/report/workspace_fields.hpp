@@ -81,7 +81,7 @@ class PoseMargin {
   LimitSpec limits_;
 };
 
-/// The fields of one design. Threads: those of the team lent to the caller; the bits do not depend on them.
+/// The fields of one design. Threads: those of the caller's team; the bits do not depend on them.
 /// @param parameters  all of the mechanism's; throws std::invalid_argument where they describe no mechanism
 /// @param plan        as of the study; one of columns is pictured by kPictureCells cells per axis, and one that
 ///                    integrates over a held coordinate on the middle of it

@@ -72,9 +72,11 @@ void warn_of_empty_workspace(Study& study) {
       design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
   }
   if (parts.mechanism->refuse(design)) return;
-  Survey<double> survey;
-  survey_once<double>(*prepare_survey(*parts.mechanism, plan, {}), design, survey);
-  if (survey.volume > 0) return;
+  try {
+    if (study.problem->workspace(design).volume > 0) return;
+  } catch (const std::exception&) {
+    return;  // a mass that is not positive has a message of its own when the design is evaluated
+  }
   std::string where;
   for (const int coordinate : sweep_of(info, plan).held) {
     using Kind = HeldCoordinate::Kind;
@@ -142,14 +144,14 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_regions(root, draft);
   read_motions(root, draft);
   read_quantities(root, draft);
-  read_references(root, draft);
-  read_stages(root, draft);
-  read_run_sections(root, draft);
   try {
-    draft.study.problem = std::make_shared<const DesignProblem>(std::move(draft.parts));
+    draft.study.problem = std::make_shared<const DesignProblem>(draft.parts);
   } catch (const std::invalid_argument& reason) {
     throw root.find("workspace").value_or(*root.find("mechanism")).refusal(reason.what());
   }
+  read_references(root, draft);
+  read_stages(root, draft);
+  read_run_sections(root, draft);
   warn_of_empty_workspace(draft.study);
   return std::move(draft.study);
 }

@@ -20,17 +20,17 @@ namespace {
 DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters) {
   const DesignReport r = problem.report(parameters);
   const bool box_matters = problem.parts().plan.box().has_value();  // the default box ends where the mechanism does
-  return {r.parameters,
-          r.objectives,
-          r.margins,
-          r.reports,
-          r.status,
-          r.reason,
-          r.survey.volume,
-          r.survey.cells,
-          r.survey.feasible_cells,
-          r.survey.cell_volume,
-          box_matters && r.survey.touches_box};
+  return {.parameters = r.parameters,
+          .objectives = r.objectives,
+          .margins = r.margins,
+          .reports = r.reports,
+          .status = r.status,
+          .reason = r.reason,
+          .volume = r.survey.volume,
+          .cells = r.survey.cells,
+          .feasible_cells = r.survey.feasible_cells,
+          .cell_volume = r.survey.cell_volume,
+          .touches_box = box_matters && r.survey.touches_box};
 }
 
 /// Rounding may leave the bounds, or what the mechanism is defined for: said in `reason`, and in the latter case
@@ -41,14 +41,12 @@ DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<d
     const auto nothing = [](std::size_t size) {
       return std::vector<double>(size, std::numeric_limits<double>::quiet_NaN());
     };
-    DesignRecord refused;
-    refused.parameters = parameters;
-    refused.objectives = nothing(problem.objectives().size());
-    refused.margins = nothing(problem.margins().size());
-    refused.reports = nothing(problem.reports().size());
-    refused.status = Status::failed;
-    refused.reason = *refusal;
-    return refused;
+    return {.parameters = parameters,
+            .objectives = nothing(problem.objectives().size()),
+            .margins = nothing(problem.margins().size()),
+            .reports = nothing(problem.reports().size()),
+            .status = Status::failed,
+            .reason = *refusal};
   }
   DesignRecord record = evaluated(problem, parameters);
   for (std::size_t i = 0; i < parts.varies.size(); ++i) {

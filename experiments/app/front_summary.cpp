@@ -7,7 +7,7 @@
 #include "engine/core/error.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/math/hypervolume.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
 
 namespace pkm {
 namespace {

@@ -25,6 +25,12 @@ void print_json(std::ostream& out, const Json& json) {
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
+Json values_by_name(const std::vector<std::pair<std::string, double>>& values) {
+  Json object = Json::object();
+  for (const auto& [name, value] : values) object[name] = value;
+  return object;
+}
+
 Json to_json(const OptionValue& value) {
   if (const auto* settings = std::get_if<NamedSettings>(&value)) {
     Json json = Json::object();

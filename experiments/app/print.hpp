@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -34,5 +35,6 @@ Json values_by_name(const Named& named, std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) object[named[i].name] = values[i];
   return object;
 }
+Json values_by_name(const std::vector<std::pair<std::string, double>>& values);
 
 }  // namespace pkm

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/core/text_table.hpp"
+#include "engine/problem/order.hpp"
 #include "experiments/app/front_summary.hpp"
 
 namespace pkm {
@@ -38,8 +39,10 @@ std::vector<std::size_t> by_end(const ProblemRecord& problem, const StageRecord&
   std::vector<std::size_t> order(stage.starts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return better(stage.table, problem.objectives[0].direction, static_cast<std::size_t>(stage.starts[a].end_row),
-                  static_cast<std::size_t>(stage.starts[b].end_row));
+    const auto rank = [&](std::size_t start) {
+      return ranked(problem.objectives, stage.table, static_cast<std::size_t>(stage.starts[start].end_row));
+    };
+    return better(rank(a), rank(b));
   });
   return order;
 }

@@ -48,9 +48,12 @@ inline bool keeps_limits(const Design<double>& d, const Pose<double>& pose) {
 /// along the slides.
 template <class S>
 void add_margins(const Design<S>& d, std::span<const pkm::Pose<double>> poses, std::vector<S>& margins) {
+  const std::size_t before = margins.size();
+  margins.resize(before + 17 * poses.size());
+  S* to = margins.data() + before;
   for (const auto& pose : poses)
     state_margins(d, schoenflies(pose), [&](std::size_t which, const S& margin) {
-      margins.push_back(which == kParallel ? S(d.yaw.R * margin) : margin);
+      *to++ = which == kParallel ? S(d.yaw.R * margin) : margin;
     });
 }
 

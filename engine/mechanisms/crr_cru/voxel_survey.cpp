@@ -175,11 +175,10 @@ class VoxelSurveyor final : public SurveyorOfPlan {
       visit_columns(s, slice, [&](Cell cell, const Row& row) {
         part.touches_box = part.touches_box || s.touches(cell, row);
         if (demand_.dci) {
-          std::size_t first = 64 * row.size(), end = 0;
-          for_each_bit(row, [&](std::size_t v) {
-            first = std::min(first, v);
-            end = v + 1;
-          });
+          const auto has = [&row](std::size_t v) { return (row[v / 64] >> v % 64 & 1) != 0; };
+          std::size_t first = 0, end = 64 * row.size();
+          while (!has(first)) ++first;
+          while (!has(end - 1)) --end;
           tables.coupling(cell, first, end, dci);
         }
         for_each_bit(row, [&](std::size_t v) {

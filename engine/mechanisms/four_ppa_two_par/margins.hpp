@@ -48,7 +48,7 @@ template <Angles angles, class S, class Keep>
                                                  const S& z, const SinCosOf<S>& theta, WorkingMode mode,
                                                  const Keep& keep) {
   constexpr bool sides = angles == Angles::by_sides;
-  Limbs<S> limbs;
+  Limbs<S> limbs{};
   for (std::size_t j = 0; j < 2; ++j) {
     if constexpr (sides)
       limbs.x[j] = limb_x(g, x, theta.cos, j);  // most poses fail there, before a root is taken

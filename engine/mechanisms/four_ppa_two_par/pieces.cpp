@@ -6,6 +6,7 @@ namespace pkm::four_ppa_two_par {
 namespace {
 
 /// Zero of one gap between two theta at which it has different signs, to the last bits.
+/// Not bracketed_root(): it stops elsewhere by some last bits, which studies would be resumed with.
 double zero_of_gap(const Frame<double>& f, std::size_t index, double low, double at_low, double high, double at_high) {
   Bracket bracket{.a = low, .at_a = -at_low, .b = high, .at_b = -at_high};  // a gap of 0 counts as negative
   for (int step = 0; step < 60 && bracket.width() > 1e-15 * (1 + bracket.b); ++step) {

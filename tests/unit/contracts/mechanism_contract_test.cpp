@@ -255,6 +255,7 @@ TEST_P(MechanismContract, ExpressionsKnowItsNumbersByDistinctNames) {
     Demand demand;
     expression.add_demand(context, demand);
     const auto found = survey(mechanism(), design, p, demand);
+    Scratch scratch;
     std::vector<double> thresholds(info().limits.size());
     mechanism().thresholds(design, p.limits, thresholds);
     using Origin = ExpressionName::Origin;
@@ -262,8 +263,8 @@ TEST_P(MechanismContract, ExpressionsKnowItsNumbersByDistinctNames) {
     const double expected = known.origin == Origin::parameter   ? design[known.index]
                             : known.origin == Origin::threshold ? thresholds[known.index]
                             : known.origin == Origin::size      ? mechanism().size(design)
-                                                                : survey_results()[known.index].value(found);
-    EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found}), expected);
+                                                                : survey_results()[known.index].value(found, scratch);
+    EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found, scratch}), expected);
   }
 }
 

@@ -73,7 +73,8 @@ double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const Surv
   entry.demand(context, demand);
   const auto parameters = nominal(mechanism.info());
   const auto survey = test::survey(mechanism, parameters, plan, demand);
-  return entry.make(context)->value({mechanism, parameters, &survey});
+  Scratch scratch;
+  return entry.make(context)->value({mechanism, parameters, &survey, scratch});
 }
 
 TEST(ObjectiveContract, IsDescribed) {
@@ -135,7 +136,8 @@ double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const st
   const SurveyPlan p = plan(mechanism.info(), Method::columns);
   const Options options = some_options(entry, mechanism.info());
   const std::vector<Region> regions = {test::task(mechanism.info())};
-  return entry.make({mechanism, p, options, regions})->value({mechanism, parameters, nullptr});
+  Scratch scratch;
+  return entry.make({mechanism, p, options, regions})->value({mechanism, parameters, nullptr, scratch});
 }
 
 TEST(ConstraintContract, IsDescribed) {

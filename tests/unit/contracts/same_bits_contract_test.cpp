@@ -114,10 +114,10 @@ TEST_P(SameBitsContract, FrozenForEveryBuild) {
 
 TEST_P(SameBitsContract, SurveysAndSlopesByATeam) {
   const Bits alone = surveys(), slopes_alone = slopes();
-  Team team(3);
-  const LentTeam lent(team);
-  EXPECT_TRUE(surveys() == alone);
-  EXPECT_TRUE(slopes() == slopes_alone);
+  with_team(3, [&] {
+    EXPECT_TRUE(surveys() == alone);
+    EXPECT_TRUE(slopes() == slopes_alone);
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SameBitsContract, testing::ValuesIn(all_mechanisms()),

@@ -134,9 +134,10 @@ TEST_P(SlopeContract, EvaluationsWithSlopesHaveTheBitsOfThoseWithout) {
     const DesignProblem problem = test::everything(GetParam(), p);
     const std::vector<double> design = test::random_design(info(), random);
     EvaluationTable plain(problem.shape(Detail::complete)), sloped(problem.shape(Detail::derivatives));
+    Scratch scratch;
     for (EvaluationTable* table : {&plain, &sloped}) {
       table->extend(1);
-      problem.evaluate(design, table->slot(0));
+      problem.evaluate(design, scratch, table->slot(0));
     }
     EXPECT_EQ(sloped.status, plain.status);
     EXPECT_EQ(sloped.objectives, plain.objectives);

@@ -138,9 +138,8 @@ TEST_P(WorkspaceFieldsContract, JointsAreThoseOfTheInverseKinematics) {
 
 TEST_P(WorkspaceFieldsContract, BitsDoNotDependOnThreads) {
   const WorkspaceFields alone = fields(plan(sweeps_of(info()).front()));
-  Team team(3);
-  const LentTeam lent(team);
-  const WorkspaceFields shared = fields(plan(sweeps_of(info()).front()));
+  WorkspaceFields shared;
+  with_team(3, [&] { shared = fields(plan(sweeps_of(info()).front())); });
   ASSERT_EQ(shared.fields.size(), alone.fields.size());
   for (std::size_t f = 0; f < alone.fields.size(); ++f)
     for (std::size_t cell = 0; cell < alone.cells(); ++cell) {

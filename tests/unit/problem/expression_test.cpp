@@ -9,6 +9,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 
@@ -178,7 +179,8 @@ TEST(Expression, IsComputedBeforeTheSurveyWhereItCanBe) {
   EvaluationTable table(study.problem->shape());
   table.extend(1);
   const std::vector<double> design = {0.2, 0.8, 0.2, 0.2, 2.5, 0.01};  // size = 0.32 pi < 0.8 * pi / 2
-  study.problem->evaluate(design, {{&table.objectives[0], 1}, {&table.margins[0], 2}, {}, table.status[0]});
+  Scratch scratch;
+  study.problem->evaluate(design, scratch, {{&table.objectives[0], 1}, {&table.margins[0], 2}, {}, table.status[0]});
   EXPECT_EQ(table.status[0], Status::rejected);
   EXPECT_LT(table.margins[0], 0);
   EXPECT_TRUE(std::isnan(table.margins[1]) && std::isnan(table.objectives[0]));

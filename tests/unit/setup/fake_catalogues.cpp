@@ -5,6 +5,8 @@
 namespace pkm::testing {
 namespace {
 
+int surveyors = 0;
+
 class IdleSurveyor final : public Surveyor {
  public:
   explicit IdleSurveyor(double plane) : plane_(plane) {}
@@ -40,6 +42,7 @@ class Slider final : public Mechanism {
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand&) const override {
     if (plan.held.kind == HeldCoordinate::Kind::integrated && plan.box)
       throw std::invalid_argument("the slider cannot integrate inside a given box");
+    ++surveyors;
     return std::make_unique<IdleSurveyor>(plan.held.value);
   }
   VoxelMap voxel_map(std::span<const double>, const SurveyPlan&) const override { return {}; }
@@ -169,6 +172,8 @@ std::vector<OptimiserEntry> make_optimisers() {
 }
 
 }  // namespace
+
+int prepared_surveyors() { return surveyors; }
 
 Catalogues fake_catalogues() {
   static const MechanismList mechanisms{std::make_shared<const Slider>()};

@@ -5,6 +5,7 @@
 #include "constraints/all.hpp"
 #include "engine/core/error.hpp"
 #include "engine/math/portable.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 

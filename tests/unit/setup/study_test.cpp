@@ -39,6 +39,12 @@ TEST(Study, SmallestStudyGetsDefaults) {
   EXPECT_THAT(study.warnings, ElementsAre());
 }
 
+TEST(Study, PreparesItsSurveyOnce) {
+  const int before = testing::prepared_surveyors();
+  read_right(kSmallest);
+  EXPECT_EQ(testing::prepared_surveyors(), before + 1);
+}
+
 TEST(Study, ReadsParametersVariablesAndBaseline) {
   const Study study = read_right(kFull);
   const ProblemParts& parts = study.problem->parts();

@@ -212,7 +212,8 @@ TEST(CrrCruMotion, ADesignThatCannotFollowFailsWithAReason) {
   EvaluationTable table(problem.shape(Detail::derivatives));
   table.extend(1);
   std::ranges::copy(p, table.design(0).begin());
-  problem.evaluate(p, table.slot(0));
+  Scratch scratch;
+  problem.evaluate(p, scratch, table.slot(0));
   EXPECT_EQ(table.status[0], Status::failed);
 }
 

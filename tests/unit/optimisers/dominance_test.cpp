@@ -1,5 +1,5 @@
 // Non-dominated sorting and the archive against their definitions, on random scores with many ties.
-#include "engine/optimisers/evolutionary/dominance.hpp"
+#include "engine/optimisers/dominance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

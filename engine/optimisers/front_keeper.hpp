@@ -1,42 +1,14 @@
-// The trade-off that a stage has found: who is on it, how far it reaches, which points of it stand out.
+// How a stage's trade-off is found: design after design, and what it is worth.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "engine/optimisers/evolutionary/dominance.hpp"
-#include "engine/optimisers/optimiser.hpp"
+#include "engine/core/options.hpp"
+#include "engine/optimisers/dominance.hpp"
 
 namespace pkm {
-
-/// Appends a row's objectives, turned so that less is better.
-void add_scores(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table, std::size_t row,
-                Scores& scores);
-Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table,
-                 std::span<const std::int64_t> rows);
-
-/// Least and greatest of each score.
-struct Ranges {
-  std::vector<double> least, greatest;
-  double range(std::size_t k) const { return greatest[k] - least[k]; }
-};
-Ranges ranges_of(const Scores& front);
-
-/// The best design of each score, the first of several. The front must not be empty.
-std::vector<std::size_t> ends_of(const Scores& front);
-
-/// The design nearest to the ideal: its worst score, each from 0 for the front's best to 1 for its worst, is the least
-/// of all; of several the cheapest, then the first. The front must not be empty.
-std::size_t compromise(const Scores& front);
-
-/// Knees: designs that are cheaper than every other one within a fifth of the ranges and cheaper than the front's
-/// ends, cheapest first. To leave one in any direction costs more than it gains. Concave fronts have none.
-std::vector<std::size_t> knees(const Scores& front);
-
-/// `count` designs of a front that are spread over it: the compromise, the best of each score, then always the one
-/// farthest from those chosen, in units of the ranges. In the order of the front.
-std::vector<std::size_t> spread_choice(const Scores& front, std::size_t count);
 
 struct FrontPlan {
   std::size_t limit = 0;                 ///< most designs; 0: no limit

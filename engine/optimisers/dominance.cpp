@@ -1,10 +1,10 @@
-#include "engine/optimisers/evolutionary/dominance.hpp"
+#include "engine/optimisers/dominance.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
-#include "engine/optimisers/evolutionary/diversity.hpp"
+#include "engine/optimisers/diversity.hpp"
 
 namespace pkm {
 namespace {

@@ -7,18 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/problem/front.hpp"
+
 namespace pkm {
-
-/// Scores of some designs, row by row.
-struct Scores {
-  std::size_t objectives = 0;
-  std::vector<double> values = {};
-
-  std::size_t size() const { return objectives ? values.size() / objectives : 0; }
-  const double* operator[](std::size_t i) const { return &values[i * objectives]; }
-  void add(std::span<const double> row) { values.insert(values.end(), row.begin(), row.end()); }
-  void clear() { values.clear(); }
-};
 
 bool dominates(const double* a, const double* b, std::size_t objectives);
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/optimisers/evolutionary/dominance.hpp"
+#include "engine/optimisers/dominance.hpp"
 
 namespace pkm {
 

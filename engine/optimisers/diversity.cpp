@@ -1,4 +1,4 @@
-#include "engine/optimisers/evolutionary/diversity.hpp"
+#include "engine/optimisers/diversity.hpp"
 
 #include <algorithm>
 #include <cmath>

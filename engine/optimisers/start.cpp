@@ -1,4 +1,4 @@
-#include "engine/optimisers/solvers/start.hpp"
+#include "engine/optimisers/start.hpp"
 
 #include <array>
 #include <bit>
