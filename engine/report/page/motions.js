@@ -89,6 +89,7 @@ function poseAxes(coordinates) {
     xaxis: axis("time [s]"),
     ...(lengths ? { yaxis: axis("position [m]") } : {}),
     ...(angles.length ? { yaxis2: right } : {}),
+    showlegend: true, // also of one coordinate
   };
 }
 
