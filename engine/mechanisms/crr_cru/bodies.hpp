@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/dynamics/newton_euler.hpp"
+#include "engine/mechanisms/crr_cru/dynamics.hpp"
 #include "engine/mechanisms/crr_cru/masses.hpp"
 
 namespace pkm::crr_cru {
