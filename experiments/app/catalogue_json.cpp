@@ -162,7 +162,7 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   json["chain_input"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.input(); });
   json["chain_output"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.output(); });
   const Sweep& usual = info.sweeps.front();
-  for (const auto& [key, value] : sweep_json(info, usual, has_columns).items()) json[key] = value;
+  json.update(sweep_json(info, usual, has_columns));
   json["other_sweeps"] = Json::array();
   for (std::size_t k = 1; k < info.sweeps.size(); ++k) {
     const Json sweep = sweep_json(info, info.sweeps[k], has_columns);

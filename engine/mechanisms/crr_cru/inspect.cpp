@@ -46,7 +46,7 @@ PoseReport inspect(const Geometry<double>& g, const LinkRadii<double>& radii, co
   }
   report.J = jacobian(limbs.arm);
   report.conditioning = conditioning(limbs.arm, characteristic_length(g));
-  report.joints.emplace();
+  report.joints.emplace(std::size_t{4});
   double least_sine = 1;
   for (std::size_t i = 0; i < 4; ++i) {
     const Limb<double>& limb = limbs.limb[i];
