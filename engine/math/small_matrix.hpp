@@ -3,6 +3,7 @@
 // in the order of their index, so that bits do not depend on the kind of matrix, the compiler or the processor.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -116,6 +117,12 @@ concept SmallMatrix = requires {
 /// R x C where everything is known when compiling, else up to that.
 template <class S, std::size_t R, std::size_t C, bool fixed>
 using MatrixOf = std::conditional_t<fixed, Matrix<S, R, C>, MatrixUpTo<S, R, C>>;
+
+/// The same size and elements.
+template <SmallMatrix A, SmallMatrix B>
+bool operator==(const A& a, const B& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && std::equal(a.begin(), a.end(), b.begin());
+}
 
 template <SmallMatrix A, SmallMatrix B>
 A& operator+=(A& a, const B& b) {

@@ -19,7 +19,7 @@ DesignProblem with_slope(double slope) {
   parts.parameters = test::nominal(parts.mechanism->info());
   parts.space = DesignSpace({{p.name, p.unit, p.lower, p.upper}});
   parts.varies = {0};
-  parts.plan = test::plan(parts.mechanism->info(), Method::columns);
+  parts.plan = SurveyPlan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(parts.mechanism->info())};
   parts.objectives.push_back({.name = "first",
                               .unit = p.unit,
                               .meaning = p.meaning,

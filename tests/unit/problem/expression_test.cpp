@@ -257,11 +257,21 @@ TEST(Expression, BoundsOfAConstraint) {
 }
 
 TEST(Expression, OfAMechanismWithoutAJacobianKnowsNoConditioning) {
-  MechanismInfo info = all_mechanisms()[0]->info();
-  const auto known = [&] { return names_of(expression_names(info, {})); };
-  EXPECT_THAT(known(), ::testing::IsSupersetOf({"size", "volume", "conditioning_mean", "conditioning_min"}));
-  info.characteristic_length = info.size_unit = "";
-  EXPECT_THAT(known(), ::testing::Not(::testing::Contains(::testing::AnyOf("size", "conditioning_mean"))));
+  const auto known = [&](const Mechanism& mechanism) { return names_of(expression_names(mechanism, {})); };
+  EXPECT_THAT(known(*all_mechanisms()[0]),
+              ::testing::IsSupersetOf({"size", "volume", "conditioning_mean", "conditioning_min"}));
+  struct Bare final : Mechanism {
+    MechanismInfo own;
+    const MechanismInfo& info() const override { return own; }
+    PoseReport inspect(std::span<const double>, const Pose<double>&, const std::string&,
+                       const LimitSpec&) const override {
+      return {};
+    }
+  } bare;
+  bare.own.coordinates = {{"x", "m"}};
+  bare.own.sweeps = all_sweeps(bare.own.coordinates, {0});
+  EXPECT_THAT(known(bare), ::testing::Contains("volume"));
+  EXPECT_THAT(known(bare), ::testing::Not(::testing::Contains(::testing::AnyOf("size", "conditioning_mean"))));
 }
 
 }  // namespace
