@@ -11,11 +11,11 @@ namespace pkm {
 namespace {
 
 // Primitive polynomials over GF(2) and first direction numbers, dimensions 2 to 21, of Joe & Kuo (2008).
-struct Direction {
+struct SearchDirection {
   unsigned degree, coefficients;
   std::array<unsigned, 7> first;
 };
-constexpr std::array<Direction, 20> kDirections = {{
+constexpr std::array<SearchDirection, 20> kDirections = {{
     {1, 0, {1}},
     {2, 1, {1, 3}},
     {3, 1, {1, 3, 1}},
@@ -47,7 +47,7 @@ Generator sobol_generator(std::size_t dimension) {
     for (unsigned k = 0; k < 32; ++k) v[k] = std::uint32_t{1} << (31 - k);
     return v;
   }
-  const Direction& d = kDirections[dimension - 1];
+  const SearchDirection& d = kDirections[dimension - 1];
   for (unsigned k = 0; k < d.degree; ++k) v[k] = d.first[k] << (31 - k);
   for (unsigned k = d.degree; k < 32; ++k) {
     v[k] = v[k - d.degree] ^ (v[k - d.degree] >> d.degree);

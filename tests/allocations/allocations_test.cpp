@@ -1,4 +1,4 @@
-// No evaluation allocates: storage belongs to the thread and grows with the largest design. Every study of the
+// No evaluation allocates: storage belongs to the scratch and grows with the largest design. Every study of the
 // experiments, on a program of its own because it replaces operator new.
 #include <gtest/gtest.h>
 

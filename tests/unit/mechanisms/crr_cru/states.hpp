@@ -8,6 +8,9 @@
 
 namespace pkm::testing::crr {
 
+// of four coordinates, not of any number
+using crr_cru::MotionState, crr_cru::PlacedBody, crr_cru::PoseDynamics;
+
 struct State {
   std::vector<double> parameters;
   WorkingMode mode;

@@ -56,16 +56,12 @@ bool in_frame(const Design<double>& d, const Frame<double>& f, const Vector3<dou
   return true;
 }
 
-SurveyPlan voxels(const Case& c, std::array<std::int64_t, 3> cells) {
-  SurveyPlan p = plan(Method::voxels, c.held, c.value, c.limits);
-  p.cells = cells;
-  return p;
+SurveyPlan voxels(const Case& c, std::array<std::int64_t, 3> cells, const std::optional<Box>& box = {}) {
+  return plan(VoxelOptions{.cells = cells, .box = box}, c.held, c.value, c.limits);
 }
 
 SurveyPlan columns(const Case& c, double tolerance = 1e-10) {
-  SurveyPlan p = plan(Method::columns, c.held, c.value, c.limits);
-  p.tolerance = tolerance;
-  return p;
+  return plan(ColumnOptions{.tolerance = tolerance}, c.held, c.value, c.limits);
 }
 
 /// The pose whose swept coordinates are a, b, c in order.
@@ -95,7 +91,7 @@ TEST(CrrCruVoxels, CountsFromRowsEqualThePlainLoop) {
       EXPECT_EQ(found.feasible_cells, expected.feasible_cells);
       EXPECT_EQ(found.volume, expected.volume);
       EXPECT_EQ(found.touches_box, expected.touches_box);
-      EXPECT_EQ(mechanism(c.name).voxel_map(c.p, p).feasible, plain.feasible);
+      EXPECT_EQ(voxel_map(mechanism(c.name), c.p, p).feasible, plain.feasible);
       total += found.feasible_cells;
     }
   }
@@ -104,22 +100,19 @@ TEST(CrrCruVoxels, CountsFromRowsEqualThePlainLoop) {
 
 TEST(CrrCruVoxels, GivenBoxAndItsTouch) {
   Case c{"3crr-r-cru", nominal(), limit_spec(0, 0), 3, 0};
-  SurveyPlan p = voxels(c, {40, 40, 40});
-  p.box = Box{{{-0.1, 0.5}, {-0.1, 0.5}, {-0.1, 0.5}}};
-  const auto whole = survey(c.name, c.p, p);
+  const auto in = [&](const Box& box) { return survey(c.name, c.p, voxels(c, {40, 40, 40}, box)); };
+  const auto whole = in({{{-0.1, 0.5}, {-0.1, 0.5}, {-0.1, 0.5}}});
   EXPECT_FALSE(whole.touches_box);
   EXPECT_NEAR(whole.volume / survey(c.name, c.p, columns(c)).volume, 1, 0.02);
-  p.box = Box{{{0.1, 0.2}, {-0.1, 0.5}, {-0.1, 0.5}}};
-  EXPECT_TRUE(survey(c.name, c.p, p).touches_box);
+  EXPECT_TRUE(in({{{0.1, 0.2}, {-0.1, 0.5}, {-0.1, 0.5}}}).touches_box);
 }
 
 // A box beyond the branch cos(phi + delta) >= 0 adds no pose.
 TEST(CrrCruVoxels, PosesOfTheOtherBranchDoNotCount) {
   for (const std::string& name : both()) {
     Case c{name, nominal(), limit_spec(0, 0), 0, 0.2};
-    SurveyPlan quarter = voxels(c, {20, 20, 30}), half = voxels(c, {20, 20, 60});
-    quarter.box = Box{{{0, 0.4}, {0, 0.42}, {-kPi / 2, kPi / 2}}};
-    half.box = Box{{{0, 0.4}, {0, 0.42}, {-kPi, kPi}}};
+    const SurveyPlan quarter = voxels(c, {20, 20, 30}, Box{{{0, 0.4}, {0, 0.42}, {-kPi / 2, kPi / 2}}});
+    const SurveyPlan half = voxels(c, {20, 20, 60}, Box{{{0, 0.4}, {0, 0.42}, {-kPi, kPi}}});
     EXPECT_GT(survey(name, c.p, quarter).feasible_cells, 0);
     EXPECT_EQ(survey(name, c.p, half).feasible_cells, survey(name, c.p, quarter).feasible_cells);
   }
@@ -225,8 +218,7 @@ TEST(CrrCruColumns, VolumesEqualVoxelsAtFourResolutionsAndAQuasiRandomCount) {
       SCOPED_TRACE(text(c));
       const double exact = survey(name, c.p, columns(c)).volume;
       for (const std::int64_t cells : {20, 40, 80, 160}) {
-        SurveyPlan grid = voxels(c, {cells, cells, cells});
-        grid.box = {{{-0.05, 0.45}, {-0.05, 0.45}, {-0.05, 0.45}}};
+        const SurveyPlan grid = voxels(c, {cells, cells, cells}, Box{{{-0.05, 0.45}, {-0.05, 0.45}, {-0.05, 0.45}}});
         const double error = survey(name, c.p, grid).volume / exact - 1;
         EXPECT_LT(std::fabs(error), 1.0 / static_cast<double>(cells)) << cells;
       }
@@ -272,17 +264,17 @@ TEST(CrrCruColumns, FixedNodesConvergeToTheTolerance) {
   for (const Case& c : random_cases(40, 8)) {
     SCOPED_TRACE(text(c));
     const double best = survey(c.name, c.p, columns(c, 1e-12)).volume;
-    SurveyPlan nodes = columns(c);
-    nodes.nodes = {24, 24};
-    const auto found = survey(c.name, c.p, nodes);
+    const auto with = [&](const std::array<int, 2>& given) {
+      return survey(c.name, c.p, plan(ColumnOptions{.tolerance = 1e-10, .nodes = given}, c.held, c.value, c.limits));
+    };
+    const auto found = with({24, 24});
     EXPECT_NEAR(found.volume, best, 1e-5 * best);
     EXPECT_EQ(found.error, 0);
     // the order of nodes is that of the swept coordinates: 60 columns over the inner one, 2 sections per piece
-    nodes.nodes = c.held == 3 ? std::array<int, 2>{2, 60} : std::array<int, 2>{60, 2};
-    const auto sections = survey(c.name, c.p, nodes);
-    nodes.nodes = {nodes.nodes[1], nodes.nodes[0]};
+    const std::array<int, 2> nodes = c.held == 3 ? std::array<int, 2>{2, 60} : std::array<int, 2>{60, 2};
+    const auto sections = with(nodes);
     if (!(best > 0)) continue;
-    EXPECT_NE(sections.volume, survey(c.name, c.p, nodes).volume);
+    EXPECT_NE(sections.volume, with({nodes[1], nodes[0]}).volume);
   }
 }
 
