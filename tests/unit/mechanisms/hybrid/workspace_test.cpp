@@ -8,6 +8,7 @@
 #include "engine/mechanisms/hybrid/columns.hpp"
 #include "engine/mechanisms/hybrid/survey.hpp"
 #include "engine/mechanisms/hybrid/voxels.hpp"
+#include "engine/survey/survey_set.hpp"
 #include "tests/unit/mechanisms/hybrid/golden.hpp"
 
 namespace pkm::testing::hybrid {
@@ -15,18 +16,27 @@ namespace {
 
 LimitSpec no_thresholds() { return no_limits(mechanism().info()); }
 
-SurveyPlan plan(Method method, std::array<std::int64_t, 3> cells = {}) {
-  SurveyPlan p;
-  p.method = method;
-  p.limits = no_thresholds();
-  p.cells = cells;
-  return p;
+HeldCoordinate held_y(HeldCoordinate::Kind kind, double value = 0) {
+  return {.coordinate = 1, .kind = kind, .value = value};
+}
+
+SurveyPlan columns_plan(double tolerance = ColumnOptions().tolerance) {
+  return {.method = ColumnOptions{.tolerance = tolerance}, .limits = no_thresholds()};
+}
+SurveyPlan voxels_plan(std::array<std::int64_t, 3> cells) {
+  return {.method = VoxelOptions{.cells = cells}, .limits = no_thresholds()};
+}
+
+std::unique_ptr<const Surveyor> surveyor_of(const WorkingMode& mode, int branch, const SurveyPlan& plan,
+                                            const Demand& demand = {}) {
+  if (const VoxelOptions* const voxels = plan.voxels()) return make_voxel_surveyor(mode, branch, plan, *voxels, demand);
+  return make_column_surveyor(mode, branch, plan, *plan.columns(), demand);
 }
 
 template <class S>
 Survey<S> survey(const std::vector<S>& p, const WorkingMode& mode, const SurveyPlan& plan, const Demand& demand = {}) {
   Survey<S> result;
-  make_surveyor(mode, 1, plan, demand)->survey(std::span<const S>(p), result);
+  survey_once<S>(*surveyor_of(mode, 1, plan, demand), p, result);
   return result;
 }
 
@@ -127,7 +137,7 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
     demand.conditioning = true;
     for (const auto& grid : entry["grids"]) {
       SCOPED_TRACE(entry["design"].dump() + " " + grid.dump());
-      SurveyPlan voxels = plan(Method::voxels, {grid["shape"][0], grid["shape"][1], grid["shape"][2]});
+      SurveyPlan voxels = voxels_plan({grid["shape"][0], grid["shape"][1], grid["shape"][2]});
       if (entry["interference"]) voxels.limits.given[kClearanceMin] = 0;
       const auto found = survey(p, mode, voxels, demand);
       EXPECT_EQ(found.feasible_cells, grid["count"].get<std::int64_t>());
@@ -155,14 +165,13 @@ TEST(HybridColumns, VolumesAreTheGoldenOnes) {
   for (const auto& entry : golden()["workspace"]) {
     if (!entry.contains("analytic")) continue;
     SCOPED_TRACE(entry["design"].dump() + " " + entry["wm"].dump());
-    SurveyPlan columns = plan(Method::columns);
-    columns.tolerance = 1e-10;
+    const SurveyPlan columns = columns_plan(1e-10);
     const double golden = entry["analytic"], error = entry["analytic_rel_err"];
     EXPECT_NEAR(survey(design_of(entry), mode_of(entry["wm"]), columns).volume, golden, error * golden);
     ++compared;
   }
   EXPECT_EQ(compared, 5);
-  const auto volume = [](const WorkingMode& mode) { return survey(nominal(), mode, plan(Method::columns)).volume; };
+  const auto volume = [](const WorkingMode& mode) { return survey(nominal(), mode, columns_plan()).volume; };
   EXPECT_NEAR(volume({1, -1, -1}), 7.629533e-3, 5e-9);  // document, section 8.4
   EXPECT_NEAR(volume({1, -1, 1}), 6.50289e-4, 5e-10);
   EXPECT_NEAR(volume({-1, 1, -1}), 4.09804e-4, 5e-10);
@@ -172,10 +181,10 @@ TEST(HybridColumns, VolumesAreTheGoldenOnes) {
 
 TEST(HybridVoxels, ConvergeToTheColumns) {
   for (const WorkingMode& mode : {WorkingMode{1, -1, -1}, WorkingMode{1, -1, 1}}) {
-    const double exact = survey(nominal(), mode, plan(Method::columns)).volume;
+    const double exact = survey(nominal(), mode, columns_plan()).volume;
     std::printf("mode %s: columns %.9e m^2 rad\n", mode_name(mode).c_str(), exact);
     for (const std::int64_t n : {32, 64, 128, 256}) {
-      const auto found = survey(nominal(), mode, plan(Method::voxels, {n, n, n}));
+      const auto found = survey(nominal(), mode, voxels_plan({n, n, n}));
       std::printf("  %3d^3 voxels: %8d feasible, %.9e, error %+.1e\n", static_cast<int>(n),
                   static_cast<int>(found.feasible_cells), found.volume, found.volume / exact - 1);
       EXPECT_NEAR(found.volume / exact, 1, 2.0 / static_cast<double>(n));  // the document's rms is 0.8 / n
@@ -192,8 +201,8 @@ TEST(HybridColumns, OfXHoldThePosesWhoseMarginsDo) {
       const VoxelDesign design{frame_of(c.p, c.mode, no_thresholds(), branch)}, with_links{design.frame, true};
       const Frame<double>& f = design.frame;
       for (int i = 0; i < 400; ++i) {
-        const Pose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]), uniform(0.15, 0.3),
-                                uniform(-0.7, 0.7)};
+        const SchoenfliesPose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]),
+                                           uniform(0.15, 0.3), uniform(-0.7, 0.7)};
         const Margins<double> m = margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), branch);
         const auto holds = [&](std::size_t count) {
           return std::all_of(m.begin(), m.begin() + count, [](double margin) { return margin >= 0; });
@@ -212,13 +221,13 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
   std::int64_t total = 0, clear = 0;
   for (const Case& c : random_cases(24, 1))
     for (const bool with_links : {false, true}) {
-      SurveyPlan voxels = plan(Method::voxels, {19, 17, 23});
+      SurveyPlan voxels = voxels_plan({19, 17, 23});
       if (with_links) voxels.limits.given[kClearanceMin] = 0.004;
       const VoxelDesign design{frame_of(c.p, c.mode, voxels.limits), with_links};
       const Box box = default_box(design), wide = {{{-0.3, 0.3}, {0.0, 0.35}, {-1.2, 1.2}}};
       for (const bool given : {false, true}) {
-        if (given) voxels.box = wide;
-        const VoxelGrid grid(voxels.cells, given ? wide : box);
+        if (given) std::get<VoxelOptions>(voxels.method).box = wide;
+        const VoxelGrid grid(voxels.voxels()->cells, given ? wide : box);
         const VoxelMap plain =
             test_every_cell(grid, [&](double x, double z, double beta) { return feasible(design, x, z, beta); });
         Survey<double> expected;
@@ -226,7 +235,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
         const auto found = survey(c.p, c.mode, voxels);
         EXPECT_EQ(found.feasible_cells, expected.feasible_cells);
         EXPECT_EQ(found.touches_box, expected.touches_box);
-        EXPECT_EQ(pkm::hybrid::voxel_map(c.mode, 1, c.p, voxels).feasible, plain.feasible);
+        EXPECT_EQ(pkm::hybrid::voxel_map(c.mode, 1, c.p, voxels, *voxels.voxels()).feasible, plain.feasible);
         (with_links ? clear : total) += found.feasible_cells;
       }
     }
@@ -244,7 +253,7 @@ TEST(HybridVoxels, TheOtherBranchIsEmpty) {
               test_every_cell(grid, [&](double x, double z, double beta) { return feasible(design, x, z, beta); }),
               found);
     EXPECT_EQ(found.feasible_cells, 0);
-    make_surveyor(c.mode, -1, plan(Method::columns), {})->survey(c.p, found);
+    survey_once<double>(*surveyor_of(c.mode, -1, columns_plan()), c.p, found);
     EXPECT_EQ(found.volume, 0);
   }
 }
@@ -275,12 +284,9 @@ TEST(HybridColumns, SectionsEqualTheSumOfTheirColumns) {
 
 TEST(HybridColumns, ToleranceIsKept) {
   for (const Case& c : random_cases(40, 4)) {
-    SurveyPlan columns = plan(Method::columns);
-    columns.tolerance = 1e-13;
-    const double best = survey(c.p, c.mode, columns).volume;
+    const double best = survey(c.p, c.mode, columns_plan(1e-13)).volume;
     for (const double tolerance : {1e-10, 1e-8, 1e-4}) {
-      columns.tolerance = tolerance;
-      const auto found = survey(c.p, c.mode, columns);
+      const auto found = survey(c.p, c.mode, columns_plan(tolerance));
       EXPECT_NEAR(found.volume, best, tolerance * best);
       EXPECT_LE(found.error, tolerance);
     }
@@ -291,8 +297,8 @@ TEST(HybridColumns, SamplesAddUpAndHaveTheMeanOfTheVoxels) {
   Demand demand;
   demand.conditioning = true;
   for (const Case& c : random_cases(18, 5)) {
-    const auto exact = survey(c.p, c.mode, plan(Method::columns), demand),
-               cells = survey(c.p, c.mode, plan(Method::voxels, {40, 60, 60}), demand);
+    const auto exact = survey(c.p, c.mode, columns_plan(), demand),
+               cells = survey(c.p, c.mode, voxels_plan({40, 60, 60}), demand);
     if (!(exact.volume > 1e-3)) continue;
     double sum = 0;
     for (const double w : exact.weight) sum += w;
@@ -302,23 +308,23 @@ TEST(HybridColumns, SamplesAddUpAndHaveTheMeanOfTheVoxels) {
 }
 
 TEST(HybridWorkspace, TheCarriageMultipliesByItsStroke) {
-  SurveyPlan columns = plan(Method::columns), voxels = plan(Method::voxels, {12, 12, 12});
+  SurveyPlan columns = columns_plan(), voxels = voxels_plan({12, 12, 12});
   for (SurveyPlan* p : {&columns, &voxels}) {
     const double still = survey(nominal(), {1, -1, -1}, *p).volume;
-    p->held = {HeldCoordinate::Kind::value, 0.199, {}};
+    p->held = {held_y(HeldCoordinate::Kind::value, 0.199)};
     EXPECT_EQ(survey(nominal(), {1, -1, -1}, *p).volume, still);
-    p->held.value = 0.201;
+    p->held = {held_y(HeldCoordinate::Kind::value, 0.201)};
     EXPECT_EQ(survey(nominal(), {1, -1, -1}, *p).volume, 0);
-    p->held.kind = HeldCoordinate::Kind::integrated;
+    p->held = {held_y(HeldCoordinate::Kind::integrated)};
     EXPECT_NEAR(survey(nominal(), {1, -1, -1}, *p).volume, 0.4 * still, 1e-15);
   }
 }
 
 TEST(HybridWorkspace, ColumnsRefuseAClearance) {
-  SurveyPlan columns = plan(Method::columns);
+  SurveyPlan columns = columns_plan();
   columns.limits.given[kClearanceMin] = 0;
   try {
-    mechanism().prepare(columns, {});
+    prepare_survey(mechanism(), columns, {});
     FAIL() << "no refusal";
   } catch (const std::invalid_argument& e) {
     EXPECT_STREQ(e.what(),
@@ -330,9 +336,8 @@ TEST(HybridWorkspace, ColumnsRefuseAClearance) {
 // By every parameter that the volume depends on, at designs and modes of all kinds.
 TEST(HybridColumns, SlopesEqualDifferences) {
   int moved = 0;
-  SurveyPlan columns = plan(Method::columns);
-  columns.held.kind = HeldCoordinate::Kind::integrated;
-  columns.tolerance = 1e-12;
+  SurveyPlan columns = columns_plan(1e-12);
+  columns.held = {held_y(HeldCoordinate::Kind::integrated)};
   for (const Case& c : random_cases(12, 6)) {
     const double volume = survey(c.p, c.mode, columns).volume;
     if (!(volume > 1e-5)) continue;
