@@ -158,8 +158,7 @@ TEST(PageData, TheFilesOwnMapServesWhereTheTextCannotBeRead) {
 TEST(PageData, ADesignHasAWorkspaceItsLinksAndItsCoupling) {
   const auto mechanism = mechanism_called("3crr-r-cru");
   const std::vector<double> nominal = test::nominal(mechanism->info());
-  const Views views =
-      views_of(*mechanism, test::plan(mechanism->info(), Method::voxels, 6), "", {}, {"nominal", nominal});
+  const Views views = views_of(*mechanism, test::voxels(mechanism->info(), 6), "", {}, {"nominal", nominal});
   ASSERT_EQ(views.designs[0].problem, "");
   const auto [lower, upper] = views.designs[0].held_range[0];
   EXPECT_LT(lower, 0);  // it can turn both ways
@@ -182,7 +181,7 @@ TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
   const auto motion =
       with_input(formulas_of_time({formula("-0.01*t"), formula("0.01*t"), formula("0.25"), formula("0.1*sin(t)")}, 5),
                  formula("t"));
-  const Views views = views_of(*mechanism, test::plan(info, Method::voxels, 6), info.modes.front(), {{"turns", motion}},
+  const Views views = views_of(*mechanism, test::voxels(info, 6), info.modes.front(), {{"turns", motion}},
                                {"nominal", test::nominal(info)});
   const json page = json::parse(motions_data(views)), &chain = page["motions"][0]["designs"][0]["chain"];
   EXPECT_EQ(page["chain"], json({mechanism->chain()->input(), mechanism->chain()->output()}));
@@ -200,17 +199,16 @@ TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
 
   const auto without = mechanism_called("3crr-r-cru");
   const auto rest = formulas_of_time({formula("0.15"), formula("0.2"), formula("0.21"), formula("0.1*sin(t)")}, 5);
-  const json none = json::parse(
-      motions_data(views_of(*without, test::plan(without->info(), Method::voxels, 6), without->info().modes.front(),
-                            {{"turns", rest}}, {"nominal", test::nominal(without->info())})));
+  const json none =
+      json::parse(motions_data(views_of(*without, test::voxels(without->info(), 6), without->info().modes.front(),
+                                        {{"turns", rest}}, {"nominal", test::nominal(without->info())})));
   EXPECT_TRUE(none["motions"][0]["designs"][0]["chain"].is_null());
 }
 
 TEST(PageData, ADesignThatIsNoneIsSaidSo) {
   const auto mechanism = mechanism_called("4ppa-2par");
   std::vector<double> parameters(mechanism->info().parameters.size(), 0.0);
-  const Views views =
-      views_of(*mechanism, test::plan(mechanism->info(), Method::columns), "", {}, {"nothing", parameters});
+  const Views views = views_of(*mechanism, test::columns(mechanism->info()), "", {}, {"nothing", parameters});
   const json workspace = json::parse(workspace_data(views));
   EXPECT_THAT(workspace["designs"], IsEmpty());
   EXPECT_THAT(workspace["problems"][0].get<std::string>(), HasSubstr("“nothing” is not shown: "));
