@@ -87,10 +87,22 @@ class MatrixUpTo {
   std::size_t rows() const { return rows_; }
   std::size_t cols() const { return cols_; }
   std::size_t size() const { return rows_ * cols_; }
-  S& operator()(std::size_t i, std::size_t j) { return m_[i * cols_ + j]; }
-  const S& operator()(std::size_t i, std::size_t j) const { return m_[i * cols_ + j]; }
-  S& operator[](std::size_t i) { return m_[i]; }
-  const S& operator[](std::size_t i) const { return m_[i]; }
+  S& operator()(std::size_t i, std::size_t j) {
+    PKM_EXPECTS(i < rows_ && j < cols_);
+    return m_[i * cols_ + j];
+  }
+  const S& operator()(std::size_t i, std::size_t j) const {
+    PKM_EXPECTS(i < rows_ && j < cols_);
+    return m_[i * cols_ + j];
+  }
+  S& operator[](std::size_t i) {
+    PKM_EXPECTS(i < size());
+    return m_[i];
+  }
+  const S& operator[](std::size_t i) const {
+    PKM_EXPECTS(i < size());
+    return m_[i];
+  }
   S* begin() { return m_.data(); }
   S* end() { return m_.data() + size(); }
   const S* begin() const { return m_.data(); }

@@ -128,11 +128,19 @@ bool can_hold(const MechanismInfo& info, const std::vector<int>& coordinates) {
   });
 }
 
+/// The coordinates that some sweep holds, those of the usual one first.
+std::vector<int> holdable(const MechanismInfo& info) {
+  std::vector<int> coordinates;
+  for (const Sweep& sweep : info.sweeps)
+    for (const int coordinate : sweep.held)
+      if (std::ranges::find(coordinates, coordinate) == coordinates.end()) coordinates.push_back(coordinate);
+  return coordinates;
+}
+
 /// The coordinates, of those that the mechanism's surveys can hold, that the study names.
 void read_held_coordinates(const ConfigValue& table, const MechanismInfo& info, bool of_region, SurveyPlan& plan) {
   std::vector<int> named;
-  for (int coordinate = 0; coordinate < std::ssize(info.coordinates); ++coordinate) {
-    if (!can_hold(info, {coordinate})) continue;
+  for (const int coordinate : holdable(info)) {
     const auto value = table.find(axis_of(info, coordinate).name);
     if (!value) continue;
     named.push_back(coordinate);
@@ -160,8 +168,7 @@ void read_limits(const ConfigValue& table, StudyDraft& draft) {
 /// The keys of a survey, which [workspace] and [[region]] share.
 std::vector<std::string> survey_keys(const MechanismInfo& info) {
   std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box"};
-  for (int coordinate = 0; coordinate < std::ssize(info.coordinates); ++coordinate)
-    if (can_hold(info, {coordinate})) keys.push_back(axis_of(info, coordinate).name);
+  for (const int coordinate : holdable(info)) keys.push_back(axis_of(info, coordinate).name);
   return keys;
 }
 

@@ -16,7 +16,7 @@ ChainInfluence influence(const Geometry<double>& g, const Pose<double>& pose, do
     return output(g, {{pose.x, u[0], 0}, {pose.y, u[1], 0}, {pose.z, u[2], 0}, {pose.angle, u[3], 0}}, {theta, u[4], 0},
                   zeta);
   };
-  ChainInfluence found;
+  ChainInfluence found{.gradient = AxisVector<double>(5), .hessian = AxisMatrix<double>(5, 5)};
   std::array<Vector<double, 5>, 5> axis;
   for (std::size_t i = 0; i < 5; ++i) {
     axis[i][i] = 1;
