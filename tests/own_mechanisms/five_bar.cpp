@@ -56,6 +56,7 @@ class FiveBar final : public FromInverse<FiveBar, 2>, ForwardKinematics, Links {
       all.emplace_back("stretched " + number, p[kCrank] + p[kRod] - way);
       all.emplace_back("folded " + number, way - std::fabs(p[kCrank] - p[kRod]));
     }
+    if (!std::isfinite(q[0] + q[1])) return all;
     const Vector<double, 2> a = elbow(p, q, 0), b = elbow(p, q, 1);
     const double cross = (pose[0] - a[0]) * (pose[1] - b[1]) - (pose[1] - a[1]) * (pose[0] - b[0]);
     all.emplace_back("sin_rods", cross / (p[kRod] * p[kRod]) - limits.given[0].value_or(0));
