@@ -12,7 +12,7 @@ namespace {
 
 bool takes_list(const std::string& option) {
   static const std::vector<std::string> options = {"--set",          "--at",     "--joints", "--velocity",
-                                                   "--acceleration", "--forces", "--wrench"};
+                                                   "--acceleration", "--forces", "--wrench", "--held"};
   return std::find(options.begin(), options.end(), option) != options.end();
 }
 

@@ -23,15 +23,16 @@ namespace {
 constexpr double kMostCells = 1e7;
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs {
-  std::string held, csv, html;
+  std::vector<std::string> held;
+  std::string csv, html;
   int threads = 0;
 };
 
 /// Holds the coordinates that --held names at their values. Others that the study holds stay as they are where its
 /// sweep serves; where another does, the study's box and cells are of other axes.
-void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::string& text) {
+void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists) {
   const SourcePlace place{"", 0, "--held"};
-  const auto values = parse_assignments({text}, place.key, assignable_coordinates(info));
+  const auto values = parse_assignments(lists, place.key, assignable_coordinates(info));
   std::vector<int> known;
   std::size_t most = 0;
   for (const Sweep& sweep : info.sweeps) {
@@ -55,7 +56,7 @@ void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::string& te
   };
   if (std::ranges::none_of(info.sweeps, serves))
     throw ConfigError(
-        place, text,
+        place, join(lists),
         most > 1 ? "coordinates that one survey can hold, with their values" : "one coordinate with its value");
   if (!serves(sweep_of(info, plan))) {
     plan.held.clear();
@@ -205,10 +206,8 @@ void add_workspace(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("workspace", "The workspace of one design, for ParaView, tables and CAD.");
   add_design_arguments(*command, *arguments);
   add_grid_options(*command, *arguments, kPictureCells);
-  command
-      ->add_option("--held", arguments->held,
-                   "The coordinate that is not swept and its value; default: the study's, else the design's middle")
-      ->type_name("NAME=VALUE");
+  add_list_option(*command, "--held", arguments->held,
+                  "Coordinates that are not swept; default: the study's, else the design's middle", false);
   command->add_option("--mode", arguments->mode, "Working mode of the coupling indices; default: the first")
       ->type_name("MODE");
   add_workspace_outputs(*command, *arguments);
