@@ -147,8 +147,8 @@ Json mechanism(const Views& views, const View& view) {
   if (drawn == poses.end()) return Json();
 
   Json json = {{"name", view.name},
-               {"coordinates", axes_data(info.coordinates)},
-               {"joints", axes_data(info.joints)},
+               {"coordinates", axes_data<Json>(info.coordinates)},
+               {"joints", axes_data<Json>(info.joints)},
                {"links", Json::array()}};
   for (std::size_t c = 0; c < sliders.size(); ++c) json["coordinates"][c]["values"] = sliders[c].values;
   const Ends ends(poses);

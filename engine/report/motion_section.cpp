@@ -110,8 +110,8 @@ std::string motions_data(const Views& views) {
   if (motions.empty()) return "";
   Json chain = Json::array();
   if (const AuxiliaryChain* const shafts = views.mechanism.chain()) chain = {shafts->input(), shafts->output()};
-  return json_text(Json{{"coordinates", axes_data(info.coordinates)},
-                        {"joints", axes_data(info.joints)},
+  return json_text(Json{{"coordinates", axes_data<Json>(info.coordinates)},
+                        {"joints", axes_data<Json>(info.joints)},
                         {"chain", chain},
                         {"motions", motions}});
 }

@@ -5,10 +5,7 @@
 // they look is said in engine/report/page/, in the file of the same name.
 #pragma once
 
-#include <span>
 #include <string>
-
-#include <nlohmann/json_fwd.hpp>
 
 #include "engine/report/views.hpp"
 
@@ -38,10 +35,5 @@ std::string mechanism_data(const Views& views);
 std::string coupling_data(const Views& views);
 /// Joints, forces and power along the study's motions.
 std::string motions_data(const Views& views);
-
-/// How the page knows coordinates and joints by: { name, unit, role }, the role being what a coordinate is in the room,
-/// "x", "y" or "z" for the length of that name, "turn" for an angle, else "other".
-nlohmann::ordered_json axis_data(const std::string& name, const std::string& unit);
-nlohmann::ordered_json axes_data(std::span<const AxisInfo> axes);
 
 }  // namespace pkm

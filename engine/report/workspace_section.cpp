@@ -37,7 +37,7 @@ Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
 }
 
 Json axis_of(const WorkspaceAxis& axis) {
-  Json json = axis_data(axis.name, axis.unit);
+  Json json = axis_data<Json>(axis.name, axis.unit);
   json["coordinate"] = axis.coordinate;
   return json;
 }
@@ -83,17 +83,6 @@ WorkspaceFields fields_of(const MapRecord& map, const DesignRecord& best, const 
 }
 
 }  // namespace
-
-Json axis_data(const std::string& name, const std::string& unit) {
-  const bool in_room = name == "x" || name == "y" || name == "z";
-  return {{"name", name}, {"unit", unit}, {"role", unit == "rad" ? "turn" : in_room ? name : "other"}};
-}
-
-Json axes_data(std::span<const AxisInfo> axes) {
-  Json list = Json::array();
-  for (const AxisInfo& axis : axes) list.push_back(axis_data(axis.name, axis.unit));
-  return list;
-}
 
 std::string workspace_data(const Views& views) {
   const SurveyPlan& plan = views.plan;

@@ -119,7 +119,7 @@ TEST(FourPpaKinematics, ReasonsAndUnreachableJoints) {
   EXPECT_EQ(off_rail.reason, "limit stroke is broken");
   EXPECT_TRUE(four_ppa().forward()->assemblies(p, {0, 2.4, 0, 2.4}).empty());    // wider than the upper bars allow
   EXPECT_TRUE(four_ppa().forward()->assemblies(p, {0, 0.5, 2.0, 2.5}).empty());  // |sin theta| > 1
-  EXPECT_THROW(four_ppa().inspect(p, {}, "sideways", none), std::invalid_argument);
+  EXPECT_THROW(four_ppa().inspect(p, pkm::Pose<double>(4), "sideways", none), std::invalid_argument);
 }
 
 TEST(FourPpaDesign, MarginsFollowTheirEquations) {
