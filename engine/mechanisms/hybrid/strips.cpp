@@ -291,13 +291,12 @@ void find_strips(const Section<double>& s, StripScratch& scratch, Structure& str
   structure.upper = upper;
   const StripEnd low = end_of_z(s, StripEnd::Kind::lower, lower), high = end_of_z(s, StripEnd::Kind::upper, upper);
   structure.hole = hole_of(s, low.z, high.z);
-  find_plain_strips(s, kCurveH, low, high, scratch, scratch.outer);
-  if (structure.hole != Structure::Hole::none) {
+  const bool whole = structure.hole == Structure::Hole::none;
+  find_plain_strips(s, kCurveH, low, high, scratch, whole ? structure.strips : scratch.outer);
+  if (!whole) {
     const StripEnd end = structure.hole == Structure::Hole::below ? end_of_z(s, StripEnd::Kind::hole) : high;
     find_plain_strips(s, kCurves, low, end, scratch, scratch.inner);
     take_out(scratch.outer, scratch.inner, structure.strips);
-  } else {
-    structure.strips.swap(scratch.outer);
   }
   structure.signature = signature_of(structure);
 }
