@@ -5,6 +5,7 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/four_ppa_two_par/clearance.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -45,10 +46,11 @@ std::vector<double> thick_design() {
 
 void survey(benchmark::State& state, const std::vector<double>& all, double least, SurveyPlan plan) {
   plan.limits.given[kClearanceMin] = least;
-  const auto surveyor = four_ppa().prepare(plan, {});
+  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+  Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, result);
+    surveyor->survey(all, scratch, result);
     benchmark::DoNotOptimize(result.volume);
   }
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);

@@ -5,6 +5,7 @@
 #include "benchmarks/timing.hpp"
 #include "engine/math/dual.hpp"
 #include "engine/mechanisms/four_ppa_two_par/columns.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -14,12 +15,13 @@ using Designs = std::vector<std::vector<double>>;
 
 // Surveys the designs one after the other; times and rates are per design.
 void survey(benchmark::State& state, const Designs& designs, const SurveyPlan& plan) {
-  const auto surveyor = four_ppa().prepare(plan, {});
+  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+  Scratch scratch;
   Survey<double> result;
   std::int64_t columns = 0;
   std::size_t next = 0;
   for (auto _ : state) {
-    surveyor->survey(designs[next], result);
+    surveyor->survey(designs[next], scratch, result);
     benchmark::DoNotOptimize(result.volume);
     columns += result.columns;
     next = next + 1 < designs.size() ? next + 1 : 0;
@@ -29,8 +31,8 @@ void survey(benchmark::State& state, const Designs& designs, const SurveyPlan& p
   state.counters["columns_each"] = static_cast<double>(columns) / static_cast<double>(state.iterations());
 }
 
-const HeldCoordinate kOffPlane{HeldCoordinate::Kind::value, 0.4};  // the stroke cuts there
-const HeldCoordinate kOverY{HeldCoordinate::Kind::integrated, 0};
+const std::vector<HeldCoordinate> kOffPlane = {held_at(1, 0.4)};  // the stroke cuts there
+const std::vector<HeldCoordinate> kOverY = {{.coordinate = 1, .kind = HeldCoordinate::Kind::integrated}};
 
 void without_limits_original(benchmark::State& state) {
   survey(state, {original_design()}, column_plan(without_limits()));

@@ -4,6 +4,7 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/four_ppa_two_par/conditioning.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -43,11 +44,12 @@ BENCHMARK(pose)->Name("conditioning/pose")->Unit(benchmark::kMicrosecond);
 void survey(benchmark::State& state, SurveyPlan plan) {
   Demand demand;
   demand.conditioning = true;
-  const auto surveyor = four_ppa().prepare(plan, demand);
+  const auto surveyor = prepare_survey(four_ppa(), plan, demand);
   const auto all = original_design();
+  Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, result);
+    surveyor->survey(all, scratch, result);
     benchmark::DoNotOptimize(result.conditioning.data());
   }
   const auto poses = static_cast<double>(result.conditioning.size());

@@ -16,16 +16,16 @@ std::vector<double> nominal(const Mechanism& m) {
   return parameters;
 }
 
-SurveyPlan plan_of(Method method) {
-  SurveyPlan plan;
-  plan.method = method;
-  plan.cells = {40, 40, 40};
-  plan.held = {HeldCoordinate::Kind::value, 0.3, 3};
+SurveyPlan plan_of(const std::variant<ColumnOptions, VoxelOptions>& method) {
+  SurveyPlan plan{.method = method, .held = {held_at(3, 0.3)}};
   plan.limits = no_limits(mechanism_named("quadrupteron").info());
   plan.limits.given[0] = 0.2;
   plan.limits.given[1] = 0.1;
   return plan;
 }
+
+constexpr std::array<std::int64_t, 3> kCells = {40, 40, 40};
+constexpr Box kInside = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
 
 Demand coupling() {
   Demand demand;
@@ -37,10 +37,11 @@ Demand coupling() {
 void voxels(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
-  const auto surveyor = m.prepare(plan_of(Method::voxels), coupling());
+  const auto surveyor = prepare_survey(m, plan_of(VoxelOptions{.cells = kCells}), coupling());
+  Scratch scratch;
   Survey<double> survey;
   for (auto _ : state) {
-    surveyor->survey(std::span<const double>(parameters), survey);
+    surveyor->survey(parameters, scratch, survey);
     benchmark::DoNotOptimize(survey.dci[0].data());
   }
   state.counters["feasible"] = static_cast<double>(survey.weight.size());
@@ -53,12 +54,11 @@ void voxels(benchmark::State& state, const char* name) {
 void full_box(benchmark::State& state, const char* name) {
   const Mechanism& m = mechanism_named(name);
   const auto parameters = nominal(m);
-  SurveyPlan plan = plan_of(Method::voxels);
-  plan.box = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
-  const auto surveyor = m.prepare(plan, coupling());
+  const auto surveyor = prepare_survey(m, plan_of(VoxelOptions{.cells = kCells, .box = kInside}), coupling());
+  Scratch scratch;
   Survey<double> survey;
   for (auto _ : state) {
-    surveyor->survey(std::span<const double>(parameters), survey);
+    surveyor->survey(parameters, scratch, survey);
     benchmark::DoNotOptimize(survey.dci[0].data());
   }
   state.counters["feasible"] = static_cast<double>(survey.weight.size());
@@ -73,14 +73,13 @@ void task_box(benchmark::State& state) {
   const Mechanism& m = mechanism_named("3crr-r-cru");
   const auto values = nominal(m);
   const std::vector<S> parameters(values.begin(), values.end());
-  SurveyPlan plan = plan_of(Method::columns);
-  plan.box = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
-  plan.nodes = {4, 4};
-  plan.held_values = {-1, -0.5, 0, 0.5, 1};
+  SurveyPlan plan = plan_of(ColumnOptions{.nodes = {4, 4}, .box = kInside});
+  plan.held = {{.coordinate = 3, .kind = HeldCoordinate::Kind::listed, .values = {-1, -0.5, 0, 0.5, 1}}};
   const auto surveyor = prepare_survey(m, plan, coupling());
+  Scratch scratch;
   Survey<S> survey;
   for (auto _ : state) {
-    surveyor->survey(std::span<const S>(parameters), survey);
+    run_survey<S>(*surveyor, parameters, scratch, survey);
     benchmark::DoNotOptimize(weighted_mean(survey.weight, survey.dci[3]));
   }
   state.counters["poses"] = static_cast<double>(survey.weight.size());
@@ -93,7 +92,7 @@ void inverse_dynamics(benchmark::State& state, const char* name) {
   const auto platform = std::string(name) == "quadrupteron" ? crr_cru::Platform::rigid : crr_cru::Platform::jointed;
   const auto g = crr_cru::geometry(platform, std::span<const double>(p));
   const auto b = crr_cru::masses(crr_cru::MassModel::table, std::span<const double>(p));
-  MotionState<double> at{{0.2, 0.17, 0.22, 0.3}, {{0.3, -0.2, 0.1, 1}}};
+  MotionState<double, 4> at{{0.2, 0.17, 0.22, 0.3}, {{0.3, -0.2, 0.1, 1}}};
   for (auto _ : state) {
     benchmark::DoNotOptimize(at);
     const auto d = crr_cru::pose_dynamics(g, b, at, {-1, -1, 1, -1});

@@ -2,40 +2,40 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/inputs.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
 
 /// @param held  0 to 3; off the middle, where slides' ranges would coincide
-SurveyPlan plan_of(const MechanismInfo& info, Method method, int held) {
-  SurveyPlan plan;
-  plan.method = method;
-  plan.cells = {32, 34, 60};
-  plan.held = {HeldCoordinate::Kind::value, held == 3 ? 0.3 : 0.21, held};
-  plan.limits = no_limits(info);
+template <class Method>
+SurveyPlan plan_of(const MechanismInfo& info, const Method& method, int held) {
+  SurveyPlan plan{.method = method, .held = {held_at(held, held == 3 ? 0.3 : 0.21)}, .limits = no_limits(info)};
   plan.limits.given[0] = 0.2;  // s_min
   plan.limits.given[1] = 0.1;  // c_min
   return plan;
 }
 
-template <class S>
-void survey(benchmark::State& state, const char* name, Method method) {
+template <class S, class Method>
+void survey(benchmark::State& state, const char* name, const Method& method) {
   const Mechanism& mechanism = mechanism_named(name);
   std::vector<S> parameters;
   for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
-  const auto surveyor = mechanism.prepare(plan_of(mechanism.info(), method, static_cast<int>(state.range(0))), {});
+  const auto surveyor =
+      prepare_survey(mechanism, plan_of(mechanism.info(), method, static_cast<int>(state.range(0))), {});
+  Scratch scratch;
   Survey<S> result;
   for (auto _ : state) {
-    surveyor->survey(std::span<const S>(parameters), result);
+    run_survey<S>(*surveyor, parameters, scratch, result);
     benchmark::DoNotOptimize(result.volume);
   }
 }
 
-void jointed_columns(benchmark::State& state) { survey<double>(state, "3crr-r-cru", Method::columns); }
-void jointed_slopes(benchmark::State& state) { survey<Dual4>(state, "3crr-r-cru", Method::columns); }
-void jointed_voxels(benchmark::State& state) { survey<double>(state, "3crr-r-cru", Method::voxels); }
-void rigid_columns(benchmark::State& state) { survey<double>(state, "quadrupteron", Method::columns); }
-void rigid_voxels(benchmark::State& state) { survey<double>(state, "quadrupteron", Method::voxels); }
+void jointed_columns(benchmark::State& state) { survey<double>(state, "3crr-r-cru", ColumnOptions()); }
+void jointed_slopes(benchmark::State& state) { survey<Dual4>(state, "3crr-r-cru", ColumnOptions()); }
+void jointed_voxels(benchmark::State& state) { survey<double>(state, "3crr-r-cru", kPaperGrid); }
+void rigid_columns(benchmark::State& state) { survey<double>(state, "quadrupteron", ColumnOptions()); }
+void rigid_voxels(benchmark::State& state) { survey<double>(state, "quadrupteron", kPaperGrid); }
 
 BENCHMARK(jointed_columns)->Name("crr_cru/columns/held")->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
 BENCHMARK(jointed_slopes)->Name("crr_cru/columns_gradient/held")->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);

@@ -17,8 +17,9 @@ void value(benchmark::State& state) {
   for (const double x : {0.55, 0.8, 0.6, 0.55}) values.push_back(S(x));
   if constexpr (!std::is_same_v<S, double>)
     for (int i = 0; i < 4; ++i) values[static_cast<std::size_t>(i)].v[i] = 1;
+  std::vector<S> stack;
   for (auto _ : state) {
-    S found = formula.value(std::span<const S>(values));
+    S found = formula.value(std::span<const S>(values), stack);
     benchmark::DoNotOptimize(found);
   }
 }

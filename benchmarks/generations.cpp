@@ -28,8 +28,10 @@ void generation(benchmark::State& state, Study (*make_study)(), std::size_t popu
   ParallelEvaluator one(1), two(2);
   const auto by_one = [&] { one.evaluate(problem, table, population); };
   const auto by_two = [&] { two.evaluate(problem, table, population); };
-  const Duel duel =
-      take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+  Duel duel;
+  with_team(2, [&] {
+    duel = take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+  });
   const double designs = 10 * static_cast<double>(population) * static_cast<double>(state.iterations());
   state.counters["designs_per_s_on_one"] = designs / duel.first;
   state.counters["designs_per_s_on_two"] = designs / duel.second;

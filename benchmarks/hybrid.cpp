@@ -5,18 +5,16 @@
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/mechanisms/hybrid/voxels.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
 
 const Mechanism& hybrid_robot() { return mechanism_named("2t1r-p-hybrid"); }
 
-SurveyPlan plan_of(Method method) {
-  SurveyPlan plan;
-  plan.method = method;
-  plan.cells = {32, 34, 60};
-  plan.limits = no_limits(hybrid_robot().info());
-  return plan;
+template <class Method>
+SurveyPlan plan_of(const Method& method) {
+  return {.method = method, .limits = no_limits(hybrid_robot().info())};
 }
 
 /// The nominal design first, then such with every parameter up to a tenth off.
@@ -30,15 +28,16 @@ std::vector<std::vector<double>> designs(std::size_t count) {
 }
 
 /// Times per design. @param S  with Dual4, derivatives by four variables
-template <class S>
-void survey(benchmark::State& state, Method method, std::size_t count, const Demand& demand = {}) {
+template <class S, class Method>
+void survey(benchmark::State& state, const Method& method, std::size_t count, const Demand& demand = {}) {
   std::vector<std::vector<S>> all;
   for (const auto& design : designs(count)) all.emplace_back(design.begin(), design.end());
-  const auto surveyor = hybrid_robot().prepare(plan_of(method), demand);
+  const auto surveyor = prepare_survey(hybrid_robot(), plan_of(method), demand);
+  Scratch scratch;
   Survey<S> result;
   std::size_t next = 0;
   for (auto _ : state) {
-    surveyor->survey(std::span<const S>(all[next]), result);
+    run_survey<S>(*surveyor, all[next], scratch, result);
     benchmark::DoNotOptimize(result.volume);
     next = next + 1 < count ? next + 1 : 0;
   }
@@ -50,28 +49,25 @@ Demand with_conditioning() {
   return demand;
 }
 
-void columns(benchmark::State& state) { survey<double>(state, Method::columns, 1); }
-void columns_random(benchmark::State& state) { survey<double>(state, Method::columns, 100); }
-void gradient(benchmark::State& state) { survey<Dual4>(state, Method::columns, 1); }
-void columns_conditioning(benchmark::State& state) { survey<double>(state, Method::columns, 1, with_conditioning()); }
-void voxels(benchmark::State& state) { survey<double>(state, Method::voxels, 1); }
-void voxels_conditioning(benchmark::State& state) { survey<double>(state, Method::voxels, 1, with_conditioning()); }
+void columns(benchmark::State& state) { survey<double>(state, ColumnOptions(), 1); }
+void columns_random(benchmark::State& state) { survey<double>(state, ColumnOptions(), 100); }
+void gradient(benchmark::State& state) { survey<Dual4>(state, ColumnOptions(), 1); }
+void columns_conditioning(benchmark::State& state) { survey<double>(state, ColumnOptions(), 1, with_conditioning()); }
+void voxels(benchmark::State& state) { survey<double>(state, kPaperGrid, 1); }
+void voxels_conditioning(benchmark::State& state) { survey<double>(state, kPaperGrid, 1, with_conditioning()); }
 
 using hybrid::VoxelDesign;
 
 VoxelDesign nominal() {
   const std::vector<double> p = designs(1)[0];
   const std::span<const double> all(p);
-  return {hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1),
-          1,
-          {}};
+  return {hybrid::frame(hybrid::geometry(all), hybrid::limits(all, no_limits(hybrid_robot().info())), {1, -1, -1}, 1)};
 }
 
 /// The plain loop over the same cells; fails if the survey counts others.
 void plain_loop(benchmark::State& state) {
   const VoxelDesign design = nominal();
-  const SurveyPlan plan = plan_of(Method::voxels);
-  const VoxelGrid grid(plan.cells, hybrid::default_box(design));
+  const VoxelGrid grid(kPaperGrid.cells, hybrid::default_box(design));
   Survey<double> plain, fast;
   for (auto _ : state) {
     summarise(
@@ -80,7 +76,7 @@ void plain_loop(benchmark::State& state) {
         plain);
     benchmark::DoNotOptimize(plain.volume);
   }
-  hybrid_robot().prepare(plan, {})->survey(designs(1)[0], fast);
+  survey_once<double>(*prepare_survey(hybrid_robot(), plan_of(kPaperGrid), {}), designs(1)[0], fast);
   if (fast.feasible_cells != plain.feasible_cells) state.SkipWithError("the survey counts other cells");
   state.counters["poses"] =
       benchmark::Counter(static_cast<double>(grid.count()), benchmark::Counter::kIsIterationInvariantRate);

@@ -4,6 +4,8 @@
 
 #include "constraints/all.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanisms/all.hpp"
+#include "engine/survey/survey_set.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm::benchmarks {
@@ -22,7 +24,7 @@ Study experiment(const std::string& name) {
 
 double volume(const Surveyor& surveyor, std::span<const double> parameters) {
   Survey<double> survey;
-  surveyor.survey(parameters, survey);
+  survey_once(surveyor, parameters, survey);
   return survey.volume;
 }
 
@@ -55,8 +57,8 @@ LimitSpec with_limits() { return wide_study().problem->parts().plan.limits; }
 
 std::vector<std::vector<double>> designs_with_active_limits(std::size_t count) {
   const Study study = wide_study();
-  const auto limited = four_ppa().prepare(column_plan(with_limits()), {});
-  const auto free = four_ppa().prepare(column_plan(without_limits()), {});
+  const auto limited = prepare_survey(four_ppa(), column_plan(with_limits()), {});
+  const auto free = prepare_survey(four_ppa(), column_plan(without_limits()), {});
   std::vector<std::vector<double>> designs;
   std::vector<double> variables(study.problem->space().dimension());
   for (std::uint32_t row = 0; designs.size() < count; ++row) {
@@ -68,21 +70,10 @@ std::vector<std::vector<double>> designs_with_active_limits(std::size_t count) {
   return designs;
 }
 
-SurveyPlan voxel_plan(const LimitSpec& limits) {
-  SurveyPlan plan;
-  plan.method = Method::voxels;
-  plan.limits = limits;
-  plan.cells = {32, 34, 60};
-  return plan;
-}
+SurveyPlan voxel_plan(const LimitSpec& limits) { return {.method = kPaperGrid, .limits = limits}; }
 
-SurveyPlan column_plan(const LimitSpec& limits, HeldCoordinate held, double tolerance) {
-  SurveyPlan plan;
-  plan.method = Method::columns;
-  plan.limits = limits;
-  plan.held = held;
-  plan.tolerance = tolerance;
-  return plan;
+SurveyPlan column_plan(const LimitSpec& limits, const std::vector<HeldCoordinate>& held, double tolerance) {
+  return {.method = ColumnOptions{.tolerance = tolerance}, .held = held, .limits = limits};
 }
 
 Study paper_study() { return experiment("paper-problem.toml"); }

@@ -31,8 +31,13 @@ LimitSpec with_limits();
 std::vector<std::vector<double>> designs_with_active_limits(std::size_t count);
 
 /// The paper's grid of 32 x 34 x 60 cells.
+inline constexpr VoxelOptions kPaperGrid{.cells = {32, 34, 60}};
+
+inline HeldCoordinate held_at(int coordinate, double value) {
+  return {.coordinate = coordinate, .kind = HeldCoordinate::Kind::value, .value = value};
+}
 SurveyPlan voxel_plan(const LimitSpec& limits);
-SurveyPlan column_plan(const LimitSpec& limits, HeldCoordinate held = {}, double tolerance = 1e-8);
+SurveyPlan column_plan(const LimitSpec& limits, const std::vector<HeldCoordinate>& held = {}, double tolerance = 1e-8);
 
 /// experiments/4ppa-2par/paper-problem.toml: the paper's problem on its voxels, 20 designs and 100 generations.
 Study paper_study();

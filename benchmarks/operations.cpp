@@ -17,6 +17,7 @@
 #include "engine/mechanisms/all.hpp"
 #include "engine/mechanisms/crr_cru/coupling.hpp"
 #include "engine/mechanisms/four_ppa_two_par/columns.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -32,11 +33,12 @@ struct Work {
 /// Runs the survey, and says how it compares with the operations that it takes.
 template <class Count>
 void against_bound(benchmark::State& state, const Work& work, const Count& operations_of) {
-  const auto surveyor = work.mechanism.prepare(work.plan, work.demand);
+  const auto surveyor = prepare_survey(work.mechanism, work.plan, work.demand);
+  Scratch scratch;
   Survey<double> result;
   double seconds = 0;
   for (auto _ : state) {
-    const double once = seconds_of([&] { surveyor->survey(work.parameters, result); });
+    const double once = seconds_of([&] { surveyor->survey(work.parameters, scratch, result); });
     state.SetIterationTime(once);
     seconds += once;
   }
@@ -108,14 +110,11 @@ void columns(benchmark::State& state) {
 
 // The others, nominal.
 
-Work nominal(const std::string& name, const HeldCoordinate& held, const Demand& demand = {}) {
+Work nominal(const std::string& name, const std::vector<HeldCoordinate>& held, const Demand& demand = {}) {
   const Mechanism& m = mechanism_named(name);
   Work work{m, {}, {}, demand};
   for (const Parameter& p : m.info().parameters) work.parameters.push_back(p.nominal);
-  work.plan.method = Method::voxels;
-  work.plan.cells = {32, 34, 60};
-  work.plan.held = held;
-  work.plan.limits = no_limits(m.info());
+  work.plan = {.method = kPaperGrid, .held = held, .limits = no_limits(m.info())};
   return work;
 }
 
@@ -149,7 +148,7 @@ constexpr Operations kLine{56, 24, 0, 2};
 // phi held: one table for each pair of x, y, z, with one ring for x, y (32 lines) and y, z (34, in whole lanes) and two
 // for x, z (32).
 void jointed_voxels(benchmark::State& state) {
-  Work work = nominal("3crr-r-cru", {HeldCoordinate::Kind::value, 0.3, 3});
+  Work work = nominal("3crr-r-cru", {held_at(3, 0.3)});
   work.plan.limits.given[0] = 0.2;
   work.plan.limits.given[1] = 0.1;
   against_bound(state, work, [&](const Survey<double>&) { return (32 + 2 * 32 + 40) * kLine; });
@@ -157,7 +156,7 @@ void jointed_voxels(benchmark::State& state) {
 
 // x held: at each of 60 phi, 32 lines along z for limb 1, and single ones, in whole lanes, for the other three.
 void jointed_voxels_over_phi(benchmark::State& state) {
-  Work work = nominal("3crr-r-cru", {HeldCoordinate::Kind::value, 0.21, 0});
+  Work work = nominal("3crr-r-cru", {held_at(0, 0.21)});
   work.plan.limits.given[0] = 0.2;
   work.plan.limits.given[1] = 0.1;
   against_bound(state, work, [&](const Survey<double>&) { return 60 * (32 + 3 * 8) * kLine; });
@@ -165,9 +164,9 @@ void jointed_voxels_over_phi(benchmark::State& state) {
 
 void coupling_of_voxels(benchmark::State& state) {
   using namespace crr_cru;
-  Work work = nominal("3crr-r-cru", {HeldCoordinate::Kind::value, 0.3, 3});
+  Work work = nominal("3crr-r-cru", {held_at(3, 0.3)});
   work.demand.dci = true;
-  work.plan.cells = {40, 40, 40};
+  work.plan.method = VoxelOptions{.cells = {40, 40, 40}};
   const Operations pose =
       count([] {
         InertiaFrame<Counted> frame{};

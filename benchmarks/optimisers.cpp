@@ -30,8 +30,10 @@ void whole_study(benchmark::State& state, Study (*make_study)()) {
     const Study study = make_study();
     ParallelEvaluator evaluator(static_cast<int>(state.range(0)));
     EvaluationTable table(study.problem->shape());
-    const StageResult result =
-        study.stages[0].optimiser->minimise({*study.problem, evaluator, monitor, study.seed, {}}, table);
+    StageResult result;
+    with_team(evaluator.threads(), [&] {
+      result = study.stages[0].optimiser->minimise({*study.problem, evaluator, monitor, study.seed, {}}, table);
+    });
     evaluations += table.size();
     best = table.objective_row(static_cast<std::size_t>(result.best_row))[0];
   }

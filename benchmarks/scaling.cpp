@@ -20,7 +20,7 @@ class Sphere final : public Problem {
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
   const std::vector<MarginInfo>& margins() const override { return margins_; }
   const std::vector<ReportInfo>& reports() const override { return reports_; }
-  void evaluate(std::span<const double> design, EvaluationSlot result) const override {
+  void evaluate(std::span<const double> design, Scratch&, EvaluationSlot result) const override {
     double sum = 0;
     for (const double x : design) sum += x * x;
     result.objectives[0] = sum;
@@ -63,7 +63,7 @@ void run_ga(benchmark::State& state, const Problem& problem, std::int64_t popula
 void threads(benchmark::State& state) {
   const Study study = paper_study();
   ParallelEvaluator evaluator(static_cast<int>(state.range(0)));
-  run_ga(state, *study.problem, 200, 50, evaluator);
+  with_team(evaluator.threads(), [&] { run_ga(state, *study.problem, 200, 50, evaluator); });
 }
 BENCHMARK(threads)
     ->Name("scaling/threads")

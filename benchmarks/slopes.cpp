@@ -42,9 +42,10 @@ void evaluations(benchmark::State& state, const std::string& objective, const st
     for (std::size_t row = 0; row < designs; ++row)
       for (std::size_t i = 0; i < varies.size(); ++i) table->design(row)[i] = inputs[row][varies[i]];
   }
+  Scratch scratch;
   const auto evaluate = [&](EvaluationTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row)
-      problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), table.slot(row));
+      problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, table.slot(row));
   };
   const Duel duel = take_turns(
       state, "with_slopes_s", [&] { evaluate(sloped); }, "without_s", [&] { evaluate(plain); });

@@ -9,7 +9,9 @@
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -47,10 +49,11 @@ BENCHMARK(pose_test)->Unit(benchmark::kMicrosecond);
 
 void survey(benchmark::State& state, Design design, LimitSpec (*limits_of)()) {
   const auto all = design();
-  const auto surveyor = four_ppa().prepare(voxel_plan(limits_of()), {});
+  const auto surveyor = prepare_survey(four_ppa(), voxel_plan(limits_of()), {});
+  Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, result);
+    surveyor->survey(all, scratch, result);
     benchmark::DoNotOptimize(result.feasible_cells);
   }
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
@@ -70,11 +73,12 @@ BENCHMARK_CAPTURE(survey, limits, original_design, with_limits)
 void off_plane(benchmark::State& state) {
   const auto all = optimal_design();
   SurveyPlan plan = voxel_plan(without_limits());
-  plan.held = {HeldCoordinate::Kind::value, 1.2};
-  const auto surveyor = four_ppa().prepare(plan, {});
+  plan.held = {held_at(1, 1.2)};
+  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+  Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, result);
+    surveyor->survey(all, scratch, result);
     benchmark::DoNotOptimize(result.feasible_cells);
   }
 }
@@ -85,11 +89,12 @@ void on_set(benchmark::State& state, bool conditioning) {
   const auto all = optimal_design();
   Demand demand;
   demand.conditioning = conditioning;
-  const auto surveyor = four_ppa().prepare(voxel_plan(without_limits()), demand);
+  const auto surveyor = prepare_survey(four_ppa(), voxel_plan(without_limits()), demand);
+  Scratch scratch;
   Survey<double> result;
   use_instruction_set(static_cast<InstructionSet>(state.range(0)));
   for (auto _ : state) {
-    surveyor->survey(all, result);
+    surveyor->survey(all, scratch, result);
     benchmark::DoNotOptimize(result.volume);
   }
   use_instruction_set(widest_instruction_set());
@@ -110,11 +115,12 @@ BENCHMARK_CAPTURE(on_set, conditioning, true)
 void grid(benchmark::State& state) {
   const auto all = optimal_design();
   SurveyPlan plan = voxel_plan(without_limits());
-  plan.cells = {state.range(0), state.range(0), state.range(0)};
-  const auto surveyor = four_ppa().prepare(plan, {});
+  plan.method = VoxelOptions{.cells = {state.range(0), state.range(0), state.range(0)}};
+  const auto surveyor = prepare_survey(four_ppa(), plan, {});
+  Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
-    surveyor->survey(all, result);
+    surveyor->survey(all, scratch, result);
     benchmark::DoNotOptimize(result.feasible_cells);
   }
   const auto n = static_cast<double>(state.range(0));
@@ -126,22 +132,21 @@ BENCHMARK(grid)->Name("voxel_survey/grid")->RangeMultiplier(2)->Range(16, 1024)-
 // One design on a fine grid of n^3 cells, by one thread and by two.
 void fine_grid(benchmark::State& state, const Mechanism& mechanism, std::vector<double> parameters, std::int64_t n,
                const Demand& demand = {}) {
-  SurveyPlan plan;
-  plan.method = Method::voxels;
-  plan.limits = no_limits(mechanism.info());
-  plan.cells = {n, n, n};
-  const auto surveyor = mechanism.prepare(plan, demand);
+  const SurveyPlan plan{.method = VoxelOptions{.cells = {n, n, n}}, .limits = no_limits(mechanism.info())};
+  const auto surveyor = prepare_survey(mechanism, plan, demand);
   if (parameters.empty())
     for (const Parameter& p : mechanism.info().parameters) parameters.push_back(p.nominal);
+  Scratch scratch;
   Survey<double> result;
-  Team team(2);
-  const auto by_one = [&] { surveyor->survey(parameters, result); };
-  const auto by_two = [&] {
-    const LentTeam lent(team);
-    surveyor->survey(parameters, result);
+  const auto by_one = [&] {
+    const WithoutTeam alone;
+    surveyor->survey(parameters, scratch, result);
   };
-  const Duel duel =
-      take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+  const auto by_two = [&] { surveyor->survey(parameters, scratch, result); };
+  Duel duel;
+  with_team(2, [&] {
+    duel = take_turns(state, "ten_by_one_thread_s", ten_times(by_one), "ten_by_two_threads_s", ten_times(by_two));
+  });
   state.counters["efficiency_percent"] = 100 * duel.ratio() / 2;
 }
 void fine_four_ppa(benchmark::State& state) { fine_grid(state, four_ppa(), optimal_design(), 512); }
@@ -160,14 +165,15 @@ BENCHMARK(fine_jointed)->Name("fine_grid/3crr-r-cru_512_cubed")->Unit(benchmark:
 void plain_loop_against_survey(benchmark::State& state, Design design) {
   const auto all = design();
   const auto g = geometry(std::span<const double>(all));
-  const auto surveyor = four_ppa().prepare(voxel_plan(without_limits()), {});
+  const auto surveyor = prepare_survey(four_ppa(), voxel_plan(without_limits()), {});
   const peers::Voxels voxels{g.d, g.L0, {32, 34, 60}, 0, 0, kPi / 2, 0, 0, 0};  // the paper's grid, no limits
   const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
   std::int64_t plain = 0;
+  Scratch scratch;
   Survey<double> result;
   const Duel duel = take_turns(
       state, "plain_loop_s", [&] { benchmark::DoNotOptimize(plain = peers::feasible_cells(voxels, lengths)); },
-      "survey_s", [&] { surveyor->survey(all, result); });
+      "survey_s", [&] { surveyor->survey(all, scratch, result); });
   state.counters["speedup"] = duel.ratio();
   if (plain != result.feasible_cells) state.SkipWithError("the plain loop and the survey count different cells");
 }

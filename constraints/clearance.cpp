@@ -40,7 +40,7 @@ ConstraintEntry clearance() {
       .pose_level = true,
       .options = options,
       .unit = nullptr,
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_limits(mechanism, "clearance"); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_limits(mechanism, "clearance"); },
       .limits = limits,
       .make = nullptr,
   };

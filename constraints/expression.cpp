@@ -59,7 +59,7 @@ ConstraintEntry expression_constraint() {
       .pose_level = false,
       .options = options,
       .unit = expression_unit,
-      .refusal = [](const MechanismInfo&) { return std::string(); },
+      .refusal = [](const Mechanism&) { return std::string(); },
       .limits = nullptr,
       .make = make,
       .needs_survey = [](const EntryContext& context) { return Expression(context).needs_survey(); },

@@ -12,7 +12,7 @@ ConstraintEntry interference() {
       .pose_level = true,
       .options = [](const MechanismInfo&) { return std::vector<OptionSpec>(); },
       .unit = nullptr,
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_limits(mechanism, "interference"); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_limits(mechanism, "interference"); },
       .limits =
           [](const MechanismInfo& mechanism, const Options&) {
             LimitSpec spec = no_limits(mechanism);

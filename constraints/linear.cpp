@@ -72,7 +72,7 @@ ConstraintEntry linear() {
             };
           },
       .unit = unit,
-      .refusal = [](const MechanismInfo&) { return std::string(); },
+      .refusal = [](const Mechanism&) { return std::string(); },
       .limits = nullptr,
       .make = make,
   };

@@ -8,10 +8,10 @@
 namespace pkm {
 
 /// "" or a sentence: the mechanism has no limit that the constraint owns.
-inline std::string refuse_without_limits(const MechanismInfo& mechanism, const std::string& constraint) {
-  for (const auto& limit : mechanism.limits)
+inline std::string refuse_without_limits(const Mechanism& mechanism, const std::string& constraint) {
+  for (const auto& limit : mechanism.info().limits)
     if (limit.group == constraint) return {};
-  return "constraint " + constraint + " needs limits of its kind, and mechanism " + mechanism.name + " has none";
+  return "constraint " + constraint + " needs limits of its kind, and mechanism " + mechanism.info().name + " has none";
 }
 
 }  // namespace pkm

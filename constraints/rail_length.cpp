@@ -11,7 +11,7 @@ ConstraintEntry rail_length() {
       .pose_level = false,
       .options = [](const MechanismInfo&) { return std::vector<OptionSpec>(); },
       .unit = [](const EntryContext& context) { return design_test_unit(context, "rail-length"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_test(mechanism, "rail-length"); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_test(mechanism, "rail-length"); },
       .limits = nullptr,
       .make = [](const EntryContext& context) { return make_design_test(context, "rail-length"); },
   };

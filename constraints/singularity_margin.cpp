@@ -53,7 +53,7 @@ ConstraintEntry singularity_margin() {
       .pose_level = true,
       .options = options,
       .unit = nullptr,
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_limits(mechanism, "singularity-margin"); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_limits(mechanism, "singularity-margin"); },
       .limits = limits,
       .make = nullptr,
   };

@@ -23,34 +23,47 @@ const Region& region_of(const EntryContext& context) {
                               (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
 
-/// Grid of the region's box, corners included, at every value of the held coordinate.
+/// Grid of the region's box, corners included, at every value of the held coordinates.
 std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& info, int points) {
   const SurveyPlan& plan = region.plan;
-  if (!plan.box) throw std::invalid_argument("task-workspace needs a box, and region '" + region.name + "' has none");
-  if (plan.held.kind != HeldCoordinate::Kind::value)
-    throw std::invalid_argument("task-workspace needs a number, or a list of them, for the coordinate that region '" +
-                                region.name + "' holds");
-  const Sweep sweep = sweep_of(info, plan);
-  const std::vector<double> held = plan.held_values.empty() ? std::vector<double>{plan.held.value} : plan.held_values;
+  if (!plan.box()) throw std::invalid_argument("task-workspace needs a box, and region '" + region.name + "' has none");
+  const Sweep& sweep = sweep_of(info, plan);
+  std::vector<Pose<double>> held = {Pose<double>(info.coordinates.size())};
+  for (const int coordinate : sweep.held) {
+    const HeldCoordinate how = how_held(plan, coordinate);
+    using Kind = HeldCoordinate::Kind;
+    if (how.kind != Kind::value && how.kind != Kind::listed)
+      throw std::invalid_argument("task-workspace needs a number, or a list of them, for the coordinate that region '" +
+                                  region.name + "' holds");
+    std::vector<Pose<double>> more;
+    for (const Pose<double>& pose : held)
+      for (const double value : how.kind == Kind::listed ? how.values : std::vector<double>{how.value}) {
+        more.push_back(pose);
+        more.back()[static_cast<std::size_t>(coordinate)] = value;
+      }
+    held = std::move(more);
+  }
   const auto at = [&](std::size_t axis, int k) {
-    const auto& [lower, upper] = (*plan.box)[axis];
+    const auto& [lower, upper] = (*plan.box())[axis];
     return k == points - 1 ? upper : lower + (upper - lower) * k / (points - 1);
   };
-  std::vector<Pose<double>> poses;
-  std::array<double, 4> x{};
-  for (const double value : held) {
-    x[static_cast<std::size_t>(sweep.held)] = value;
-    for (int i = 0; i < points; ++i)
-      for (int j = 0; j < points; ++j)
-        for (int k = 0; k < points; ++k) {
-          x[static_cast<std::size_t>(sweep.swept[0])] = at(0, i);
-          x[static_cast<std::size_t>(sweep.swept[1])] = at(1, j);
-          x[static_cast<std::size_t>(sweep.swept[2])] = at(2, k);
-          poses.push_back({x[0], x[1], x[2], x[3]});
-        }
+  std::vector<Pose<double>> poses = std::move(held);
+  for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis) {
+    std::vector<Pose<double>> more;
+    for (const Pose<double>& pose : poses)
+      for (int k = 0; k < points; ++k) {
+        more.push_back(pose);
+        more.back()[static_cast<std::size_t>(sweep.swept[axis])] = at(axis, k);
+      }
+    poses = std::move(more);
   }
   return poses;
 }
+
+template <class S>
+struct Margins {
+  std::vector<S> of_poses;
+};
 
 class TaskWorkspace final : public Quantity {
  public:
@@ -63,26 +76,30 @@ class TaskWorkspace final : public Quantity {
         sharpness_(context.options.number("sharpness")) {}
 
   double value(const DesignView<double>& design) const override {
-    thread_local std::vector<double> margins;
-    margins.clear();
-    mechanism_.pose_margins(design.parameters, limits_, poses_, margins);
+    const std::vector<double>& margins = margins_of(design);
     return least(margins) - wanted_;
   }
   Dual4 smooth(const DesignView<Dual4>& design) const override {
-    thread_local std::vector<Dual4> margins;
-    margins.clear();
-    mechanism_.pose_margins(design.parameters, limits_, poses_, margins);
+    const std::vector<Dual4>& margins = margins_of(design);
     const double shift = least(margins).a;
     Dual4 sum(0.0);
     for (const Dual4& margin : margins) sum += exp((margin - shift) * -sharpness_);
     return shift - log(sum) / sharpness_ - wanted_;
   }
   std::string no_derivatives() const override {
-    if (!mechanism_.info().margin_unit.empty()) return {};
+    if (mechanism_.pose_margins() && mechanism_.derivatives()) return {};
     return "the margins of mechanism " + mechanism_.info().name + " under task-workspace have none";
   }
 
  private:
+  template <class S>
+  const std::vector<S>& margins_of(const DesignView<S>& design) const {
+    std::vector<S>& margins = design.scratch.template get<Margins<S>>().of_poses;
+    margins.clear();
+    append_pose_margins<S>(mechanism_, design.parameters, limits_, poses_, margins);
+    return margins;
+  }
+
   const Mechanism& mechanism_;  ///< the problem's, which outlives its quantities
   LimitSpec limits_;
   std::vector<Pose<double>> poses_;
@@ -125,10 +142,10 @@ ConstraintEntry task_workspace() {
           },
       .unit =
           [](const EntryContext& context) {
-            const std::string& unit = context.mechanism.info().margin_unit;
-            return unit.empty() ? std::string("1") : unit;
+            const PoseMargins* const margins = context.mechanism.pose_margins();
+            return margins ? margins->margin_unit() : std::string("1");
           },
-      .refusal = [](const MechanismInfo&) { return std::string(); },
+      .refusal = [](const Mechanism&) { return std::string(); },
       .limits = nullptr,
       .make = [](const EntryContext& context) -> std::unique_ptr<const Quantity> {
         return std::make_unique<TaskWorkspace>(context);

@@ -11,7 +11,7 @@ ConstraintEntry workspace_shape() {
       .pose_level = false,
       .options = [](const MechanismInfo&) { return std::vector<OptionSpec>(); },
       .unit = [](const EntryContext& context) { return design_test_unit(context, "workspace-shape"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_test(mechanism, "workspace-shape"); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_test(mechanism, "workspace-shape"); },
       .limits = nullptr,
       .make = [](const EntryContext& context) { return make_design_test(context, "workspace-shape"); },
   };

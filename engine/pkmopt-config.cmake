@@ -6,7 +6,7 @@ if(NOT CMAKE_C_COMPILER_LOADED)  # HDF5 is looked for with the C compiler
 endif()
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
-find_dependency(Threads)
+find_dependency(OpenMP COMPONENTS CXX)
 find_dependency(HDF5 1.10 COMPONENTS C)
 find_dependency(tomlplusplus 3.3)
 find_dependency(PkgConfig)

@@ -18,7 +18,7 @@ pkm_test_packages=(
   python3 python3-numpy python3-h5py          # reads study files independently of us
   python3-vtk9                                # reads exported workspaces as ParaView does
   chromium                                    # looks at the pages of pkmopt report
-  clang-14 libclang-rt-14-dev                 # second compiler, its sanitizers
+  clang-14 libclang-rt-14-dev libomp-14-dev   # second compiler, its sanitizers and OpenMP
   clang-format-14
 )
 # For the page of pkmopt report. By the command's name: where node comes from elsewhere, Debian's package does not install.

@@ -26,10 +26,10 @@ ObjectiveEntry conditioning() {
           },
       .unit = [](const EntryContext&) { return std::string("1"); },
       .refusal =
-          [](const MechanismInfo& mechanism) {
-            return has_jacobian(mechanism)
-                       ? std::string()
-                       : "objective conditioning needs a Jacobian, and mechanism " + mechanism.name + " gives none";
+          [](const Mechanism& mechanism) {
+            return has_jacobian(mechanism) ? std::string()
+                                           : "objective conditioning needs a Jacobian, and mechanism " +
+                                                 mechanism.info().name + " gives none";
           },
       .demand = demand_conditioning,
       .make =

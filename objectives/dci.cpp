@@ -11,6 +11,10 @@
 namespace pkm {
 namespace {
 
+struct Order {
+  std::vector<std::size_t> of_samples;
+};
+
 /// A statistic of the field of a limb, 1 where there are no samples.
 template <class Statistic>
 auto over_samples(const std::string& limb, Statistic statistic) {
@@ -18,26 +22,32 @@ auto over_samples(const std::string& limb, Statistic statistic) {
     const auto& survey = *design.survey;
     using S = std::remove_cvref_t<decltype(survey.volume)>;
     if (survey.weight.empty()) return S(1.0);
-    return S(statistic(survey.weight, coupling_of(survey, limb)));
+    return S(statistic(survey.weight, coupling_of(survey, limb, design.scratch), design.scratch));
   };
 }
 
 std::unique_ptr<const Quantity> deviation(const std::string& limb) {
-  return make_quantity(over_samples(limb, [](const auto& w, const auto& f) { return weighted_deviation(w, f); }));
+  return make_quantity(
+      over_samples(limb, [](const auto& w, const auto& f, Scratch&) { return weighted_deviation(w, f); }));
 }
 
 std::unique_ptr<const Quantity> make_dci(const EntryContext& context) {
   const std::string &limb = context.options.word("limb"), &statistic = context.options.word("statistic");
   if (statistic == "std") return deviation(limb);
   if (statistic == "mean")
-    return make_quantity(over_samples(limb, [](const auto& w, const auto& f) { return weighted_mean(w, f); }));
+    return make_quantity(
+        over_samples(limb, [](const auto& w, const auto& f, Scratch&) { return weighted_mean(w, f); }));
   if (statistic == "max")
-    return make_quantity(over_samples(limb, [](const auto&, const auto& f) { return greatest(f); }),
-                         over_samples(limb, [r = context.options.number("sharpness")](const auto& w, const auto& f) {
-                           return soft_greatest(w, f, r);
-                         }));
+    return make_quantity(
+        over_samples(limb, [](const auto&, const auto& f, Scratch&) { return greatest(f); }),
+        over_samples(limb, [r = context.options.number("sharpness")](const auto& w, const auto& f, Scratch&) {
+          return soft_greatest(w, f, r);
+        }));
   return make_plain_quantity(
-      over_samples(limb, [](const auto& w, const auto& f) { return weighted_quantile(w, f, 0.95); }),
+      over_samples(limb,
+                   [](const auto& w, const auto& f, Scratch& scratch) {
+                     return weighted_quantile(w, f, 0.95, scratch.get<Order>().of_samples);
+                   }),
       "dci with statistic = \"p95\" is a quantile, which has none; take \"mean\", \"max\" or \"std\"");
 }
 
@@ -57,7 +67,7 @@ ObjectiveEntry dci() {
                   mode_option(),
                   sharpness_option("max")},
       .unit = [](const EntryContext&) { return std::string("1"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("dci", mechanism); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_dynamics("dci", mechanism); },
       .demand = demand_dci,
       .make = make_dci,
   };
@@ -70,7 +80,7 @@ ObjectiveEntry dci_uniformity() {
       .direction = Direction::minimise,
       .options = {limb_option(), mode_option()},
       .unit = [](const EntryContext&) { return std::string("1"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("dci-uniformity", mechanism); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_dynamics("dci-uniformity", mechanism); },
       .demand = demand_dci,
       .make = [](const EntryContext& context) { return deviation(context.options.word("limb")); },
   };

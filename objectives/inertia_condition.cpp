@@ -20,7 +20,7 @@ ObjectiveEntry inertia_condition_objective() {
                   mode_option(),
                   sharpness_option("min")},
       .unit = [](const EntryContext&) { return std::string("1"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("inertia-condition", mechanism); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_dynamics("inertia-condition", mechanism); },
       .demand =
           [](const EntryContext& context, Demand& demand) {
             demand.inertia_condition = true;

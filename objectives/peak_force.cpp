@@ -9,9 +9,9 @@ namespace pkm {
 namespace {
 
 template <class S>
-void append_magnitudes(const std::string& joint, const Vector<S, 4>& forces, const Vector<S, 4>&,
+void append_magnitudes(const std::string& joint, const AxisVector<S>& forces, const AxisVector<S>&,
                        std::vector<S>& field) {
-  for (std::size_t i = 0; i < 4; ++i)
+  for (std::size_t i = 0; i < forces.size(); ++i)
     if (joint == "worst" || joint[0] == static_cast<char>('1' + i)) field.push_back(magnitude(forces[i]));
 }
 
@@ -23,8 +23,8 @@ ObjectiveEntry peak_force() {
       .meaning = "greatest force of the actuators along a motion",
       .direction = Direction::minimise,
       .options = motion_options({"worst"}),
-      .unit = [](const EntryContext&) { return std::string("N"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("peak-force", mechanism); },
+      .unit = [](const EntryContext& context) { return force_unit(context); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_dynamics("peak-force", mechanism); },
       .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext& context) {

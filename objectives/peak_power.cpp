@@ -9,10 +9,10 @@ namespace pkm {
 namespace {
 
 template <class S>
-void append_power(const std::string& joint, const Vector<S, 4>& forces, const Vector<S, 4>& speeds,
+void append_power(const std::string& joint, const AxisVector<S>& forces, const AxisVector<S>& speeds,
                   std::vector<S>& field) {
   S total(0.0);
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < forces.size(); ++i) {
     const S power = forces[i] * speeds[i];
     total += power;
     if (joint == "worst" || joint[0] == static_cast<char>('1' + i)) field.push_back(magnitude(power));
@@ -29,7 +29,7 @@ ObjectiveEntry peak_power() {
       .direction = Direction::minimise,
       .options = motion_options({"worst", "total"}),
       .unit = [](const EntryContext&) { return std::string("W"); },
-      .refusal = [](const MechanismInfo& mechanism) { return refuse_without_dynamics("peak-power", mechanism); },
+      .refusal = [](const Mechanism& mechanism) { return refuse_without_dynamics("peak-power", mechanism); },
       .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext& context) {

@@ -19,19 +19,20 @@ ObjectiveEntry workspace_ratio() {
       .options = {},
       .unit =
           [](const EntryContext& context) {
-            return quotient(volume_unit(context.mechanism.info(), context.plan), context.mechanism.info().size_unit);
+            return quotient(volume_unit(context.mechanism.info(), context.plan), context.mechanism.size()->unit());
           },
       .refusal =
-          [](const MechanismInfo& mechanism) {
-            return mechanism.size_unit.empty()
-                       ? "objective workspace-ratio needs a size, and mechanism " + mechanism.name + " defines none"
-                       : std::string();
+          [](const Mechanism& mechanism) {
+            return mechanism.size() ? std::string()
+                                    : "objective workspace-ratio needs a size, and mechanism " + mechanism.info().name +
+                                          " defines none";
           },
       .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext&) {
-            return make_quantity(
-                [](const auto& design) { return design.survey->volume / design.mechanism.size(design.parameters); });
+            return make_quantity([]<class S>(const DesignView<S>& design) {
+              return S(design.survey->volume / size_of<S>(design.mechanism, design.parameters));
+            });
           },
   };
 }

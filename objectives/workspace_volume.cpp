@@ -10,7 +10,7 @@ ObjectiveEntry workspace_volume() {
       .direction = Direction::maximise,
       .options = {},
       .unit = [](const EntryContext& context) { return volume_unit(context.mechanism.info(), context.plan); },
-      .refusal = [](const MechanismInfo&) { return std::string(); },
+      .refusal = [](const Mechanism&) { return std::string(); },
       .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext&) { return make_quantity([](const auto& design) { return design.survey->volume; }); },

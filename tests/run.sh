@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12 packages), builds everything and runs every test; the last lines are CTest's.
 # In this order: formatting; a Clang build with address and undefined-behaviour sanitizers, in which headers without a
-# source are compiled on their own, too; the release build by GCC, in which a thread sanitizer watches the team. Warnings
-# are errors in both builds.
+# source are compiled on their own, too, and a thread sanitizer watches the team; the release build by GCC. Warnings are
+# errors in both builds.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source experiments/debian-packages.sh

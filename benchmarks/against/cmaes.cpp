@@ -18,6 +18,7 @@
 #include <pagmo/problem.hpp>
 
 #include "constraints/all.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/study/run_study.hpp"
 #include "objectives/all.hpp"
 
@@ -41,7 +42,8 @@ Trial evaluate(const DesignProblem& problem, std::span<const double> design) {
   EvaluationTable table(problem.shape(Detail::complete));
   table.extend(1);
   std::ranges::copy(design, table.design(0).begin());
-  problem.evaluate(design, table.slot(0));
+  Scratch scratch;
+  problem.evaluate(design, scratch, table.slot(0));
   return {table.objective_row(0)[0], violation(table.margin_row(0))};
 }
 

@@ -15,7 +15,8 @@ struct PagmoProblem {
   pagmo::vector_double fitness(const pagmo::vector_double& design) const {
     pagmo::vector_double objectives(get_nobj());
     Status status = Status::failed;
-    problem->evaluate(design, {objectives, {}, {}, status});
+    Scratch scratch;
+    problem->evaluate(design, scratch, {objectives, {}, {}, status});
     return objectives;
   }
   pagmo::vector_double::size_type get_nobj() const { return problem->objectives().size(); }

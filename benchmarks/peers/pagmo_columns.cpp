@@ -7,6 +7,7 @@
 
 #include "benchmarks/peers/pagmo_search.hpp"
 #include "constraints/all.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 
@@ -19,7 +20,8 @@ peers::Candidate evaluate(const DesignProblem& problem, const std::vector<double
   peers::Candidate candidate{0, std::vector<double>(problem.margins().size())};
   std::vector<double> reports(problem.reports().size());
   Status status = Status::failed;
-  problem.evaluate(design, {{&candidate.ratio, 1}, candidate.margins, reports, status, Detail::complete});
+  thread_local Scratch scratch;
+  problem.evaluate(design, scratch, {{&candidate.ratio, 1}, candidate.margins, reports, status, Detail::complete});
   return candidate;
 }
 

@@ -1,118 +1,89 @@
 #include "engine/core/team.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
-#include <chrono>
+#include <atomic>
+#include <exception>
 #include <utility>
 
 namespace pkm {
 namespace {
 
-constexpr std::uint64_t kNoPiece = 0xffffffff;  // in the lower half of next_: none can be taken
-constexpr auto kSpin = std::chrono::microseconds(100);
+// Threads that take this one's pieces, itself included: many for the one that runs a region's body, else one.
+thread_local std::size_t members = 1;
 
-thread_local Team* lent = nullptr;
+/// Pieces that are being shared out, by one task for each further thread, which claims some at a time. A task for every
+/// few pieces (taskloop) is queued and fetched under a lock, and took up to 9 points more: benchmarks/README.md.
+struct Pieces {
+  WorkRef work;
+  std::size_t count, threads;
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure = nullptr;
 
-void pause() {
-#if defined(__x86_64__)
-  __builtin_ia32_pause();
-#endif
-}
-
-/// Waits until the value is another one: awake for a moment, then asleep.
-void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
-  constexpr int kLooks = 64;  // between two looks at the clock
-  const auto end = std::chrono::steady_clock::now() + kSpin;
-  do {
-    for (int i = 0; i < kLooks; ++i) {
-      if (value.load(std::memory_order_acquire) != old) return;
-      pause();
+  /// Works on them until none is left.
+  void take() {
+    const WithoutTeam alone;
+    const auto worker = static_cast<std::size_t>(omp_get_thread_num());
+    for (std::size_t begin = next.load(std::memory_order_relaxed); begin < count;) {
+      const std::size_t end = begin + std::max<std::size_t>(1, (count - begin) / (2 * threads));
+      if (!next.compare_exchange_weak(begin, end, std::memory_order_relaxed)) continue;
+      try {
+        work(begin, end, worker);
+      } catch (...) {  // no exception may leave a task
+#pragma omp critical(pkm_failure)
+        failure = std::current_exception();
+      }
+      begin = next.load(std::memory_order_relaxed);
     }
-  } while (std::chrono::steady_clock::now() < end);
-  value.wait(old, std::memory_order_acquire);
-}
+  }
+};
 
 }  // namespace
 
 int team_size(int threads) {
-  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::clamp(threads > 0 ? threads : omp_get_max_threads(), 1, omp_get_thread_limit());
 }
 
-Team::Team(int threads) : next_(kNoPiece) {
-  for (int i = 1; i < team_size(threads); ++i) helpers_.emplace_back([this, i] { help(static_cast<std::size_t>(i)); });
-}
-
-Team::~Team() {
-  ends_.store(true, std::memory_order_relaxed);
-  jobs_.fetch_add(1, std::memory_order_release);
-  jobs_.notify_all();
-  for (std::thread& helper : helpers_) helper.join();
-}
-
-void Team::share(std::size_t pieces, WorkRef work) {
-  if (pieces == 0) return;
-  const std::uint64_t job = (next_.load(std::memory_order_relaxed) >> 32) + 1;
-  object_.store(work.object_, std::memory_order_release);
-  call_.store(work.call_, std::memory_order_release);
-  pieces_.store(static_cast<std::uint32_t>(pieces), std::memory_order_release);
-  done_.store(0, std::memory_order_release);
-  next_.store(job << 32, std::memory_order_release);
-  if (!helpers_.empty()) {
-    jobs_.fetch_add(1, std::memory_order_release);
-    jobs_.notify_all();
-  }
-  Team* const mine = lent;
-  lent = nullptr;
-  take_pieces(0);
-  lent = mine;
-  for (std::uint32_t done = done_.load(std::memory_order_acquire); done != pieces;
-       done = done_.load(std::memory_order_acquire))
-    await_change(done_, done);
-  next_.store((job << 32) | kNoPiece, std::memory_order_relaxed);
-  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-}
-
-/// Works on pieces until none is left.
-void Team::take_pieces(std::size_t worker) {
-  for (std::uint64_t next = next_.load(std::memory_order_acquire);;) {
-    const WorkRef work(object_.load(std::memory_order_acquire), call_.load(std::memory_order_acquire));
-    const std::uint32_t pieces = pieces_.load(std::memory_order_acquire);
-    const auto begin = static_cast<std::uint32_t>(next);
-    if (begin == kNoPiece || begin >= pieces) return;
-    const std::uint32_t count = std::max(1u, (pieces - begin) / (2 * static_cast<std::uint32_t>(threads())));
-    if (!next_.compare_exchange_weak(next, next + count, std::memory_order_acquire, std::memory_order_acquire))
-      continue;
+void with_team(int threads, WorkRef body) {
+  const int size = team_size(threads);
+  if (size == 1 || omp_in_parallel()) return body(0, 1, 0);
+  std::exception_ptr failure = nullptr;
+#pragma omp parallel num_threads(size)
+#pragma omp master  // the others wait at the region's end, and take tasks there
+  {
+    members = static_cast<std::size_t>(omp_get_num_threads());
     try {
-      work(begin, begin + count, worker);
-    } catch (...) {
-      const std::lock_guard lock(failing_);
-      if (!failure_) failure_ = std::current_exception();
+      body(0, 1, 0);
+    } catch (...) {  // none may leave a region
+      failure = std::current_exception();
     }
-    if (done_.fetch_add(count, std::memory_order_release) + count == pieces) done_.notify_one();
-    next = next_.load(std::memory_order_acquire);
+    members = 1;
   }
+  if (failure) std::rethrow_exception(failure);
 }
 
-void Team::help(std::size_t worker) {
-  for (std::uint32_t seen = 0;;) {
-    await_change(jobs_, seen);
-    seen = jobs_.load(std::memory_order_acquire);
-    if (ends_.load(std::memory_order_relaxed)) return;
-    take_pieces(worker);
-  }
-}
+WithoutTeam::WithoutTeam() : before_(std::exchange(members, 1)) {}
+WithoutTeam::~WithoutTeam() { members = before_; }
 
-LentTeam::LentTeam(Team& team) : before_(lent) { lent = &team; }
-LentTeam::~LentTeam() { lent = before_; }
+bool has_team() { return members > 1; }
 
-bool has_team() { return lent && lent->threads() > 1; }
-
-std::size_t workers() { return lent ? static_cast<std::size_t>(lent->threads()) : 1; }
+std::size_t workers() { return members; }
 
 void share_pieces(std::size_t pieces, WorkRef work) {
-  if (lent)
-    lent->share(pieces, work);
-  else if (pieces > 0)
-    work(0, pieces, 0);
+  if (members == 1 || pieces < 2) {
+    if (pieces > 0) work(0, pieces, 0);
+    return;
+  }
+  Pieces shared{work, pieces, members};
+  const std::size_t others = std::min(members, pieces) - 1;
+#pragma omp taskgroup
+  {
+#pragma omp taskloop grainsize(1) nogroup shared(shared)
+    for (std::size_t other = 0; other < others; ++other) shared.take();
+    shared.take();
+  }
+  if (shared.failure) std::rethrow_exception(shared.failure);
 }
 
 }  // namespace pkm

@@ -1,23 +1,18 @@
-// Threads that share work out among themselves, and live as long as the team.
+// Work that is shared out among OpenMP's threads: one parallel region around a whole run, whose threads wait in it for
+// pieces of whatever comes.
 //
-// The thread that has the work takes part in it and never waits for one that sleeps: pieces go to whoever asks next, so
-// a thread that wakes up late finds less left, or nothing. Threads without work spin for a moment, because the next
-// generation of a search comes within microseconds, and then sleep, because other programs need the cores too.
+// The thread that has the work takes part in it and never waits for one that has no piece. A region around each
+// generation would: its end waits for threads that other programs have pushed off their core.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
-#include <cstdint>
-#include <exception>
-#include <mutex>
-#include <thread>
 #include <type_traits>
-#include <vector>
 
 namespace pkm {
 
 /// A reference to a function object that works on the pieces [begin, end), and may ask which worker does it: two pieces
-/// that are worked on at once have different workers, so what belongs to a worker needs no lock.
+/// that are worked on at once have different workers, so what belongs to a worker needs no lock. Work that is one whole
+/// takes no argument.
 class WorkRef {
  public:
   template <class F>
@@ -25,77 +20,51 @@ class WorkRef {
       : object_(&f), call_([](const void* object, std::size_t begin, std::size_t end, std::size_t worker) {
           if constexpr (std::is_invocable_v<const F&, std::size_t, std::size_t, std::size_t>)
             (*static_cast<const F*>(object))(begin, end, worker);
+          else if constexpr (std::is_invocable_v<const F&>)
+            (*static_cast<const F*>(object))();
           else
             (*static_cast<const F*>(object))(begin, end);
         }) {}
   void operator()(std::size_t begin, std::size_t end, std::size_t worker) const { call_(object_, begin, end, worker); }
 
  private:
-  friend class Team;
   using Call = void (*)(const void*, std::size_t, std::size_t, std::size_t);
-  WorkRef(const void* object, Call call) : object_(object), call_(call) {}
   const void* object_;
   Call call_;
 };
 
-/// How many threads are meant: the number itself, or for 0 as many as the machine has cores.
+/// How many threads are meant: the number itself, or for 0 as many as OpenMP would take (OMP_NUM_THREADS, else as many
+/// as the process has cores); never more than OMP_THREAD_LIMIT.
 int team_size(int threads);
 
-class Team {
+/// Runs body() on this thread, beside a team of so many threads, this one included, as for team_size(): share_pieces()
+/// in it uses them. What it throws is thrown here. One region serves all: within a region, ours or another's, body()
+/// keeps the team that it has.
+void with_team(int threads, WorkRef body);
+
+/// While it lives, this thread has no team.
+class WithoutTeam {
  public:
-  /// @param threads  with the one that calls, as for team_size()
-  explicit Team(int threads = 0);
-  ~Team();
-  Team(const Team&) = delete;
-  Team& operator=(const Team&) = delete;
-
-  int threads() const { return static_cast<int>(helpers_.size()) + 1; }
-
-  /// Has work(begin, end), or work(begin, end, worker) with worker < threads(), done for all of [0, pieces), each piece
-  /// once, in any order and on any thread; returns when all are done. Whoever is free takes a share of what is left, so
-  /// shares get smaller towards the end. From one thread at a time, and not from within a piece. What the work throws
-  /// is thrown here, once all are done or have failed; of several exceptions one.
-  void share(std::size_t pieces, WorkRef work);
+  WithoutTeam();
+  ~WithoutTeam();
+  WithoutTeam(const WithoutTeam&) = delete;
+  WithoutTeam& operator=(const WithoutTeam&) = delete;
 
  private:
-  void help(std::size_t worker);
-  void take_pieces(std::size_t worker);
-
-  // The number of the job in the upper half, the next piece in the lower; pieces are taken by counting up, which fails
-  // when the job has changed meanwhile. What belongs to a job is written while no piece can be taken; whoever sees a
-  // new part of it also sees that, and so takes no piece of the old job with it.
-  std::atomic<std::uint64_t> next_;
-  std::atomic<const void*> object_ = nullptr;
-  std::atomic<WorkRef::Call> call_ = nullptr;
-  std::atomic<std::uint32_t> pieces_ = 0;
-  alignas(64) std::atomic<std::uint32_t> done_ = 0;  ///< pieces of the job
-  alignas(64) std::atomic<std::uint32_t> jobs_ = 0;  ///< what sleepers wait for
-  std::atomic<bool> ends_ = false;
-  std::mutex failing_;
-  std::exception_ptr failure_;  ///< of the job
-  std::vector<std::thread> helpers_;
+  std::size_t before_;
 };
 
-/// Lends a team to the calling thread, for as long as it lives: share_pieces() then uses it.
-class LentTeam {
- public:
-  explicit LentTeam(Team& team);
-  ~LentTeam();
-  LentTeam(const LentTeam&) = delete;
-  LentTeam& operator=(const LentTeam&) = delete;
-
- private:
-  Team* before_;
-};
-
-/// Whether a team of more than one thread is lent to the calling thread.
+/// Whether share_pieces() has more than this thread here.
 bool has_team();
 
 /// How many workers share_pieces() has here, at most: what each needs of its own can be prepared.
 std::size_t workers();
 
-/// Team::share by the team lent to this thread, if there is one; else work(0, pieces, 0) here. What a piece computes
-/// must not depend on which thread does it. Within a piece no team is lent.
+/// Has work(begin, end), or work(begin, end, worker) with worker < workers(), done for all of [0, pieces), each piece
+/// once, in any order and on any thread; returns when all are done. Whoever is free takes a share of what is left, so
+/// shares get smaller towards the end. What a piece computes must not depend on which thread does it. Within one of
+/// several pieces there is no team. What the work throws is thrown here, once all are done or have failed; of several
+/// exceptions one. Without a team: work(0, pieces, 0) on this thread.
 void share_pieces(std::size_t pieces, WorkRef work);
 
 }  // namespace pkm

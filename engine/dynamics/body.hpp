@@ -7,18 +7,18 @@ namespace pkm {
 
 /// Velocity and acceleration of its centre of mass: v = J_v Xdot, a = J_v Xddot + b_v, and of its turning:
 /// omega = J_omega Xdot, epsilon = J_omega Xddot + b_omega.
-template <class S>
+template <class S, std::size_t N = 0>
 struct Body {
   S mass{};                 ///< [kg]
   Matrix<S, 3, 3> inertia;  ///< about the centre of mass, along the world's axes [kg m^2]
-  Matrix<S, 3, 4> J_v, J_omega;
+  MatrixOf<S, 3, N ? N : kMostJoints, N != 0> J_v, J_omega;
   Vector<S, 3> b_v, b_omega;
 };
 
 /// Adds a body to M_X, h_X and G_X (virtual work): sum of m J_v^T J_v + J_omega^T I J_omega, and so on.
-template <class S>
-void add_body(PoseDynamics<S>& d, const Body<S>& body, const Vector<S, 4>& velocity) {
-  const Matrix<S, 4, 3> to_force = transpose(body.J_v), to_moment = transpose(body.J_omega);
+template <class S, std::size_t N>
+void add_body(PoseDynamics<S, N>& d, const Body<S, N>& body, const std::type_identity_t<AxisVector<S, N>>& velocity) {
+  const auto to_force = transpose(body.J_v), to_moment = transpose(body.J_omega);
   d.M_X += to_force * body.J_v * body.mass + to_moment * (body.inertia * body.J_omega);
   const Vector<S, 3> omega = body.J_omega * velocity;
   const Vector<S, 3> moment = body.inertia * body.b_omega + cross(omega, body.inertia * omega);

@@ -13,9 +13,9 @@
 namespace pkm {
 
 /// A state whose pose carries the derivatives by x, y, z and the rotation, in this order.
-inline MotionState<Dual4> pose_variables(const MotionState<double>& state) {
-  const Pose<double>& at = state.pose;
-  MotionState<Dual4> s{
+inline MotionState<Dual4, 4> pose_variables(const MotionState<double, 4>& state) {
+  const SchoenfliesPose<double>& at = state.pose;
+  MotionState<Dual4, 4> s{
       {Dual4::variable(at.x, 0), Dual4::variable(at.y, 1), Dual4::variable(at.z, 2), Dual4::variable(at.angle, 3)}, {}};
   for (std::size_t k = 0; k < 4; ++k) s.velocity[k] = state.velocity[k];
   return s;
@@ -51,7 +51,7 @@ inline Matrix<double, 4, 4> coriolis_matrix(const Matrix<Dual4, 4, 4>& M_X, cons
 
 /// C_q in the coordinates q of the joints; infinite where J is singular.
 /// @param d  evaluated at pose_variables(); its velocity enters through `velocity` alone
-inline Matrix<double, 4, 4> joint_coriolis_matrix(const PoseDynamics<Dual4>& d, const Vector<double, 4>& velocity) {
+inline Matrix<double, 4, 4> joint_coriolis_matrix(const PoseDynamics<Dual4, 4>& d, const Vector<double, 4>& velocity) {
   const Matrix<double, 4, 4> J = values(d.J);
   const Matrix<double, 4, 4> inner = coriolis_matrix(d.M_X, velocity) - values(d.M_X) * solve(J, rate(d.J, velocity));
   return transpose(solve(transpose(J), transpose(solve(transpose(J), inner))));

@@ -11,10 +11,18 @@
 
 namespace pkm {
 
-template <class S>
-Vector<S, 4> coupling_indices(const Matrix<S, 4, 4>& M) {
-  return {coupling_indices(
-      JointInertia<S>{M(0, 0), M(1, 1), M(2, 2), M(3, 3), M(0, 1), M(0, 2), M(0, 3), M(1, 2), M(1, 3), M(2, 3)})};
+/// Of each joint, from M_q.
+template <SmallMatrix M>
+auto coupling_indices(const M& M_q) {
+  using S = typename M::Scalar;
+  auto indices = MatrixOf<S, M::kRows, 1, M::kFixed>::zero(M_q.rows(), 1);
+  for (std::size_t i = 0; i < M_q.rows(); ++i) {
+    S off(0.0);
+    for (std::size_t k = 0; k < M_q.rows(); ++k)
+      if (k != i) off = off + magnitude(M_q(i, k));
+    indices[i] = coupling_index(off, M_q(i, i));
+  }
+  return indices;
 }
 
 /// The elements as a matrix.
@@ -28,22 +36,28 @@ Matrix<S, 4, 4> matrix_of(const JointInertia<S>& of) {
 
 /// Least over greatest eigenvalue of M_q, in [0, 1]: 1 where every joint feels the same inertia and none couples.
 /// With derivatives d lambda = v^T dM v.
-template <class S>
-S inertia_condition(const Matrix<S, 4, 4>& M) {
-  Eigen::Matrix4d values;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) values(i, j) = value_of(M(static_cast<std::size_t>(i), static_cast<std::size_t>(j)));
+template <SmallMatrix M>
+typename M::Scalar inertia_condition(const M& M_q) {
+  using S = typename M::Scalar;
+  if constexpr (!M::kFixed)
+    if (M_q.rows() == 4) return inertia_condition(fixed<4, 4>(M_q));  // the same bits as where 4 is known
+  constexpr int kMost = static_cast<int>(M::kRows), kSize = M::kFixed ? kMost : Eigen::Dynamic;
+  using Values = Eigen::Matrix<double, kSize, kSize, 0, kMost, kMost>;
+  const auto n = static_cast<int>(M_q.rows());
+  const auto element = [&](int i, int j) { return M_q(static_cast<std::size_t>(i), static_cast<std::size_t>(j)); };
+  Values values(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) values(i, j) = value_of(element(i, j));
   if (!values.allFinite()) return S(0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(values);
+  const Eigen::SelfAdjointEigenSolver<Values> eigen(values);
   const auto along = [&](int which) {
     S sum(0.0);
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j)
-        sum += M(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) *
-               (eigen.eigenvectors()(i, which) * eigen.eigenvectors()(j, which));
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        sum += element(i, j) * (eigen.eigenvectors()(i, which) * eigen.eigenvectors()(j, which));
     return sum;
   };
-  const S least = along(0), greatest = along(3);
+  const S least = along(0), greatest = along(n - 1);
   return value_of(greatest) > 0 && value_of(least) > 0 ? S(least / greatest) : S(0.0);
 }
 

@@ -138,12 +138,15 @@ Eigen::VectorXd square_closure(const NewtonEuler& system) {
   return x;
 }
 
-std::array<double, 4> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution) {
+AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution) {
   const std::vector<Index> first = first_columns(system);
-  std::array<double, 4> forces{};
+  std::size_t actuators = 0;
+  for (const Joint& joint : system.joints)
+    if (joint.actuator) actuators = std::max(actuators, joint.actuator->joint + 1);
+  AxisVector<double> forces(actuators);
   for (std::size_t j = 0; j < system.joints.size(); ++j)
     if (const auto& actuator = system.joints[j].actuator)
-      forces.at(actuator->joint) = eigen(actuator->axis).dot(solution.segment<3>(first[j])) + actuator->on_slide;
+      forces[actuator->joint] = eigen(actuator->axis).dot(solution.segment<3>(first[j])) + actuator->on_slide;
   return forces;
 }
 

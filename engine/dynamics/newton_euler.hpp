@@ -82,7 +82,7 @@ LeastNorm least_norm(const NewtonEuler& system);
 Eigen::VectorXd square_closure(const NewtonEuler& system);
 
 /// Forces of the actuators in a solution, by the number of their joints [N].
-std::array<double, 4> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution);
+AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution);
 
 /// Everything that is determined, by the solution of least norm. An unknown is when no null vector of length 1 moves
 /// it by kUniqueTolerance.

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "engine/math/small_matrix.hpp"
@@ -26,68 +27,96 @@ inline const std::vector<std::string>& wrench_names() {
   return names;
 }
 
-/// A pose on its way: what the equations of motion are evaluated at.
-template <class S>
+/// A pose on its way: what the equations of motion are evaluated at. N as in PoseDynamics.
+template <class S, std::size_t N = 0>
 struct MotionState {
   Pose<S> pose;
-  Vector<S, 4> velocity;  ///< Xdot [m/s, rad/s]
+  AxisVector<S> velocity;  ///< Xdot [m/s, rad/s]
+};
+template <class S>
+struct MotionState<S, 4> {
+  SchoenfliesPose<S> pose;
+  Vector<S, 4> velocity;
+
+  MotionState() = default;
+  MotionState(const SchoenfliesPose<S>& at, const Vector<S, 4>& Xdot) : pose(at), velocity(Xdot) {}
+  MotionState(const MotionState<S, 0>& any) : pose(schoenflies(any.pose)), velocity(fixed<4>(any.velocity)) {}
 };
 
-template <class S>
+/// For N coordinates and as many joints; N = 0: for any number of both.
+template <class S, std::size_t N = 0>
 struct PoseDynamics {
-  bool assembles = false;    ///< false: nothing below is set
-  Vector<S, 4> q;            ///< joint positions [m]
-  Matrix<S, 4, 4> J;         ///< qdot = J Xdot
-  Vector<S, 4> J_rate_X;     ///< Jdot Xdot
-  Matrix<S, 4, 4> M_X;       ///< inertia, kinetic energy = Xdot^T M_X Xdot / 2
-  Vector<S, 4> h_X;          ///< centrifugal and Coriolis terms at the velocity given
-  Vector<S, 4> G_X;          ///< weight: gradient of the potential energy
-  Matrix<S, 6, 4> J_wrench;  ///< velocity and angular velocity of the point where a wrench acts
+  using Vec = AxisVector<S, N>;
+  using Mat = AxisMatrix<S, N>;
+  bool assembles = false;  ///< false: nothing below is set
+  Vec q;                   ///< joint positions [m, rad]
+  Mat J;                   ///< qdot = J Xdot
+  Vec J_rate_X;            ///< Jdot Xdot
+  Mat M_X;                 ///< inertia, kinetic energy = Xdot^T M_X Xdot / 2
+  Vec h_X;                 ///< centrifugal and Coriolis terms at the velocity given
+  Vec G_X;                 ///< weight: gradient of the potential energy
+  /// Velocity and angular velocity of the point where a wrench acts.
+  MatrixOf<S, 6, N ? N : kMostJoints, N != 0> J_wrench;
+
+  PoseDynamics() = default;
+  /// Of a number known when compiling.
+  template <std::size_t M>
+  requires(N == 0 && M != 0) PoseDynamics(const PoseDynamics<S, M>& d)
+      : assembles(d.assembles),
+        q(d.q),
+        J(d.J),
+        J_rate_X(d.J_rate_X),
+        M_X(d.M_X),
+        h_X(d.h_X),
+        G_X(d.G_X),
+        J_wrench(d.J_wrench) {}
 };
 
 /// Joint-space form; infinite where J is singular.
-template <class S>
+template <class S, std::size_t N = 0>
 struct JointSpace {
-  Matrix<S, 4, 4> M_q;    ///< [kg]
-  Vector<S, 4> c_q, G_q;  ///< Coriolis and centrifugal forces, weight [N]
+  AxisMatrix<S, N> M_q;       ///< [kg]
+  AxisVector<S, N> c_q, G_q;  ///< Coriolis and centrifugal forces, weight [N]
 };
 
 /// J^-T f.
-template <class S>
-Vector<S, 4> at_joints(const PoseDynamics<S>& d, const Vector<S, 4>& f) {
+template <class S, std::size_t N>
+AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& f) {
   return solve(transpose(d.J), f);
 }
 
 /// Forces tau of the actuators for an acceleration Xddot under a wrench on the platform, by virtual work [N].
-template <class S>
-Vector<S, 4> drive_forces(const PoseDynamics<S>& d, const Vector<S, 4>& acceleration, const Wrench<S>& wrench) {
-  return at_joints(d, d.M_X * acceleration + d.h_X + d.G_X - transpose(d.J_wrench) * wrench);
+template <class S, std::size_t N>
+AxisVector<S, N> drive_forces(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& acceleration,
+                              const Wrench<S>& wrench) {
+  return at_joints<S, N>(d, d.M_X * acceleration + d.h_X + d.G_X - transpose(d.J_wrench) * wrench);
 }
 
 /// Inertia as the joints feel it [kg]; symmetric to the last bit.
-template <class S>
-Matrix<S, 4, 4> joint_inertia(const PoseDynamics<S>& d) {
-  const Matrix<S, 4, 4> half = solve(transpose(d.J), d.M_X);   // J^-T M_X
-  Matrix<S, 4, 4> M = solve(transpose(d.J), transpose(half));  // J^-T (J^-T M_X)^T
-  for (std::size_t i = 0; i < 4; ++i)
+template <class S, std::size_t N>
+AxisMatrix<S, N> joint_inertia(const PoseDynamics<S, N>& d) {
+  const AxisMatrix<S, N> half = solve(transpose(d.J), d.M_X);   // J^-T M_X
+  AxisMatrix<S, N> M = solve(transpose(d.J), transpose(half));  // J^-T (J^-T M_X)^T
+  for (std::size_t i = 0; i < M.rows(); ++i)
     for (std::size_t j = 0; j < i; ++j) M(i, j) = M(j, i) = (M(i, j) + M(j, i)) * S(0.5);
   return M;
 }
 
-template <class S>
-JointSpace<S> joint_space(const PoseDynamics<S>& d) {
-  return {joint_inertia(d), at_joints(d, d.h_X - d.M_X * solve(d.J, d.J_rate_X)), at_joints(d, d.G_X)};
+template <class S, std::size_t N>
+JointSpace<S, N> joint_space(const PoseDynamics<S, N>& d) {
+  return {joint_inertia(d), at_joints<S, N>(d, d.h_X - d.M_X * solve(d.J, d.J_rate_X)), at_joints<S, N>(d, d.G_X)};
 }
 
 /// Acceleration Xddot under forces of the actuators and a wrench on the platform (forward dynamics).
-template <class S>
-Vector<S, 4> acceleration(const PoseDynamics<S>& d, const Vector<S, 4>& tau, const Wrench<S>& wrench) {
+template <class S, std::size_t N>
+AxisVector<S, N> acceleration(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& tau,
+                              const Wrench<S>& wrench) {
   return solve(d.M_X, transpose(d.J) * tau + transpose(d.J_wrench) * wrench - d.h_X - d.G_X);
 }
 
 /// Kinetic energy [J].
-template <class S>
-S kinetic_energy(const PoseDynamics<S>& d, const Vector<S, 4>& velocity) {
+template <class S, std::size_t N>
+S kinetic_energy(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& velocity) {
   return dot(velocity, d.M_X * velocity) * S(0.5);
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/math/small_matrix.hpp"
+
 namespace pkm {
 
 /// One joint: what it transmits, in world axes, acting on the body that is named first.
@@ -20,8 +22,8 @@ struct JointReaction {
 
 /// Source of the model: Newton's and Euler's equations of every body.
 struct Reactions {
-  std::vector<JointReaction> joints;     ///< empty where the forces are not determined
-  std::array<double, 4> drive_forces{};  ///< of the actuators, found with the others [N]
+  std::vector<JointReaction> joints;  ///< empty where the forces are not determined
+  AxisVector<double> drive_forces;    ///< of the actuators, found with the others [N]
   int equations = 0, unknowns = 0, rank = 0;
   std::string reason;  ///< one sentence saying why the forces are not determined; "" where they are
 };

@@ -8,10 +8,11 @@
 namespace pkm {
 
 /// A body with its name and the place of its centre of mass.
+template <std::size_t N = 0>
 struct PlacedBody {
   std::string name;          ///< "rod 11"
   Vector<double, 3> centre;  ///< of mass, in the world [m]
-  Body<double> body;
+  Body<double, N> body;
 };
 
 /// I of a point mass at `offset` from the point it is taken about [kg m^2].
@@ -20,8 +21,9 @@ inline Matrix<double, 3, 3> point_inertia(double mass, const Vector<double, 3>& 
 }
 
 /// Two bodies that turn together as one, called `name`: the centre of mass of both, inertia by parallel axes.
-inline PlacedBody unite(const std::string& name, const PlacedBody& a, const PlacedBody& b) {
-  PlacedBody both{name, {}, a.body};
+template <std::size_t N>
+PlacedBody<N> unite(const std::string& name, const PlacedBody<N>& a, const PlacedBody<N>& b) {
+  PlacedBody<N> both{name, {}, a.body};
   both.body.mass = a.body.mass + b.body.mass;
   const double of_a = a.body.mass / both.body.mass, of_b = b.body.mass / both.body.mass;
   both.centre = a.centre * of_a + b.centre * of_b;
@@ -46,9 +48,10 @@ struct RigidBody {
 };
 
 /// @param velocity, acceleration  Xdot and Xddot of the platform
-inline RigidBody in_motion(const PlacedBody& placed, const Vector<double, 4>& velocity,
-                           const Vector<double, 4>& acceleration) {
-  const Body<double>& b = placed.body;
+template <std::size_t N>
+RigidBody in_motion(const PlacedBody<N>& placed, const std::type_identity_t<AxisVector<double, N>>& velocity,
+                    const std::type_identity_t<AxisVector<double, N>>& acceleration) {
+  const Body<double, N>& b = placed.body;
   RigidBody body;
   body.name = placed.name;
   body.mass = b.mass;

@@ -19,17 +19,15 @@ constexpr double kInner[kStages][kStages] = {{5.0 / 36, 2.0 / 9 - kRoot / 15, 5.
                                              {5.0 / 36 + kRoot / 30, 2.0 / 9 + kRoot / 15, 5.0 / 36}};
 constexpr int kMostIterations = 60;
 
-Pose<double> as_pose(const Vector<double, 4>& x) { return {x[0], x[1], x[2], x[3]}; }
-
-double largest(const Vector<double, 4>& x) {
+double largest(const AxisVector<double>& x) {
   double most = 0;
-  for (const double value : x.m) most = std::isfinite(value) ? std::fmax(most, std::fabs(value)) : INFINITY;
+  for (const double value : x) most = std::isfinite(value) ? std::fmax(most, std::fabs(value)) : INFINITY;
   return most;
 }
 
 /// One state of a step on its way, and the powers there [W].
 struct Stage {
-  Vector<double, 4> velocity, acceleration;
+  AxisVector<double> velocity, acceleration;
   double drives = 0, weight = 0, wrench = 0;
 };
 
@@ -38,7 +36,7 @@ class Integrator {
   explicit Integrator(const SimulationSetup& setup) : setup_(setup) {}
 
   /// "" or why there is no step.
-  std::string begin(const Vector<double, 4>& pose, const Vector<double, 4>& velocity, SimulationState& state) const {
+  std::string begin(const AxisVector<double>& pose, const AxisVector<double>& velocity, SimulationState& state) const {
     state.pose = pose;
     state.velocity = velocity;
     return complete(state);
@@ -67,7 +65,7 @@ class Integrator {
   std::string solve_stages(const SimulationState& from, double h, std::array<Stage, kStages>& stages) const {
     double before = INFINITY;
     for (int turn = 0; turn < kMostIterations; ++turn) {
-      std::array<Vector<double, 4>, kStages> pose, velocity;
+      std::array<AxisVector<double>, kStages> pose, velocity;
       for (std::size_t i = 0; i < kStages; ++i) {
         pose[i] = from.pose;
         velocity[i] = from.velocity;
@@ -94,10 +92,10 @@ class Integrator {
            " the accelerations do not settle: the mechanism is near a singularity, or the step is too long";
   }
 
-  bool evaluate(double time, const Vector<double, 4>& pose, const Vector<double, 4>& velocity, Stage& stage) const {
-    const PoseDynamics<double> d = setup_.dynamics({as_pose(pose), velocity});
+  bool evaluate(double time, const AxisVector<double>& pose, const AxisVector<double>& velocity, Stage& stage) const {
+    const PoseDynamics<double> d = setup_.dynamics({pose, velocity});
     if (!d.assembles) return false;
-    const Vector<double, 4> tau = setup_.forces(time);
+    const AxisVector<double> tau = setup_.forces(time);
     stage.velocity = velocity;
     stage.acceleration = acceleration(d, tau, setup_.wrench);
     stage.drives = dot(tau, d.J * velocity);
@@ -108,13 +106,13 @@ class Integrator {
 
   /// Acceleration and kinetic energy of a state.
   std::string complete(SimulationState& state) const {
-    const PoseDynamics<double> d = setup_.dynamics({as_pose(state.pose), state.velocity});
+    const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
     if (!d.assembles) return leaves_reach(state.time);
     state.acceleration = acceleration(d, setup_.forces(state.time), setup_.wrench);
     state.kinetic_energy = kinetic_energy(d, state.velocity);
     if (!std::isfinite(largest(state.acceleration)))
       return "at t = " + with_unit(state.time, "s") + " the mechanism is in a singularity";
-    const std::string refused = setup_.refuse ? setup_.refuse(as_pose(state.pose)) : std::string();
+    const std::string refused = setup_.refuse ? setup_.refuse(state.pose) : std::string();
     return refused.empty() ? refused : "at t = " + with_unit(state.time, "s") + " " + refused;
   }
 
@@ -127,7 +125,7 @@ class Integrator {
 
 }  // namespace
 
-Simulation simulate(const SimulationSetup& setup, const Vector<double, 4>& pose, const Vector<double, 4>& velocity) {
+Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose, const AxisVector<double>& velocity) {
   PKM_EXPECTS(setup.duration > 0 && setup.step > 0);
   const Integrator integrator(setup);
   Simulation result;

@@ -16,18 +16,18 @@
 
 namespace pkm {
 
-/// Vectors: x, y, z, rotation in m, rad and their rates.
+/// Vectors: one number per coordinate, and their rates.
 struct SimulationState {
   double time = 0;
-  Vector<double, 4> pose, velocity, acceleration;
+  AxisVector<double> pose, velocity, acceleration;
   double kinetic_energy = 0;                                          ///< [J]
   double work_of_drives = 0, work_of_weight = 0, work_of_wrench = 0;  ///< since the beginning [J]
 };
 
 struct SimulationSetup {
   std::function<PoseDynamics<double>(const MotionState<double>&)> dynamics;
-  std::function<Vector<double, 4>(double time)> forces;  ///< tau [N] at a time [s]
-  Wrench<double> wrench;                                 ///< on the platform, the same all the time
+  std::function<AxisVector<double>(double time)> forces;  ///< tau [N] at a time [s]
+  Wrench<double> wrench;                                  ///< on the platform, the same all the time
   /// "" or a sentence saying why a pose ends the run (a limit of the mechanism); none: nothing ends it.
   std::function<std::string(const Pose<double>&)> refuse;
   double duration = 0;      ///< [s], > 0
@@ -42,6 +42,6 @@ struct Simulation {
   double turned_over = 0;               ///< kinetic energy at the beginning and magnitudes of all works [J]
 };
 
-Simulation simulate(const SimulationSetup& setup, const Vector<double, 4>& pose, const Vector<double, 4>& velocity);
+Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose, const AxisVector<double>& velocity);
 
 }  // namespace pkm

@@ -31,8 +31,7 @@ Formula::Formula(const std::string& text, const std::vector<std::string>& names)
     : program_(formula::read_program(text, names)) {}
 
 template <class S>
-S Formula::value(std::span<const S> values) const {
-  thread_local std::vector<S> stack;
+S Formula::value(std::span<const S> values, std::vector<S>& stack) const {
   if (stack.size() < program_.depth) stack.resize(program_.depth);
   S* top = stack.data();  // behind the uppermost number
   for (std::size_t i = 0; i < program_.steps.size(); ++i) {
@@ -64,9 +63,9 @@ S Formula::value(std::span<const S> values) const {
   return stack.front();
 }
 
-template double Formula::value(std::span<const double>) const;
-template Dual4 Formula::value(std::span<const Dual4>) const;
-template Taylor Formula::value(std::span<const Taylor>) const;
+template double Formula::value(std::span<const double>, std::vector<double>&) const;
+template Dual4 Formula::value(std::span<const Dual4>, std::vector<Dual4>&) const;
+template Taylor Formula::value(std::span<const Taylor>, std::vector<Taylor>&) const;
 
 std::string formula_help() {
   return "numbers, pi, + - * / ^, comparisons, && ||, c ? x : y, and the functions " +

@@ -33,11 +33,17 @@ class Formula {
   /// Positions in `names` of those that the formula uses, ascending.
   const std::vector<std::size_t>& used() const { return program_.used; }
 
-  /// The formula's value; S is double, Dual4 or Taylor. Allocates nothing once a thread has computed a formula of this
-  /// size.
+  /// The formula's value; S is double, Dual4 or Taylor. Allocates nothing once the stack has served a formula of
+  /// this size.
   /// @param values  one number per name; those not used are not looked at
+  /// @param stack   overwritten
   template <class S>
-  S value(std::span<const S> values) const;
+  S value(std::span<const S> values, std::vector<S>& stack) const;
+  template <class S>
+  S value(std::span<const S> values) const {
+    std::vector<S> stack;
+    return value(values, stack);
+  }
 
  private:
   formula::Program program_;

@@ -12,36 +12,50 @@ struct Interval {
   double lower = 0, upper = 0;
 };
 
-/// Where f changes its sign between a (f(a) = at_a) and b, to `width`: false position, Illinois variant, with a
-/// bisection whenever three steps have not halved the bracket. Uses nothing of f but the signs and sizes of its values
-/// inside the bracket, so jumps do no harm.
-template <class F>
-double bracketed_root(const F& f, double a, double at_a, double b, double at_b, double width) {
-  int side = 0;
-  double before = std::fabs(b - a);
-  for (int step = 1; step < 400 && std::fabs(b - a) > width; ++step) {
-    bool bisect = false;
-    if (step % 3 == 0) {
-      bisect = std::fabs(b - a) > 0.5 * before;
-      before = std::fabs(b - a);
-    }
-    double middle = bisect ? 0.5 * (a + b) : b - at_b * (b - a) / (at_b - at_a);
-    if (!((middle > a && middle < b) || (middle > b && middle < a))) middle = 0.5 * (a + b);
-    if (middle == a || middle == b) break;  // neighbouring numbers
-    const double here = f(middle);
-    if ((here >= 0) == (at_a >= 0)) {
-      a = middle;
-      at_a = here;
+/// A sign change between a and b, narrowed by false position, Illinois variant. Uses nothing of a function but the
+/// signs and sizes of its values inside the bracket, so jumps do no harm.
+struct Bracket {
+  double a, at_a, b, at_b;
+  int side = 0;  ///< -1, 1: a, b was the last to move
+
+  double width() const { return std::fabs(b - a); }
+  double middle() const { return 0.5 * (a + b); }
+  double guess() const {
+    const double at = b - at_b * (b - a) / (at_b - at_a);
+    return (at > a && at < b) || (at > b && at < a) ? at : middle();
+  }
+  void take(double at, double value) {
+    if ((value >= 0) == (at_a >= 0)) {
+      a = at;
+      at_a = value;
       if (side == -1) at_b *= 0.5;
       side = -1;
     } else {
-      b = middle;
-      at_b = here;
+      b = at;
+      at_b = value;
       if (side == 1) at_a *= 0.5;
       side = 1;
     }
   }
-  return 0.5 * (a + b);
+};
+
+/// Where f changes its sign between a (f(a) = at_a) and b, to `width`; with a bisection whenever three steps have not
+/// halved the bracket.
+template <class F>
+double bracketed_root(const F& f, double a, double at_a, double b, double at_b, double width) {
+  Bracket bracket{.a = a, .at_a = at_a, .b = b, .at_b = at_b};
+  double before = bracket.width();
+  for (int step = 1; step < 400 && bracket.width() > width; ++step) {
+    bool bisect = false;
+    if (step % 3 == 0) {
+      bisect = bracket.width() > 0.5 * before;
+      before = bracket.width();
+    }
+    const double at = bisect ? bracket.middle() : bracket.guess();
+    if (at == bracket.a || at == bracket.b) break;  // neighbouring numbers
+    bracket.take(at, f(at));
+  }
+  return bracket.middle();
 }
 
 /// Finds the parts of an interval on which a function is not negative.

@@ -24,8 +24,46 @@ struct Break {
   bool root_above = false;
 };
 
-/// Fills `pieces` with those parts between the first and the last break on which the section is not empty.
-/// @param breaks     both ends of the outer coordinate and known breaks, in any order; sorted
+/// Fills `pieces` with those parts between the first and the last break on which sections are not empty.
+/// @param breaks      both ends of the outer coordinate and known breaks, in order
+/// @param near        breaks nearer than this are one
+/// @param roots_join  whether a piece goes on beyond a break with a root where the signature does not change
+/// @param changes     changes(low, high, split) returns the signature below `high`, false for an empty section, and
+///                    calls split(break, signature below it) wherever it changes between, in order
+template <class Signature, class S, class Changes>
+void find_pieces(const std::vector<Break<S>>& breaks, double near, bool roots_join, const Changes& changes,
+                 std::vector<Piece<S>>& pieces) {
+  pieces.clear();
+  if (breaks.empty()) return;
+  Signature before{};  // of the piece before
+  Break<S> from = breaks.front();
+  const auto split = [&](const Break<S>& to, const Signature& now) {
+    const bool joins = !pieces.empty() && now == before && value_of(pieces.back().upper) == value_of(from.at) &&
+                       (roots_join || !(from.root_below || from.root_above));
+    if (now && joins) {
+      pieces.back().upper = to.at;
+      pieces.back().root_upper = to.root_below;
+    } else if (now) {
+      pieces.push_back({from.at, to.at, from.root_above, to.root_below});
+    }
+    before = now;
+    from = to;
+  };
+  for (std::size_t i = 1; i < breaks.size(); ++i) {
+    const Break<S>& to = breaks[i];
+    const double low = value_of(from.at), high = value_of(to.at);
+    if (high - low < near) {
+      from.root_above = from.root_above || to.root_above;
+      if (!pieces.empty() && value_of(pieces.back().upper) == low)
+        pieces.back().root_upper = pieces.back().root_upper || to.root_below;
+      continue;
+    }
+    split(to, changes(low, high, split));
+  }
+}
+
+/// The same where nothing but the signature tells where it changes: it is sampled, and halving does the rest.
+/// @param breaks     in any order; sorted
 /// @param signature  of the section at a value of the outer coordinate, 0: empty
 /// @param moving     gives a break that was found its derivatives
 /// @param samples    of the signature over the whole range
@@ -38,29 +76,8 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
             [](const Break<S>& a, const Break<S>& b) { return value_of(a.at) < value_of(b.at); });
   const double whole = value_of(breaks.back().at) - value_of(breaks.front().at);
   if (!(whole > 0)) return;
-  const double near = 1e-13 * whole;  // breaks nearer than this are one
-  std::uint64_t before = 0;           // signature of the piece before
-  Break<S> from = breaks.front();
-  const auto add = [&](const Break<S>& to, std::uint64_t now) {
-    const bool joins = !pieces.empty() && now == before && value_of(pieces.back().upper) == value_of(from.at);
-    if (now != 0 && joins) {
-      pieces.back().upper = to.at;
-      pieces.back().root_upper = to.root_below;
-    } else if (now != 0) {
-      pieces.push_back({from.at, to.at, from.root_above, to.root_below});
-    }
-    before = now;
-    from = to;
-  };
-  for (std::size_t i = 1; i < breaks.size(); ++i) {
-    const Break<S>& to = breaks[i];
-    const double low = value_of(from.at), high = value_of(to.at), length = high - low;
-    if (length < near) {
-      from.root_above = from.root_above || to.root_above;
-      if (!pieces.empty() && value_of(pieces.back().upper) == low)
-        pieces.back().root_upper = pieces.back().root_upper || to.root_below;
-      continue;
-    }
+  const auto changes = [&](double low, double high, const auto& split) {
+    const double length = high - low;
     const int steps = std::max(1, static_cast<int>(std::ceil(samples * length / whole)));
     const double inset = std::min(0.25 * length, 1e-7 * whole);  // off the breaks, where rounding decides
     double at = low + inset;
@@ -74,15 +91,16 @@ void find_pieces(std::vector<Break<S>>& breaks, const Signature& signature, cons
           const double middle = 0.5 * (same + other);
           (signature(middle) == now ? same : other) = middle;
         }
-        add({moving(other), true, true}, now);
+        split(Break<S>{moving(other), true, true}, now);
         at = other;
         now = signature(at);
       }
       at = next;
       now = then;
     }
-    add(to, now);
-  }
+    return now;
+  };
+  find_pieces<std::uint64_t>(breaks, 1e-13 * whole, true, changes, pieces);
 }
 
 }  // namespace pkm

@@ -28,7 +28,7 @@ GaussRule gauss_legendre(int n) {
   return rule;
 }
 
-const KronrodRule& kronrod_15() {
+const NestedRule& kronrod_rule() {
   // Nodes and weights on [-1, 1], non-negative half, computed from the Stieltjes polynomial with 50 digits.
   static constexpr std::array<double, 8> x = {0.0,
                                               0.2077849550078984676,
@@ -43,14 +43,51 @@ const KronrodRule& kronrod_15() {
                                               0.06309209262997855329, 0.02293532201052922496};
   static constexpr std::array<double, 8> g = {0.4179591836734693878, 0, 0.381830050505118945,  0,
                                               0.2797053914892766679, 0, 0.1294849661688696933, 0};
-  static const KronrodRule rule = [] {
-    KronrodRule r{};
+  static const NestedRule rule = [] {
+    NestedRule r{.node = {}, .level = {{.nodes = 15, .weight = {}, .fewer = {}}}};
+    NestedRule::Level& level = r.level[0];
     for (std::size_t i = 0; i < 8; ++i) {
       r.node[7 + i] = 0.5 + 0.5 * x[i];
       r.node[7 - i] = 0.5 - 0.5 * x[i];
-      r.weight[7 + i] = r.weight[7 - i] = 0.5 * w[i];
-      r.gauss_weight[7 + i] = r.gauss_weight[7 - i] = 0.5 * g[i];
+      level.weight[7 + i] = level.weight[7 - i] = 0.5 * w[i];
+      level.fewer[7 + i] = level.fewer[7 - i] = 0.5 * g[i];
     }
+    return r;
+  }();
+  return rule;
+}
+
+const NestedRule& patterson_rule() {
+  // Nodes and weights on [-1, 1], non-negative half, computed with 60 digits: those of the 3-point Gauss rule, then
+  // twice the zeros of the polynomial that makes the rule with them the most exact.
+  static constexpr std::array<double, 8> x = {0.0,
+                                              0.77459666924148337704,
+                                              0.434243749346802558,
+                                              0.96049126870802028342,
+                                              0.22338668642896688163,
+                                              0.62110294673722640294,
+                                              0.88845923287225699889,
+                                              0.99383196321275502221};
+  static constexpr std::array<double, 8> all = {0.22551049979820668739,  0.13441525524378422036, 0.20062852937698902103,
+                                                0.051603282997079739697, 0.2191568584015874964,  0.17151190913639138079,
+                                                0.092927195315124537686, 0.017001719629940260339};
+  static constexpr std::array<double, 4> first = {0.45091653865847414235, 0.26848808986833344073,
+                                                  0.40139741477596222291, 0.10465622602646726519};
+  static constexpr std::array<double, 2> least = {0.88888888888888888889, 0.55555555555555555556};
+  static const NestedRule rule = [] {
+    NestedRule r{.node = {},
+                 .level = {{.nodes = 7, .weight = {}, .fewer = {}}, {.nodes = 15, .weight = {}, .fewer = {}}}};
+    std::size_t n = 0;
+    const auto add = [&](std::size_t i, double sign) {
+      r.node[n] = 0.5 + sign * 0.5 * x[i];
+      r.level[1].weight[n] = 0.5 * all[i];
+      if (i < first.size()) r.level[0].weight[n] = r.level[1].fewer[n] = 0.5 * first[i];
+      if (i < least.size()) r.level[0].fewer[n] = 0.5 * least[i];
+      ++n;
+    };
+    add(0, 0);
+    for (std::size_t i = 1; i < x.size(); ++i)
+      for (const double sign : {-1.0, 1.0}) add(i, sign);
     return r;
   }();
   return rule;

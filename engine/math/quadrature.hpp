@@ -48,12 +48,28 @@ struct GaussRule {
 /// the same on every processor.
 GaussRule gauss_legendre(int n);
 
-/// Gauss-Kronrod rule with 15 nodes on [0, 1] and the weights of the 7-point Gauss rule inside it.
-struct KronrodRule {
-  static constexpr int kNodes = 15;
-  std::array<double, kNodes> node, weight, gauss_weight;  ///< gauss_weight is 0 at the added nodes
+/// Rules on [0, 1], each of which holds the nodes of the one before it: where the first is enough, the others' nodes
+/// are not asked for.
+struct NestedRule {
+  static constexpr std::size_t kNodes = 15;
+  /// One of them: its first nodes, their weights, and those of the smaller rule that tells its error (0 at the others).
+  struct Level {
+    std::size_t nodes;
+    std::array<double, kNodes> weight, fewer;
+  };
+  std::array<double, kNodes> node;  ///< in the order in which they are added
+  std::vector<Level> level;
 };
-const KronrodRule& kronrod_15();
+
+/// One rule of 15 nodes, Kronrod's, with the 7-point Gauss rule inside it; exact for polynomials up to degree 22
+/// and 13.
+const NestedRule& kronrod_rule();
+
+/// Two rules of 7 and 15 nodes around the 3-point Gauss rule; exact up to degree 11, 23 and 5.
+///
+/// Source: T. N. L. Patterson, "The optimum addition of points to quadrature formulae", Mathematics of Computation 22
+/// (1968), 847.
+const NestedRule& patterson_rule();
 
 /// An integral and how well it is known.
 template <class S>
@@ -61,6 +77,12 @@ struct Integral {
   S value{0.0};
   double error = 0;  ///< estimate, absolute
   long evaluations = 0;
+
+  void operator+=(const Integral& part) {
+    value += part.value;
+    error += part.error;
+    evaluations += part.evaluations;
+  }
 };
 
 /// What is known of an integrand between the ends of its pieces.
@@ -73,29 +95,45 @@ inline double sharpened_error(double difference, double spread) {
   return ratio > 0 ? spread * std::fmin(1.0, ratio * std::sqrt(ratio)) : 0;
 }
 
-/// One application of the 15-point rule to a piece. The error estimate of a smooth integrand is that of QUADPACK: the
-/// difference to the 7-point rule, sharpened where it is small. That errs by a factor of 100 and more on the safe side
-/// where there are kinks; then it is the difference itself.
+/// A part of a piece and what is known of its integral.
+template <class S>
+struct QuadraturePart {
+  Piece<S> piece;
+  std::size_t levels = 0;  ///< rules that have been applied
+  std::array<S, NestedRule::kNodes> term;
+  Integral<S> integral;
+};
+
+/// How integrals are found. The error estimate of a smooth integrand is that of QUADPACK: the difference to the smaller
+/// rule, sharpened where it is small. That errs by a factor of 100 and more on the safe side where there are kinks;
+/// then it is the difference itself.
+struct Quadrature {
+  const NestedRule& rule = kronrod_rule();
+  Between between = Between::smooth;
+  int depth = 16;  ///< of halvings
+};
+
+/// Applies the next rule to a part.
 template <class S, class F>
-Integral<S> integrate_piece(const F& f, const Piece<S>& piece, Between between = Between::smooth) {
-  const KronrodRule& rule = kronrod_15();
-  Integral<S> result;
-  std::array<double, KronrodRule::kNodes> values;
-  double gauss = 0;
-  for (std::size_t i = 0; i < KronrodRule::kNodes; ++i) {
-    const auto [point, jacobian] = map_node(piece, rule.node[i]);
-    const S term = f(point) * jacobian;
-    values[i] = value_of(term);
-    result.value += term * rule.weight[i];
-    gauss += values[i] * rule.gauss_weight[i];
+void apply_rule(const F& f, const Quadrature& how, QuadraturePart<S>& part) {
+  const std::size_t known = part.levels > 0 ? how.rule.level[part.levels - 1].nodes : 0;
+  const NestedRule::Level& level = how.rule.level[part.levels++];
+  Integral<S>& result = part.integral;
+  result.value = S(0.0);
+  double less = 0, spread = 0;
+  for (std::size_t i = 0; i < level.nodes; ++i) {
+    if (i >= known) {
+      const auto [point, jacobian] = map_node(part.piece, how.rule.node[i]);
+      part.term[i] = f(point) * jacobian;
+    }
+    result.value += part.term[i] * level.weight[i];
+    less += value_of(part.term[i]) * level.fewer[i];
   }
   const double mean = value_of(result.value);
-  double spread = 0;
-  for (std::size_t i = 0; i < KronrodRule::kNodes; ++i) spread += rule.weight[i] * std::fabs(values[i] - mean);
-  const double difference = std::fabs(mean - gauss);
-  result.error = between == Between::kinks ? difference : sharpened_error(difference, spread);
-  result.evaluations = KronrodRule::kNodes;
-  return result;
+  for (std::size_t i = 0; i < level.nodes; ++i) spread += level.weight[i] * std::fabs(value_of(part.term[i]) - mean);
+  const double difference = std::fabs(mean - less);
+  result.error = how.between == Between::kinks ? difference : sharpened_error(difference, spread);
+  result.evaluations += static_cast<long>(level.nodes - known);
 }
 
 /// The two halves of a piece. Each keeps the kind of the end that it inherits.
@@ -106,23 +144,30 @@ std::array<Piece<S>, 2> halves(const Piece<S>& piece) {
           Piece<S>{middle, piece.upper, false, piece.root_upper}};
 }
 
-/// Replaces `known`, the rule's result on `piece`, by that of its halves, again and again until the error estimate is
-/// at most `tolerance` (absolute) or `depth` halvings are used up; what remains is in `error`. Every decision depends
-/// on values only, never on derivatives.
+/// Improves a part until its error estimate is at most `tolerance` (absolute): by the other rules, then by halving it,
+/// until `depth` halvings are used up. Every decision depends on values only, never on derivatives.
 template <class S, class F>
-void refine(const F& f, const Piece<S>& piece, double tolerance, int depth, Integral<S>& known,
-            Between between = Between::smooth) {
-  if (known.error <= tolerance || depth == 0) return;
+void refine(const F& f, double tolerance, const Quadrature& how, int depth, QuadraturePart<S>& part) {
+  while (!(part.integral.error <= tolerance) && part.levels < how.rule.level.size()) apply_rule(f, how, part);
+  if (part.integral.error <= tolerance || depth == 0) return;
   Integral<S> sum;
-  sum.evaluations = known.evaluations;
-  for (const Piece<S>& half : halves(piece)) {
-    Integral<S> part = integrate_piece<S>(f, half, between);
-    refine(f, half, tolerance / 2, depth - 1, part, between);
-    sum.value += part.value;
-    sum.error += part.error;
-    sum.evaluations += part.evaluations;
+  sum.evaluations = part.integral.evaluations;
+  for (const Piece<S>& piece : halves(part.piece)) {
+    QuadraturePart<S> half{.piece = piece};
+    apply_rule(f, how, half);
+    refine(f, tolerance / 2, how, depth - 1, half);
+    sum += half.integral;
   }
-  known = sum;
+  part.integral = sum;
+}
+
+/// Integral of f over one piece, to an absolute tolerance.
+template <class S, class F>
+Integral<S> integrate_piece(const F& f, const Piece<S>& piece, double tolerance, const Quadrature& how = {}) {
+  QuadraturePart<S> part{.piece = piece};
+  apply_rule(f, how, part);
+  refine(f, tolerance, how, how.depth, part);
+  return part.integral;
 }
 
 /// Integral of f over pieces, to a relative tolerance of the whole.
@@ -131,27 +176,24 @@ void refine(const F& f, const Piece<S>& piece, double tolerance, int depth, Inte
 /// @param scratch  reused storage
 template <class S, class F>
 Integral<S> integrate(const F& f, const std::vector<Piece<S>>& pieces, double tolerance, double floor,
-                      std::vector<Integral<S>>& scratch, Between between = Between::smooth) {
-  constexpr int kDepth = 16;
-  scratch.clear();
-  Integral<S> sum;
-  for (const auto& piece : pieces) {
-    scratch.push_back(integrate_piece<S>(f, piece, between));
-    sum.value += scratch.back().value;
-    sum.error += scratch.back().error;
-    sum.evaluations += scratch.back().evaluations;
+                      std::vector<QuadraturePart<S>>& scratch, const Quadrature& how = {}) {
+  scratch.resize(pieces.size());
+  const auto total = [&] {
+    Integral<S> sum;
+    for (const QuadraturePart<S>& part : scratch) sum += part.integral;
+    return sum;
+  };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    scratch[i].piece = pieces[i];
+    scratch[i].levels = 0;
+    scratch[i].integral = {};
+    apply_rule(f, how, scratch[i]);
   }
+  const Integral<S> sum = total();
   const double allowed = std::fmax(floor, tolerance * std::fabs(value_of(sum.value)));
   if (sum.error <= allowed) return sum;
-  const double share = allowed / static_cast<double>(pieces.size());
-  sum = {};
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    refine(f, pieces[i], share, kDepth, scratch[i], between);
-    sum.value += scratch[i].value;
-    sum.error += scratch[i].error;
-    sum.evaluations += scratch[i].evaluations;
-  }
-  return sum;
+  for (QuadraturePart<S>& part : scratch) refine(f, allowed / static_cast<double>(pieces.size()), how, how.depth, part);
+  return total();
 }
 
 }  // namespace pkm

@@ -1,11 +1,18 @@
-// Matrices of a few rows and columns, for double and for a derivative scalar: what dynamics is written in.
+// Matrices of a few rows and columns, for double and for a derivative scalar: what dynamics is written in. Sizes are
+// known when compiling (Matrix) or, up to a bound, when running (MatrixUpTo). Nothing is allocated, and sums are added
+// in the order of their index, so that bits do not depend on the kind of matrix, the compiler or the processor.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <initializer_list>
+#include <type_traits>
 #include <utility>
 
+#include "engine/core/error.hpp"
 #include "engine/math/scalar.hpp"
 
 namespace pkm {
@@ -13,57 +20,177 @@ namespace pkm {
 /// R x C, by rows. A vector has one column.
 template <class S, std::size_t R, std::size_t C = 1>
 struct Matrix {
+  using Scalar = S;
+  static constexpr std::size_t kRows = R, kColumns = C;
+  static constexpr bool kFixed = true;
+
   std::array<S, R * C> m{};
 
+  static constexpr std::size_t rows() { return R; }
+  static constexpr std::size_t cols() { return C; }
+  static constexpr std::size_t size() { return R * C; }
   S& operator()(std::size_t i, std::size_t j) { return m[i * C + j]; }
   const S& operator()(std::size_t i, std::size_t j) const { return m[i * C + j]; }
   S& operator[](std::size_t i) { return m[i]; }
   const S& operator[](std::size_t i) const { return m[i]; }
+  auto begin() { return m.begin(); }
+  auto end() { return m.end(); }
+  auto begin() const { return m.begin(); }
+  auto end() const { return m.end(); }
 
-  static Matrix identity() {
+  static constexpr Matrix zero(std::size_t, std::size_t) { return {}; }
+  static Matrix identity(std::size_t = R) {
     Matrix unit;
     for (std::size_t i = 0; i < R && i < C; ++i) unit(i, i) = S(1.0);
     return unit;
-  }
-  Matrix& operator+=(const Matrix& other) {
-    for (std::size_t k = 0; k < R * C; ++k) m[k] += other.m[k];
-    return *this;
-  }
-  friend Matrix operator+(Matrix a, const Matrix& b) { return a += b; }
-  friend Matrix operator-(Matrix a, const Matrix& b) {
-    for (std::size_t k = 0; k < R * C; ++k) a.m[k] = a.m[k] - b.m[k];
-    return a;
-  }
-  friend Matrix operator*(Matrix a, const S& factor) {
-    for (S& element : a.m) element = element * factor;
-    return a;
   }
 };
 
 template <class S, std::size_t N>
 using Vector = Matrix<S, N, 1>;
 
-template <class S, std::size_t R, std::size_t K, std::size_t C>
-Matrix<S, R, C> operator*(const Matrix<S, R, K>& a, const Matrix<S, K, C>& b) {
-  Matrix<S, R, C> product;
-  for (std::size_t i = 0; i < R; ++i)
-    for (std::size_t k = 0; k < K; ++k)
-      for (std::size_t j = 0; j < C; ++j) product(i, j) += a(i, k) * b(k, j);
+/// A matrix or vector, ours or one that is read the same way (Eigen's).
+template <class M>
+concept HasElements = requires(const M& m) {
+  { m.rows() } -> std::convertible_to<std::size_t>;
+  { m.cols() } -> std::convertible_to<std::size_t>;
+  m(0, 0);
+};
+
+/// At most R x C, by rows without gaps.
+template <class S, std::size_t R, std::size_t C = 1>
+class MatrixUpTo {
+ public:
+  using Scalar = S;
+  static constexpr std::size_t kRows = R, kColumns = C;
+  static constexpr bool kFixed = false;
+
+  MatrixUpTo() = default;
+  explicit MatrixUpTo(std::size_t rows, std::size_t cols = 1) : rows_(rows), cols_(cols) {
+    PKM_EXPECTS(rows <= R && cols <= C);
+    for (std::size_t k = 0; k < size(); ++k) m_[k] = S{};
+  }
+  /// A vector.
+  MatrixUpTo(std::initializer_list<S> elements) : MatrixUpTo(elements.size()) {
+    std::size_t k = 0;
+    for (const S& element : elements) m_[k++] = element;
+  }
+  /// The same elements.
+  template <HasElements M>
+  requires(!std::same_as<std::remove_cvref_t<M>, MatrixUpTo>) MatrixUpTo(const M& other)
+      : MatrixUpTo(static_cast<std::size_t>(other.rows()), static_cast<std::size_t>(other.cols())) {
+    using Index = std::remove_cvref_t<decltype(other.rows())>;
+    for (std::size_t i = 0; i < rows_; ++i)
+      for (std::size_t j = 0; j < cols_; ++j) (*this)(i, j) = S(other(static_cast<Index>(i), static_cast<Index>(j)));
+  }
+
+  std::size_t rows() const { return rows_; }
+  std::size_t cols() const { return cols_; }
+  std::size_t size() const { return rows_ * cols_; }
+  S& operator()(std::size_t i, std::size_t j) {
+    PKM_EXPECTS(i < rows_ && j < cols_);
+    return m_[i * cols_ + j];
+  }
+  const S& operator()(std::size_t i, std::size_t j) const {
+    PKM_EXPECTS(i < rows_ && j < cols_);
+    return m_[i * cols_ + j];
+  }
+  S& operator[](std::size_t i) {
+    PKM_EXPECTS(i < size());
+    return m_[i];
+  }
+  const S& operator[](std::size_t i) const {
+    PKM_EXPECTS(i < size());
+    return m_[i];
+  }
+  S* begin() { return m_.data(); }
+  S* end() { return m_.data() + size(); }
+  const S* begin() const { return m_.data(); }
+  const S* end() const { return m_.data() + size(); }
+
+  static MatrixUpTo zero(std::size_t rows, std::size_t cols) { return MatrixUpTo(rows, cols); }
+  static MatrixUpTo identity(std::size_t n) {
+    MatrixUpTo unit(n, n);
+    for (std::size_t i = 0; i < n; ++i) unit(i, i) = S(1.0);
+    return unit;
+  }
+
+ private:
+  std::size_t rows_ = 0, cols_ = 0;
+  std::array<S, R * C> m_;  // set as far as it is used
+};
+
+template <class M>
+concept SmallMatrix = requires {
+  typename M::Scalar;
+  { M::kFixed } -> std::convertible_to<bool>;
+};
+
+/// R x C where everything is known when compiling, else up to that.
+template <class S, std::size_t R, std::size_t C, bool fixed>
+using MatrixOf = std::conditional_t<fixed, Matrix<S, R, C>, MatrixUpTo<S, R, C>>;
+
+/// The same size and elements.
+template <SmallMatrix A, SmallMatrix B>
+bool operator==(const A& a, const B& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && std::equal(a.begin(), a.end(), b.begin());
+}
+
+template <SmallMatrix A, SmallMatrix B>
+A& operator+=(A& a, const B& b) {
+  PKM_EXPECTS(a.rows() == b.rows() && a.cols() == b.cols());
+  for (std::size_t k = 0; k < a.size(); ++k) a[k] += b[k];
+  return a;
+}
+template <SmallMatrix A, SmallMatrix B>
+A operator+(A a, const B& b) {
+  return a += b;
+}
+template <SmallMatrix A, SmallMatrix B>
+A operator-(A a, const B& b) {
+  PKM_EXPECTS(a.rows() == b.rows() && a.cols() == b.cols());
+  for (std::size_t k = 0; k < a.size(); ++k) a[k] = a[k] - b[k];
+  return a;
+}
+template <SmallMatrix A>
+A operator*(A a, const typename A::Scalar& factor) {
+  for (auto& element : a) element = element * factor;
+  return a;
+}
+
+template <SmallMatrix A, SmallMatrix B>
+auto operator*(const A& a, const B& b) {
+  constexpr bool fixed = A::kFixed && B::kFixed;
+  static_assert(!fixed || A::kColumns == B::kRows);
+  PKM_EXPECTS(a.cols() == b.rows());
+  auto product = MatrixOf<typename A::Scalar, A::kRows, B::kColumns, fixed>::zero(a.rows(), b.cols());
+  for (std::size_t i = 0; i < a.rows(); ++i)
+    for (std::size_t k = 0; k < a.cols(); ++k)
+      for (std::size_t j = 0; j < b.cols(); ++j) product(i, j) += a(i, k) * b(k, j);
   return product;
 }
 
-template <class S, std::size_t R, std::size_t C>
-Matrix<S, C, R> transpose(const Matrix<S, R, C>& a) {
-  Matrix<S, C, R> t;
-  for (std::size_t i = 0; i < R; ++i)
-    for (std::size_t j = 0; j < C; ++j) t(j, i) = a(i, j);
+template <SmallMatrix A>
+auto transpose(const A& a) {
+  auto t = MatrixOf<typename A::Scalar, A::kColumns, A::kRows, A::kFixed>::zero(a.cols(), a.rows());
+  for (std::size_t i = 0; i < a.rows(); ++i)
+    for (std::size_t j = 0; j < a.cols(); ++j) t(j, i) = a(i, j);
   return t;
 }
 
-template <class S, std::size_t N>
-S dot(const Vector<S, N>& a, const Vector<S, N>& b) {
-  S sum = a[0] * b[0];
-  for (std::size_t i = 1; i < N; ++i) sum += a[i] * b[i];
+/// The same elements, where the size is known.
+template <std::size_t R, std::size_t C = 1, SmallMatrix A>
+Matrix<typename A::Scalar, R, C> fixed(const A& a) {
+  PKM_EXPECTS(a.rows() == R && a.cols() == C);
+  Matrix<typename A::Scalar, R, C> same;
+  for (std::size_t k = 0; k < R * C; ++k) same[k] = a[k];
+  return same;
+}
+
+template <SmallMatrix A, SmallMatrix B>
+typename A::Scalar dot(const A& a, const B& b) {
+  typename A::Scalar sum = a[0] * b[0];
+  for (std::size_t i = 1; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
 }
 
@@ -73,29 +200,41 @@ Vector<S, 3> cross(const Vector<S, 3>& a, const Vector<S, 3>& b) {
 }
 
 /// X with a X = b, by elimination; the largest value of a column leads. Infinite or NaN where `a` is singular.
-template <class S, std::size_t N, std::size_t C>
-Matrix<S, N, C> solve(Matrix<S, N, N> a, Matrix<S, N, C> b) {
-  for (std::size_t k = 0; k < N; ++k) {
+template <SmallMatrix A, SmallMatrix B>
+B solve(A a, B b) {
+  using S = typename A::Scalar;
+  PKM_EXPECTS(a.rows() == a.cols() && a.rows() == b.rows());
+  const std::size_t n = a.rows(), columns = b.cols();
+  for (std::size_t k = 0; k < n; ++k) {
     std::size_t lead = k;
-    for (std::size_t i = k + 1; i < N; ++i)
+    for (std::size_t i = k + 1; i < n; ++i)
       if (std::fabs(value_of(a(i, k))) > std::fabs(value_of(a(lead, k)))) lead = i;
     if (lead != k) {
-      for (std::size_t j = k; j < N; ++j) std::swap(a(k, j), a(lead, j));
-      for (std::size_t j = 0; j < C; ++j) std::swap(b(k, j), b(lead, j));
+      for (std::size_t j = k; j < n; ++j) std::swap(a(k, j), a(lead, j));
+      for (std::size_t j = 0; j < columns; ++j) std::swap(b(k, j), b(lead, j));
     }
     const S inverse = S(1.0) / a(k, k);
-    for (std::size_t i = k + 1; i < N; ++i) {
+    for (std::size_t i = k + 1; i < n; ++i) {
       const S factor = a(i, k) * inverse;
-      for (std::size_t j = k + 1; j < N; ++j) a(i, j) = a(i, j) - factor * a(k, j);
-      for (std::size_t j = 0; j < C; ++j) b(i, j) = b(i, j) - factor * b(k, j);
+      for (std::size_t j = k + 1; j < n; ++j) a(i, j) = a(i, j) - factor * a(k, j);
+      for (std::size_t j = 0; j < columns; ++j) b(i, j) = b(i, j) - factor * b(k, j);
     }
   }
-  for (std::size_t k = N; k-- > 0;)
-    for (std::size_t j = 0; j < C; ++j) {
-      for (std::size_t i = k + 1; i < N; ++i) b(k, j) = b(k, j) - a(k, i) * b(i, j);
+  for (std::size_t k = n; k-- > 0;)
+    for (std::size_t j = 0; j < columns; ++j) {
+      for (std::size_t i = k + 1; i < n; ++i) b(k, j) = b(k, j) - a(k, i) * b(i, j);
       b(k, j) = b(k, j) / a(k, k);
     }
   return b;
 }
+
+// One number for each coordinate of a pose, or for each joint; and matrices between them.
+inline constexpr std::size_t kMostCoordinates = 6, kMostJoints = 8;
+
+/// N of them, or for N = 0 as many as there are.
+template <class S, std::size_t N = 0>
+using AxisVector = std::conditional_t<N != 0, Vector<S, N>, MatrixUpTo<S, kMostJoints>>;
+template <class S, std::size_t N = 0>
+using AxisMatrix = std::conditional_t<N != 0, Matrix<S, N, N>, MatrixUpTo<S, kMostJoints, kMostJoints>>;
 
 }  // namespace pkm

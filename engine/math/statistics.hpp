@@ -96,9 +96,10 @@ S weighted_deviation(const std::vector<S>& weight, const std::vector<S>& field) 
 /// The value below which the share p of the weight lies, interpolated between the samples in their order: sample k
 /// stands at the weight of half of itself and all before it, between 0 for the first and 1 for the last. With equal
 /// weights that is position p (count - 1), the usual interpolation of order statistics. 0 without samples.
-inline double weighted_quantile(const std::vector<double>& weight, const std::vector<double>& field, double p) {
+/// @param order  overwritten
+inline double weighted_quantile(const std::vector<double>& weight, const std::vector<double>& field, double p,
+                                std::vector<std::size_t>& order) {
   if (field.empty()) return 0;
-  thread_local std::vector<std::size_t> order;
   order.resize(field.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
@@ -112,6 +113,10 @@ inline double weighted_quantile(const std::vector<double>& weight, const std::ve
     left -= step;
   }
   return field[order.back()];
+}
+inline double weighted_quantile(const std::vector<double>& weight, const std::vector<double>& field, double p) {
+  std::vector<std::size_t> order;
+  return weighted_quantile(weight, field, p, order);
 }
 
 }  // namespace pkm

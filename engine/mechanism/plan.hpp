@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace pkm {
@@ -16,28 +17,47 @@ struct LimitSpec {
   std::vector<bool> derived;                 ///< computed from the design's parameters by the mechanism's formula
 };
 
-enum class Method { voxels, columns };
-
-/// The one coordinate that is not swept over: held at a value, at the design's own middle, or integrated over.
+/// One coordinate that is not swept over: held at a value, at the design's own middle, at each of several values (one
+/// survey each, all of the same weight), or integrated over.
 struct HeldCoordinate {
-  enum class Kind { middle, value, integrated };
+  enum class Kind { middle, value, listed, integrated };
+  int coordinate = 0;  ///< which one, of MechanismInfo::coordinates
   Kind kind = Kind::middle;
   double value = 0;
-  std::optional<int> coordinate;  ///< which one, 0 to 3; none: the mechanism's usual one
+  std::vector<double> values = {};  ///< listed
+  std::int64_t cells = 0;           ///< voxels integrated over it: their number
+};
+
+/// Ranges of the swept coordinates, in the order of Sweep::swept; what is not swept has [0, 1].
+using Box = std::array<std::array<double, 2>, 3>;
+
+struct VoxelOptions {
+  std::array<std::int64_t, 3> cells{1, 1, 1};  ///< in the order of Sweep::swept; 1 where nothing is swept
+  std::optional<Box> box;                      ///< none: derived from each design
+};
+
+struct ColumnOptions {
+  double tolerance = 1e-8;     ///< relative
+  std::array<int, 2> nodes{};  ///< fixed nodes per piece and coordinate; 0: chosen from the tolerance
+  std::optional<Box> box;      ///< cuts the workspace, where the mechanism's can be cut
 };
 
 struct SurveyPlan {
-  Method method = Method::columns;
-  HeldCoordinate held;
-  std::vector<double> held_values;  ///< not empty: one survey per value of the held coordinate, each of the same weight
+  std::variant<ColumnOptions, VoxelOptions> method;
+  std::vector<HeldCoordinate> held;  ///< those that the study names; the others of the sweep are in the middle
   LimitSpec limits;
-  std::array<std::int64_t, 3> cells{};  ///< voxels, in the order of Sweep::swept
-  std::int64_t held_cells = 0;          ///< voxels integrated over the held coordinate: its number of cells
-  /// Voxels: none is derived from each design. Columns: cuts the workspace where the mechanism's can be cut.
-  std::optional<std::array<std::array<double, 2>, 3>> box;
-  double tolerance = 1e-8;     ///< columns: relative
-  std::array<int, 2> nodes{};  ///< columns: fixed nodes per piece and coordinate; 0: chosen from the tolerance
+
+  const VoxelOptions* voxels() const { return std::get_if<VoxelOptions>(&method); }
+  const ColumnOptions* columns() const { return std::get_if<ColumnOptions>(&method); }
+  const std::optional<Box>& box() const { return voxels() ? voxels()->box : columns()->box; }
 };
+
+/// How the plan holds a coordinate: in the middle where it does not name it.
+inline HeldCoordinate how_held(const SurveyPlan& plan, int coordinate) {
+  for (const HeldCoordinate& held : plan.held)
+    if (held.coordinate == coordinate) return held;
+  return {.coordinate = coordinate};
+}
 
 /// What objectives and constraints need beyond the volume. The union over all of them is computed in one pass.
 struct Demand {

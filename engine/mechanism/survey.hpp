@@ -27,8 +27,8 @@ struct Survey {
   std::vector<S> weight;
   std::vector<S> conditioning;  ///< inverse condition number of J in [0, 1]
   std::vector<Pose<S>> pose;
-  std::array<std::vector<S>, 4> dci;  ///< dynamic coupling index per joint, in [0, 1]
-  std::vector<S> inertia_condition;   ///< inverse condition number of M_q in [0, 1]
+  std::array<std::vector<S>, kMostJoints> dci;  ///< dynamic coupling index per joint, in [0, 1]; as many as there are
+  std::vector<S> inertia_condition;             ///< inverse condition number of M_q in [0, 1]
 
   void clear() {
     volume = S{};
@@ -73,14 +73,16 @@ void copy_values(const Survey<S>& from, Survey<double>& to) {
   copy(from.weight, to.weight);
   copy(from.conditioning, to.conditioning);
   to.pose.clear();
-  for (const Pose<S>& p : from.pose)
-    to.pose.push_back({value_of(p.x), value_of(p.y), value_of(p.z), value_of(p.angle)});
+  for (const Pose<S>& p : from.pose) {
+    to.pose.emplace_back(p.size());
+    for (std::size_t i = 0; i < p.size(); ++i) to.pose.back()[i] = value_of(p[i]);
+  }
   for (std::size_t i = 0; i < to.dci.size(); ++i) copy(from.dci[i], to.dci[i]);
   copy(from.inertia_condition, to.inertia_condition);
 }
 
 /// Which cells of a voxel box are feasible, for pictures and the study file. Order of axes: Sweep::swept, the last
-/// one fastest.
+/// one fastest; axes behind them have one cell, [0, 1].
 struct VoxelMap {
   std::vector<std::uint8_t> feasible;
   std::int64_t cells[3] = {0, 0, 0};

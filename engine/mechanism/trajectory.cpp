@@ -8,23 +8,24 @@
 namespace pkm {
 namespace {
 
-bool is_finite(const Vector<double, 4>& x) {
-  return std::all_of(x.m.begin(), x.m.end(), [](double value) { return std::isfinite(value); });
+bool is_finite(const AxisVector<double>& x) {
+  return std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
 }
 
-TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points) {
+TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::size_t joints) {
   TrajectorySummary s;
+  s.peak_speed = s.peak_force = s.rms_force = s.peak_power = AxisVector<double>(joints);
   s.has_forces = std::all_of(points.begin(), points.end(), [](const auto& p) { return p.forces.has_value(); });
   const auto n = static_cast<double>(points.size());
   double drawn_before = 0, total_before = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const TrajectoryPoint& p = points[k];
     if (!p.feasible) ++s.infeasible;
-    for (std::size_t i = 0; p.speeds && i < 4; ++i)
+    for (std::size_t i = 0; p.speeds && i < joints; ++i)
       s.peak_speed[i] = std::fmax(s.peak_speed[i], std::fabs((*p.speeds)[i]));
     if (!s.has_forces) continue;
     double total = 0, drawn = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < joints; ++i) {
       const double tau = (*p.forces)[i], power = (*p.power)[i];
       s.peak_force[i] = std::fmax(s.peak_force[i], std::fabs(tau));
       s.rms_force[i] += tau * tau / n;
@@ -42,7 +43,7 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points) {
     total_before = total;
     drawn_before = drawn;
   }
-  for (double& force : s.rms_force.m) force = std::sqrt(force);
+  for (double& force : s.rms_force) force = std::sqrt(force);
   return s;
 }
 
@@ -51,44 +52,48 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points) {
 Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
                   const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench,
                   double phase) {
-  const bool has_dynamics = mechanism.info().has_dynamics, has_chain = !mechanism.info().chain_input.empty();
+  const MechanismInfo& info = mechanism.info();
+  const Dynamics* const dynamics = mechanism.dynamics();
+  const Velocities* const velocities = mechanism.velocities();
+  DriveScratch<double> scratch;
   Trajectory trajectory;
   trajectory.duration = motion.duration();
-  trajectory.periodic = is_periodic(motion);
+  trajectory.periodic = is_periodic(motion, info.coordinates);
   for (const MotionSample& at : sample(motion, count)) {
     TrajectoryPoint point;
     point.motion = at;
     if (!is_finite(at.pose) || !is_finite(at.velocity) || !is_finite(at.acceleration) ||
-        !is_finite({{at.input.angle, at.input.speed, at.input.acceleration, 0}})) {
+        !is_finite({at.input.angle, at.input.speed, at.input.acceleration})) {
       point.reason = "the motion has no finite pose, velocity and acceleration";
       trajectory.points.push_back(std::move(point));
       continue;
     }
-    PoseReport report = mechanism.inspect(parameters, at.as_pose(), mode, limits);
+    PoseReport report = mechanism.inspect(parameters, at.pose, mode, limits);
     point.feasible = report.feasible;
     point.reason = std::move(report.reason);
     if (!point.feasible && point.reason.empty()) point.reason = "not feasible";
     point.conditioning = report.conditioning;
-    if (report.joints) point.joints = {{(*report.joints)}};
-    if (has_dynamics && report.assembles) {
-      drive_along<double>(mechanism, parameters, mode, {&at, 1}, wrench, [&](std::size_t, const Drive<double>& drive) {
+    point.joints = report.joints;
+    if (dynamics && report.assembles) {
+      const auto visit = [&](std::size_t, const Drive<double>& drive) {
         point.speeds = drive.speeds;
         point.accelerations = drive.accelerations;
         if (!is_finite(drive.forces)) return;
         point.forces = drive.forces;
-        point.power.emplace();
-        for (std::size_t i = 0; i < 4; ++i) (*point.power)[i] = drive.power(i);
-      });
-    } else if (mechanism.info().has_influence) {
-      if (const auto joints = mechanism.influence(parameters, at.as_pose(), mode)) {
+        point.power = AxisVector<double>(drive.forces.size());
+        for (std::size_t i = 0; i < drive.forces.size(); ++i) (*point.power)[i] = drive.power(i);
+      };
+      drive_along<double>(*dynamics, parameters, mode, {&at, 1}, wrench, scratch, visit);
+    } else if (velocities) {
+      if (const auto joints = velocities->influence(parameters, at.pose, mode)) {
         point.speeds = joints->G * at.velocity;
-        point.accelerations = accelerations(*joints, at.velocity, at.acceleration);
+        point.accelerations = accelerations<double, 0>(*joints, at.velocity, at.acceleration);
       }
     }
-    if (has_chain) point.chain = mechanism.chain(parameters, at, phase);
+    if (mechanism.chain()) point.chain = mechanism.chain()->report(parameters, at, phase);
     trajectory.points.push_back(std::move(point));
   }
-  trajectory.summary = summarise(trajectory.points);
+  trajectory.summary = summarise(trajectory.points, info.joints.size());
   return trajectory;
 }
 

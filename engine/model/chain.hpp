@@ -14,10 +14,10 @@ struct Turning {
   double angle = 0, speed = 0, acceleration = 0;
 };
 
-/// Derivatives of the output angle by the pose's coordinates and the input angle.
+/// Derivatives of the output angle by the pose's coordinates and, last, the input angle.
 struct ChainInfluence {
-  Vector<double, 5> gradient;
-  Matrix<double, 5, 5> hessian;
+  AxisVector<double> gradient;
+  AxisMatrix<double> hessian;
 };
 
 /// Absolute motion of the output shaft in the fixed frame [rad/s, rad/s^2].

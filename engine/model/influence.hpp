@@ -12,55 +12,65 @@
 
 namespace pkm {
 
-template <class S>
+/// For N coordinates and as many joints; N = 0: for any number.
+template <class S, std::size_t N = 0>
 struct Influence {
-  Matrix<S, 4, 4> G;
-  std::array<Matrix<S, 4, 4>, 4> H;  ///< one symmetric matrix per joint
+  AxisMatrix<S, N> G;                                     ///< joints x coordinates
+  std::array<AxisMatrix<S, N>, N ? N : kMostJoints> H{};  ///< one symmetric matrix per joint
+
+  Influence() = default;
+  /// Of a number known when compiling.
+  template <std::size_t M>
+  requires(N == 0 && M != 0) Influence(const Influence<S, M>& other) : G(other.G) {
+    for (std::size_t i = 0; i < M; ++i) H[i] = other.H[i];
+  }
 };
 
 /// The terms Xdot^T H_i Xdot of the accelerations.
-template <class S>
-Vector<S, 4> velocity_terms(const Influence<S>& influence, const Vector<S, 4>& velocity) {
-  Vector<S, 4> terms;
-  for (std::size_t i = 0; i < 4; ++i) terms[i] = dot(velocity, influence.H[i] * velocity);
+template <class S, std::size_t N>
+AxisVector<S, N> velocity_terms(const Influence<S, N>& influence, const AxisVector<S, N>& velocity) {
+  auto terms = AxisVector<S, N>::zero(influence.G.rows(), 1);
+  for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = dot(velocity, influence.H[i] * velocity);
   return terms;
 }
 
-template <class S>
-Vector<S, 4> accelerations(const Influence<S>& influence, const Vector<S, 4>& velocity,
-                           const Vector<S, 4>& acceleration) {
-  return influence.G * acceleration + velocity_terms(influence, velocity);
+template <class S, std::size_t N>
+AxisVector<S, N> accelerations(const Influence<S, N>& influence, const AxisVector<S, N>& velocity,
+                               const AxisVector<S, N>& acceleration) {
+  return influence.G * acceleration + velocity_terms<S, N>(influence, velocity);
 }
 
 /// The matrices of quadratic forms, from their values form(v) at unit vectors and sums of two of them.
-template <class Form>
-std::array<Matrix<double, 4, 4>, 4> matrices_of(const Form& form) {
-  std::array<Matrix<double, 4, 4>, 4> H;
+template <std::size_t N, class Form>
+std::array<Matrix<double, N, N>, N> matrices_of(const Form& form) {
+  std::array<Matrix<double, N, N>, N> H;
   const auto unit = [](std::size_t j) {
-    Vector<double, 4> v;
+    Vector<double, N> v;
     v[j] = 1;
     return v;
   };
-  for (std::size_t j = 0; j < 4; ++j) {
-    const Vector<double, 4> terms = form(unit(j));
-    for (std::size_t i = 0; i < 4; ++i) H[i](j, j) = terms[i];
+  for (std::size_t j = 0; j < N; ++j) {
+    const Vector<double, N> terms = form(unit(j));
+    for (std::size_t i = 0; i < N; ++i) H[i](j, j) = terms[i];
   }
-  for (std::size_t j = 0; j < 4; ++j)
+  for (std::size_t j = 0; j < N; ++j)
     for (std::size_t k = 0; k < j; ++k) {
-      const Vector<double, 4> terms = form(unit(j) + unit(k));
-      for (std::size_t i = 0; i < 4; ++i) H[i](j, k) = H[i](k, j) = (terms[i] - H[i](j, j) - H[i](k, k)) / 2;
+      const Vector<double, N> terms = form(unit(j) + unit(k));
+      for (std::size_t i = 0; i < N; ++i) H[i](j, k) = H[i](k, j) = (terms[i] - H[i](j, j) - H[i](k, k)) / 2;
     }
   return H;
 }
 
-/// The coefficients back. Infinite or NaN where G is singular.
-template <class S>
-Influence<S> reversed(const Influence<S>& influence) {
-  Influence<S> back;
-  const Matrix<S, 4, 4>& F = back.G = solve(influence.G, Matrix<S, 4, 4>::identity());
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Matrix<S, 4, 4> seen = transpose(F) * influence.H[k] * F;
-    for (std::size_t i = 0; i < 4; ++i) back.H[i] = back.H[i] - seen * F(i, k);
+/// The coefficients back, where there are as many joints as coordinates. Infinite or NaN where G is singular.
+template <class S, std::size_t N>
+Influence<S, N> reversed(const Influence<S, N>& influence) {
+  Influence<S, N> back;
+  const std::size_t n = influence.G.rows();
+  const AxisMatrix<S, N>& F = back.G = solve(influence.G, AxisMatrix<S, N>::identity(n));
+  for (std::size_t i = 0; i < n; ++i) back.H[i] = AxisMatrix<S, N>::zero(n, n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const AxisMatrix<S, N> seen = transpose(F) * influence.H[k] * F;
+    for (std::size_t i = 0; i < n; ++i) back.H[i] = back.H[i] - seen * F(i, k);
   }
   return back;
 }

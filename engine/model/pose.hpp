@@ -1,22 +1,38 @@
-// A pose of a Schoenflies platform, and what a mechanism can say of one pose.
+// A pose of a platform, and what a mechanism can say of one pose.
 #pragma once
 
-#include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
+#include "engine/math/small_matrix.hpp"
 
 namespace pkm {
 
-/// Platform pose in the world frame: position [m] and rotation [rad] about the mechanism's one axis of rotation. What
-/// the rotation is called (theta, phi, beta) is in MechanismInfo::coordinates.
+/// Values of the mechanism's coordinates, in their order (MechanismInfo::coordinates): lengths [m] and angles [rad].
 template <class S>
-struct Pose {
+using Pose = AxisVector<S>;
+
+/// The pose of a platform with three translations and one rotation, by name: what mechanisms with these freedoms
+/// compute with.
+template <class S>
+struct SchoenfliesPose {
   S x{}, y{}, z{}, angle{};
+
+  operator Pose<S>() const { return {x, y, z, angle}; }
+};
+template <class S>
+SchoenfliesPose<S> schoenflies(const MatrixUpTo<S, kMostJoints>& pose) {
+  return {pose[0], pose[1], pose[2], pose[3]};
+}
+
+/// A coordinate of the pose or an actuated joint.
+struct AxisInfo {
+  std::string name;  ///< "x", "q1"
+  std::string unit;  ///< "m" or "rad"
+
+  bool turns() const { return unit == "rad"; }
 };
 
 /// Named numbers in the order in which they are shown.
@@ -24,11 +40,11 @@ using NamedValues = std::vector<std::pair<std::string, double>>;
 
 /// Everything about one pose of one design. What does not exist is absent (printed as null).
 struct PoseReport {
-  bool assembles = false;  ///< the inverse kinematics has a solution in the working mode asked for
-  bool feasible = false;   ///< assembles and every margin >= 0
-  std::string reason;      ///< why it does not assemble, or the first broken margin; "" when feasible
-  std::optional<std::array<double, 4>> joints;  ///< [m], order of MechanismInfo::joints; NaN for one that is not there
-  std::optional<Eigen::Matrix4d> Jq, G, J;      ///< Jq qdot = G V, J = Jq^-1 G (absent when Jq is singular)
+  bool assembles = false;                    ///< the inverse kinematics has a solution in the working mode asked for
+  bool feasible = false;                     ///< assembles and every margin >= 0
+  std::string reason;                        ///< why it does not assemble, or the first broken margin; "" when feasible
+  std::optional<AxisVector<double>> joints;  ///< order of MechanismInfo::joints; NaN for one that is not there
+  std::optional<AxisMatrix<double>> Jq, G, J;  ///< Jq qdot = G V, J = Jq^-1 G (absent when Jq is singular)
   std::optional<double> det_Jq, det_G;
   std::optional<double> conditioning;  ///< inverse condition number in [0, 1]
   NamedValues indices;                 ///< mechanism's own singularity indices

@@ -13,14 +13,15 @@ Taylor at_time(const Formula& formula, double time) {
 
 class FormulasOfTime final : public Motion {
  public:
-  FormulasOfTime(const std::array<Formula, 4>& coordinates, double duration)
-      : coordinates_(coordinates), duration_(duration) {}
+  FormulasOfTime(std::vector<Formula> coordinates, double duration)
+      : coordinates_(std::move(coordinates)), duration_(duration) {}
 
   double duration() const override { return duration_; }
   MotionSample at(double time) const override {
     MotionSample sample;
     sample.time = time;
-    for (std::size_t i = 0; i < 4; ++i) {
+    sample.pose = sample.velocity = sample.acceleration = AxisVector<double>(coordinates_.size());
+    for (std::size_t i = 0; i < coordinates_.size(); ++i) {
       const Taylor x = at_time(coordinates_[i], time);
       sample.pose[i] = x.a;
       sample.velocity[i] = x.d;
@@ -30,7 +31,7 @@ class FormulasOfTime final : public Motion {
   }
 
  private:
-  std::array<Formula, 4> coordinates_;
+  std::vector<Formula> coordinates_;
   double duration_;
 };
 
@@ -57,9 +58,9 @@ std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, c
   return std::make_shared<WithInput>(std::move(motion), input);
 }
 
-std::shared_ptr<const Motion> formulas_of_time(const std::array<Formula, 4>& coordinates, double duration) {
+std::shared_ptr<const Motion> formulas_of_time(std::vector<Formula> coordinates, double duration) {
   PKM_EXPECTS(duration > 0);
-  return std::make_shared<FormulasOfTime>(coordinates, duration);
+  return std::make_shared<FormulasOfTime>(std::move(coordinates), duration);
 }
 
 }  // namespace pkm

@@ -17,14 +17,14 @@ std::vector<MotionSample> sample(const Motion& motion, std::size_t count) {
   return samples;
 }
 
-bool is_periodic(const Motion& motion) {
+bool is_periodic(const Motion& motion, std::span<const AxisInfo> coordinates) {
   constexpr double kSame = 1e-9;
   const MotionSample first = motion.at(0), last = motion.at(motion.duration());
   const auto same = [](double a, double b) { return std::fabs(a - b) <= kSame; };
   const auto no_turn = [&](double turned) { return same(std::remainder(turned, 2 * kPi), 0); };
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const double moved = last.pose[i] - first.pose[i];
-    if (!(i == 3 ? no_turn(moved) : same(moved, 0)) || !same(first.velocity[i], last.velocity[i]) ||
+    if (!(coordinates[i].turns() ? no_turn(moved) : same(moved, 0)) || !same(first.velocity[i], last.velocity[i]) ||
         !same(first.acceleration[i], last.acceleration[i]))
       return false;
   }

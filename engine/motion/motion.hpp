@@ -1,10 +1,11 @@
 // Motions of a platform: the pose, its velocity and acceleration at every time.
 //
-// A motion belongs to no mechanism: it is a curve in (x, y, z, rotation). engine/mechanism/trajectory.hpp follows it
-// with one.
+// A motion belongs to no mechanism: it is a curve in named coordinates. engine/mechanism/trajectory.hpp follows it with
+// a mechanism that has these.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,13 +13,12 @@
 
 namespace pkm {
 
-/// A motion at one time. Order of coordinates: x, y, z [m], rotation [rad].
+/// A motion at one time.
 struct MotionSample {
-  double time = 0;                                       ///< [s]
-  Vector<double, 4> pose{}, velocity{}, acceleration{};  ///< with their derivatives by time
-  Turning input;                                         ///< of the auxiliary chain, where there is one
-
-  Pose<double> as_pose() const { return {pose[0], pose[1], pose[2], pose[3]}; }
+  double time = 0;                            ///< [s]
+  Pose<double> pose;                          ///< in SI units
+  AxisVector<double> velocity, acceleration;  ///< its derivatives by time
+  Turning input;                              ///< of the auxiliary chain, where there is one
 };
 
 /// Immutable, shared by threads.
@@ -42,6 +42,6 @@ std::vector<MotionSample> sample(const Motion& motion, std::size_t count);
 
 /// Whether it ends as it begins (within 1e-9 of a metre, a radian and their rates), so that it can be repeated without
 /// a jump of pose, velocity or acceleration. A full turn counts as none.
-bool is_periodic(const Motion& motion);
+bool is_periodic(const Motion& motion, std::span<const AxisInfo> coordinates);
 
 }  // namespace pkm

@@ -1,7 +1,7 @@
-// The kinds of motions: one maker each. All numbers in SI; poses are x, y, z [m], rotation [rad].
+// The kinds of motions: one maker each. All numbers in SI.
 #pragma once
 
-#include <array>
+#include <optional>
 
 #include "engine/math/formula.hpp"
 #include "engine/motion/motion.hpp"
@@ -9,33 +9,42 @@
 
 namespace pkm {
 
-/// A pause, then a move in a straight line of all four coordinates, from rest to rest.
+/// A pause, then a move in a straight line of all coordinates, from rest to rest.
 struct Move {
-  double wait = 0;       ///< [s], before it
-  Vector<double, 4> to;  ///< where it ends
-  double duration = 0;   ///< [s], > 0
+  double wait = 0;        ///< [s], before it
+  AxisVector<double> to;  ///< where it ends
+  double duration = 0;    ///< [s], > 0
 };
 
 /// From point to point, at rest at each; `wait` [s] at the last.
-std::shared_ptr<const Motion> point_to_point(const Vector<double, 4>& start, const std::vector<Move>& moves,
+std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, const std::vector<Move>& moves,
                                              double wait, TimeLaw law);
 
-/// Time [s] of a move within peak accelerations of the position and of the rotation; an infinite one bounds nothing. 0
+/// Time [s] of a move within peak accelerations of the position and of each angle; an infinite one bounds nothing. 0
 /// where nothing bounded moves.
-double time_within(TimeLaw law, const Vector<double, 4>& from, const Vector<double, 4>& to, double acceleration,
-                   double angular_acceleration);
+double time_within(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
+                   const AxisVector<double>& to, double acceleration, double angular_acceleration);
 
-/// x = x0 + A sin wt, y = y0 + A cos wt, z = z0 + A sin wt, rotation constant; w = 2 pi/period. Source: Transactions of
+/// Which coordinates are x, y, z and the platform's turn, for motions that name them; none: the platform has it not.
+struct SpaceAxes {
+  std::optional<std::size_t> x, y, z, turn;
+};
+/// Lengths called x, y, z; the first angle.
+SpaceAxes space_axes(std::span<const AxisInfo> coordinates);
+
+/// x = x0 + A sin wt, y = y0 + A cos wt, z = z0 + A sin wt, as far as the platform has
+/// them, other coordinates constant; w = 2 pi/period. Source: Transactions of
 /// the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, eq 35.
-std::shared_ptr<const Motion> oscillation(const Vector<double, 4>& centre, double amplitude, double period,
-                                          double cycles);
+std::shared_ptr<const Motion> oscillation(const SpaceAxes& axes, const AxisVector<double>& centre, double amplitude,
+                                          double period, double cycles);
 
 /// The handling cycle: lift, reach along a horizontal line and turn, lower. With t_h = T_v - o, t_d = t_h + T_h - o,
 ///   z = z0 + Q(t, T_v, lift) - Q(t - t_d, T_v, lift)
 ///   (x, y) = (x0, y0) + (cos d, sin d) Q(t - t_h, T_h, reach),   rotation = rotation0 + Q(t - t_h, T_h, turn)
-/// where Q goes from 0 to its last argument by the time law; it takes t_d + T_v.
+/// where Q goes from 0 to its last argument by the time law; it takes t_d + T_v. What does not move needs no axis.
 struct PickAndPlace {
-  Vector<double, 4> start;
+  SpaceAxes axes;
+  AxisVector<double> start;
   double lift = 0.025, reach = 0.305;  ///< [m]
   double lift_time = 0.1;              ///< T_v [s], > 0
   double reach_time = 0.3;             ///< T_h [s], > 0
@@ -48,8 +57,8 @@ struct PickAndPlace {
 };
 std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);
 
-/// Four formulas of the time t [s]; derivatives are exact. What is undefined is NaN in the samples.
-std::shared_ptr<const Motion> formulas_of_time(const std::array<Formula, 4>& coordinates, double duration);
+/// A formula of the time t [s] for each coordinate; derivatives are exact. What is undefined is NaN in the samples.
+std::shared_ptr<const Motion> formulas_of_time(std::vector<Formula> coordinates, double duration);
 
 /// The same motion, with the auxiliary chain's input [rad] as a formula of the time.
 std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, const Formula& input);

@@ -6,30 +6,39 @@ namespace {
 
 class Oscillation final : public Motion {
  public:
-  Oscillation(const Vector<double, 4>& centre, double amplitude, double period, double cycles)
-      : centre_(centre), amplitude_(amplitude), rate_(2 * kPi / period), end_(cycles * period) {}
+  Oscillation(const SpaceAxes& axes, const AxisVector<double>& centre, double amplitude, double period, double cycles)
+      : axes_(axes), centre_(centre), amplitude_(amplitude), rate_(2 * kPi / period), end_(cycles * period) {}
 
   double duration() const override { return end_; }
   MotionSample at(double time) const override {
     const auto [s, c] = sincos(rate_ * time);
     const double A = amplitude_, v = A * rate_, a = v * rate_;
-    return {time,
-            centre_ + Vector<double, 4>{{A * s, A * c, A * s, 0}},
-            {{v * c, -v * s, v * c, 0}},
-            {{-a * s, -a * c, -a * s, 0}}};
+    const AxisVector<double> still(centre_.size());
+    MotionSample sample{time, centre_, still, still, {}};
+    const auto add = [&](std::optional<std::size_t> axis, double way, double speed, double acceleration) {
+      if (!axis) return;
+      sample.pose[*axis] += way;
+      sample.velocity[*axis] = speed;
+      sample.acceleration[*axis] = acceleration;
+    };
+    add(axes_.x, A * s, v * c, -a * s);
+    add(axes_.y, A * c, -v * s, -a * c);
+    add(axes_.z, A * s, v * c, -a * s);
+    return sample;
   }
 
  private:
-  Vector<double, 4> centre_;
+  SpaceAxes axes_;
+  AxisVector<double> centre_;
   double amplitude_, rate_, end_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Motion> oscillation(const Vector<double, 4>& centre, double amplitude, double period,
-                                          double cycles) {
+std::shared_ptr<const Motion> oscillation(const SpaceAxes& axes, const AxisVector<double>& centre, double amplitude,
+                                          double period, double cycles) {
   PKM_EXPECTS(period > 0 && cycles > 0);
-  return std::make_shared<Oscillation>(centre, amplitude, period, cycles);
+  return std::make_shared<Oscillation>(axes, centre, amplitude, period, cycles);
 }
 
 }  // namespace pkm

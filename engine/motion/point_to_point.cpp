@@ -9,8 +9,8 @@ namespace {
 
 class PointToPoint final : public Motion {
  public:
-  PointToPoint(const Vector<double, 4>& start, const std::vector<Move>& moves, double wait, TimeLaw law) : law_(law) {
-    Vector<double, 4> from = start;
+  PointToPoint(const AxisVector<double>& start, const std::vector<Move>& moves, double wait, TimeLaw law) : law_(law) {
+    AxisVector<double> from = start;
     for (const Move& move : moves) {
       PKM_EXPECTS(move.duration > 0 && move.wait >= 0);
       end_ += move.wait;
@@ -28,7 +28,7 @@ class PointToPoint final : public Motion {
         std::upper_bound(legs_.begin(), legs_.end(), time, [](double t, const Leg& leg) { return t < leg.begin; });
     const Leg& leg = after == legs_.begin() ? legs_.front() : *(after - 1);
     const Advance share = advance(law_, time - leg.begin, leg.duration, 1);
-    const Vector<double, 4> way = leg.to - leg.from;
+    const AxisVector<double> way = leg.to - leg.from;
     MotionSample sample;
     sample.time = time;
     sample.pose = leg.from + way * share.way;
@@ -41,7 +41,7 @@ class PointToPoint final : public Motion {
  private:
   struct Leg {
     double begin, duration;
-    Vector<double, 4> from, to;
+    AxisVector<double> from, to;
   };
   std::vector<Leg> legs_;
   double end_ = 0;
@@ -50,17 +50,36 @@ class PointToPoint final : public Motion {
 
 }  // namespace
 
-std::shared_ptr<const Motion> point_to_point(const Vector<double, 4>& start, const std::vector<Move>& moves,
+std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, const std::vector<Move>& moves,
                                              double wait, TimeLaw law) {
   PKM_EXPECTS(!moves.empty());
   return std::make_shared<PointToPoint>(start, moves, wait, law);
 }
 
-double time_within(TimeLaw law, const Vector<double, 4>& from, const Vector<double, 4>& to, double acceleration,
-                   double angular_acceleration) {
-  const Vector<double, 4> way = to - from;
-  const double distance = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
-  return std::max(time_of_move(law, distance, acceleration), time_of_move(law, way[3], angular_acceleration));
+double time_within(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
+                   const AxisVector<double>& to, double acceleration, double angular_acceleration) {
+  const AxisVector<double> way = to - from;
+  double square = 0, time = 0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (coordinates[i].turns())
+      time = std::max(time, time_of_move(law, way[i], angular_acceleration));
+    else
+      square += way[i] * way[i];
+  }
+  return std::max(time_of_move(law, std::sqrt(square), acceleration), time);
+}
+
+SpaceAxes space_axes(std::span<const AxisInfo> coordinates) {
+  SpaceAxes axes;
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const AxisInfo& axis = coordinates[i];
+    if (axis.turns() && !axes.turn) axes.turn = i;
+    if (axis.turns()) continue;
+    if (axis.name == "x") axes.x = i;
+    if (axis.name == "y") axes.y = i;
+    if (axis.name == "z") axes.z = i;
+  }
+  return axes;
 }
 
 }  // namespace pkm

@@ -15,6 +15,8 @@
 
 #include "engine/core/options.hpp"
 #include "engine/problem/evaluator.hpp"
+#include "engine/problem/front.hpp"
+#include "engine/problem/start_outcome.hpp"
 
 namespace pkm {
 
@@ -30,30 +32,6 @@ struct Capabilities {
   bool needs_gradient = false;  ///< refuses surveys without derivative (voxels)
   bool starts = false;          ///< works on from given designs, several if asked
   bool needs_front = false;     ///< works on from a front that a stage before it has found
-};
-
-/// How one start of a solver ended.
-struct StartOutcome {
-  std::string origin;          ///< where the start came from: "best so far", "Sobol point 3"
-  std::int64_t first_row = 0;  ///< of its evaluations; this one is the start itself
-  std::int64_t rows = 0;       ///< evaluations made
-  std::int64_t end_row = 0;    ///< what is kept: the best of start, all that was seen and what the solver returned
-  std::string stop;            ///< "converged", "evaluation limit", "time limit" or "failed"
-  std::string message;         ///< what the solver said
-  /// Norm of the projected gradient at the end (see optimality.hpp); NaN where the stage has no derivatives.
-  double optimality = 0;
-};
-
-/// A trade-off: feasible designs of a stage that no other one dominates (as many as an archive's limit allows); of a
-/// solver stage the ends of its starts.
-struct Front {
-  std::vector<std::int64_t> rows;  ///< of the stage's table; the best by the first objective first
-  /// Corner of the hypervolume, in the objectives' units, and what it encloses with the front: only what is better than
-  /// the corner in every objective counts. Empty and NaN while there is none.
-  std::vector<double> reference = {};
-  double hypervolume = std::numeric_limits<double>::quiet_NaN();
-  double spread = std::numeric_limits<double>::quiet_NaN();    ///< of the population's part of it (see diversity.hpp)
-  double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< to the reference front; NaN where none is given
 };
 
 /// What an optimiser tells after each batch of evaluations ("generation").
@@ -76,22 +54,6 @@ class Monitor {
   /// Something that the user must be told, one sentence.
   virtual void warn(const std::string& sentence) = 0;
 };
-
-enum class StopReason {
-  generations,
-  evaluations,
-  target,
-  stall,
-  tolerance,
-  exhausted,
-  interrupted,
-  time,
-  failed,
-  starts,  ///< every start has come to its own end
-};
-
-/// "generation limit", ...: the words of the screen and the study file.
-std::string_view words(StopReason reason);
 
 struct StageResult {
   StopReason reason = StopReason::generations;

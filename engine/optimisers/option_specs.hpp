@@ -12,32 +12,32 @@ namespace pkm {
 /// An option without unit in [lower, upper]. No initial value: the option may be absent.
 inline OptionSpec number_option(std::string name, std::optional<OptionValue> initial, double lower, double upper,
                                 std::string meaning) {
-  return {std::move(name), OptionKind::number, "1", std::move(initial), false, lower, upper, {}, std::move(meaning)};
+  return {.name = std::move(name),
+          .kind = OptionKind::number,
+          .initial = std::move(initial),
+          .lower = lower,
+          .upper = upper,
+          .meaning = std::move(meaning)};
 }
 
 inline OptionSpec integer_option(std::string name, std::optional<OptionValue> initial, double lower, double upper,
                                  std::string meaning) {
-  return {std::move(name), OptionKind::integer, "1", std::move(initial), false, lower, upper, {}, std::move(meaning)};
+  OptionSpec spec = number_option(std::move(name), std::move(initial), lower, upper, std::move(meaning));
+  spec.kind = OptionKind::integer;
+  return spec;
 }
 
 /// The first choice is the default.
 inline OptionSpec word_option(std::string name, std::vector<std::string> choices, std::string meaning) {
-  OptionSpec spec;
-  spec.name = std::move(name);
-  spec.kind = OptionKind::word;
-  spec.initial = choices.front();
-  spec.choices = std::move(choices);
-  spec.meaning = std::move(meaning);
-  return spec;
+  return {.name = std::move(name),
+          .kind = OptionKind::word,
+          .initial = choices.front(),
+          .choices = std::move(choices),
+          .meaning = std::move(meaning)};
 }
 
 inline OptionSpec flag_option(std::string name, bool initial, std::string meaning) {
-  OptionSpec spec;
-  spec.name = std::move(name);
-  spec.kind = OptionKind::flag;
-  spec.initial = initial;
-  spec.meaning = std::move(meaning);
-  return spec;
+  return {.name = std::move(name), .kind = OptionKind::flag, .initial = initial, .meaning = std::move(meaning)};
 }
 
 }  // namespace pkm

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/optimisers/evolutionary/order.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/front_keeper.hpp"
 #include "engine/optimisers/option_specs.hpp"
+#include "engine/problem/order.hpp"
 
 namespace pkm {
 namespace {
@@ -46,15 +46,19 @@ class Batches {
   bool finish_generation() {
     input_.evaluator.evaluate(input_.problem, table_, first_);
     for (std::size_t row = first_; row < table_.size(); ++row) {
-      const Ranked candidate = ranked(input_.problem, table_, row);
+      const Ranked candidate = ranked(input_.problem.objectives(), table_, row);
       if (best_.row < 0 || candidate < best_) best_ = candidate;
     }
     rows_.resize(table_.size() - first_);
     std::iota(rows_.begin(), rows_.end(), static_cast<std::int64_t>(first_));
     const std::size_t first = std::exchange(first_, table_.size());
     if (front_) front_->add(rows_);
-    return input_.monitor.generation(
-        {generation_++, first, &table_, &rows_, best_row(), nullptr, front_ ? &front_->front() : nullptr});
+    return input_.monitor.generation({.number = generation_++,
+                                      .first_row = first,
+                                      .table = &table_,
+                                      .population = &rows_,
+                                      .best_row = best_row(),
+                                      .front = front_ ? &front_->front() : nullptr});
   }
 
   std::size_t pending() const { return table_.size() - first_; }
@@ -157,22 +161,17 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
   return std::make_unique<Sweep>(std::move(levels), factorial);
 }
 
-Capabilities capabilities(const Options&) {
-  Capabilities can;
-  can.min_objectives = 0;
-  can.max_objectives = kManyObjectives;
-  return can;
-}
-
 }  // namespace
 
 OptimiserEntry sweep() {
-  return {"sweep",
-          "designs on a grid, one variable at a time or every combination",
-          capabilities,
-          {word_option("design", {"one-at-a-time", "full-factorial"}, "which designs"),
-           integer_option("points", std::int64_t{41}, 2, 1e6, "values of each variable, both bounds included")},
-          make};
+  return {
+      .name = "sweep",
+      .meaning = "designs on a grid, one variable at a time or every combination",
+      .capabilities =
+          [](const Options&) { return Capabilities{.min_objectives = 0, .max_objectives = kManyObjectives}; },
+      .options = {word_option("design", {"one-at-a-time", "full-factorial"}, "which designs"),
+                  integer_option("points", std::int64_t{41}, 2, 1e6, "values of each variable, both bounds included")},
+      .make = make};
 }
 
 }  // namespace pkm

@@ -5,7 +5,7 @@
 
 namespace pkm {
 
-inline bool has_jacobian(const MechanismInfo& mechanism) { return !mechanism.characteristic_length.empty(); }
+inline bool has_jacobian(const Mechanism& mechanism) { return !mechanism.info().characteristic_length.empty(); }
 
 inline OptionSpec characteristic_length_option() {
   return {.name = "characteristic_length",

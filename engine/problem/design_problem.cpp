@@ -33,27 +33,32 @@ std::unique_ptr<const Surveyor> prepare(const ProblemParts& parts, std::size_t s
 
 }  // namespace
 
-std::string no_derivatives(const ProblemParts& parts) {
-  const std::vector<bool> used = used_surveys(parts);
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    if (!used[k]) continue;
-    const SurveyPlan& plan = k == 0 ? parts.plan : parts.regions[k - 1].plan;
-    if (plan.method == Method::voxels) return voxels_have_no_derivatives();
-    if (const std::string reason = prepare(parts, k)->no_derivatives(); !reason.empty()) return reason;
-  }
-  for (const auto* list : {&parts.objectives, &parts.design_margins, &parts.survey_margins})
-    for (const auto& q : *list)
-      if (const std::string reason = q.quantity->no_derivatives(); !reason.empty()) return reason;
-  return {};
-}
+struct DesignProblem::Room {
+  std::vector<double> parameters;
+  std::vector<Dual4> duals;  ///< the parameters
+  Surveys<double> surveys;
+  Surveys<Dual4> dual_surveys;
+};
 
-DesignProblem::DesignProblem(ProblemParts parts)
-    : parts_(std::move(parts)), used_(used_surveys(parts_)), no_derivatives_(pkm::no_derivatives(parts_)) {
+DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), used_(used_surveys(parts_)) {
   for (std::size_t k = 0; k < used_.size(); ++k) surveyors_.push_back(prepare(parts_, k));
   for (const auto& q : parts_.objectives) objectives_.push_back({q.name, q.unit, q.meaning, q.direction});
   for (const auto* list : {&parts_.design_margins, &parts_.survey_margins})
     for (const auto& q : *list) margins_.push_back({q.name, q.unit, q.meaning});
   for (const auto& q : parts_.reports) reports_.push_back({q.name, q.unit, q.meaning});
+}
+
+Refusal DesignProblem::no_derivatives() const {
+  for (std::size_t k = 0; k < used_.size(); ++k) {
+    if (!used_[k]) continue;
+    const SurveyPlan& plan = k == 0 ? parts_.plan : parts_.regions[k - 1].plan;
+    if (plan.voxels()) return voxels_have_no_derivatives();
+    if (!surveyors_[k]->slopes()) return surveyors_[k]->why_no_slopes();
+  }
+  for (const auto* list : {&parts_.objectives, &parts_.design_margins, &parts_.survey_margins})
+    for (const auto& q : *list)
+      if (const std::string reason = q.quantity->no_derivatives(); !reason.empty()) return reason;
+  return {};
 }
 
 std::vector<double> DesignProblem::parameters(std::span<const double> design) const {
@@ -62,19 +67,25 @@ std::vector<double> DesignProblem::parameters(std::span<const double> design) co
   return all;
 }
 
+Survey<double> DesignProblem::workspace(std::span<const double> parameters) const {
+  Survey<double> survey;
+  survey_once(*surveyors_.front(), parameters, survey);
+  return survey;
+}
+
 template <class S>
-void DesignProblem::survey(std::span<const S> parameters, bool all, Surveys<S>& surveys) const {
+void DesignProblem::survey(std::span<const S> parameters, bool all, Scratch& scratch, Surveys<S>& surveys) const {
   surveys.resize(surveyors_.size());
   for (std::size_t k = 0; k < surveyors_.size(); ++k)
     if (used_[k] || (all && k == 0))
-      surveyors_[k]->survey(parameters, surveys[k]);
+      run_survey(*surveyors_[k], parameters, scratch, surveys[k]);
     else
       surveys[k].clear();
 }
 
-Status DesignProblem::compute(std::span<const double> parameters, Surveys<double>& surveys,
-                              EvaluationSlot result) const {
-  DesignView<double> view{*parts_.mechanism, parameters, nullptr};
+Status DesignProblem::compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const {
+  Surveys<double>& surveys = scratch.get<Room>().surveys;
+  DesignView<double> view{*parts_.mechanism, parameters, nullptr, scratch};
   bool holds = true, usable = true;
   const auto put = [&](double& place, double value) {
     place = value;
@@ -89,10 +100,10 @@ Status DesignProblem::compute(std::span<const double> parameters, Surveys<double
   if (rejected && result.detail == Detail::enough) return Status::rejected;
 
   if (result.detail == Detail::derivatives) {
-    differentiate(parameters, parts_.varies, result.slopes, surveys);
+    differentiate(parameters, parts_.varies, result.slopes, scratch);
     for (const double slope : result.slopes) usable = usable && std::isfinite(slope);
   } else {
-    survey(parameters, result.detail == Detail::complete, surveys);
+    survey(parameters, result.detail == Detail::complete, scratch, surveys);
   }
   const auto value = [&](const NamedQuantity& q) {
     view.survey = &surveys[q.survey];
@@ -107,19 +118,21 @@ Status DesignProblem::compute(std::span<const double> parameters, Surveys<double
 }
 
 void DesignProblem::differentiate(std::span<const double> parameters, std::span<const std::size_t> by,
-                                  std::span<double> slopes, Surveys<double>& surveys) const {
+                                  std::span<double> slopes, Scratch& scratch) const {
   constexpr std::size_t kDirections = 4;
-  thread_local std::vector<Dual4> all;
-  thread_local Surveys<Dual4> dual_surveys;
+  Room& room = scratch.get<Room>();
+  std::vector<Dual4>& all = room.duals;
+  Surveys<double>& surveys = room.surveys;
+  Surveys<Dual4>& dual_surveys = room.dual_surveys;
   const std::size_t width = 1 + by.size();
   for (std::size_t first = 0; first < std::max<std::size_t>(by.size(), 1); first += kDirections) {
     const std::size_t count = std::min(kDirections, by.size() - first);
     all.assign(parameters.begin(), parameters.end());
     for (std::size_t k = 0; k < count; ++k) all[by[first + k]].v[static_cast<int>(k)] = 1;
-    survey(std::span<const Dual4>(all), false, dual_surveys);
+    survey(std::span<const Dual4>(all), false, scratch, dual_surveys);
     surveys.resize(dual_surveys.size());
     for (std::size_t k = 0; first == 0 && k < surveys.size(); ++k) copy_values(dual_surveys[k], surveys[k]);
-    DesignView<Dual4> view{*parts_.mechanism, all, nullptr};
+    DesignView<Dual4> view{*parts_.mechanism, all, nullptr, scratch};
     std::size_t row = 0;
     const auto put = [&](const Dual4& value) {
       const auto at = slopes.subspan(width * row++, width);
@@ -143,18 +156,17 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
 
 std::vector<double> DesignProblem::slopes(std::span<const double> parameters, std::span<const std::size_t> by) const {
   std::vector<double> slopes((objectives_.size() + margins_.size()) * (1 + by.size()));
-  Surveys<double> surveys;
-  differentiate(parameters, by, slopes, surveys);
+  Scratch scratch;
+  differentiate(parameters, by, slopes, scratch);
   return slopes;
 }
 
-void DesignProblem::evaluate(std::span<const double> design, EvaluationSlot result) const {
-  thread_local Surveys<double> surveys;
-  thread_local std::vector<double> all;
+void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const {
+  std::vector<double>& all = scratch.get<Room>().parameters;
   try {
     all.assign(parts_.parameters.begin(), parts_.parameters.end());
     for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
-    result.status = compute(all, surveys, result);
+    result.status = compute(all, scratch, result);
   } catch (const std::exception&) {
     result.status = Status::failed;
   }
@@ -162,7 +174,8 @@ void DesignProblem::evaluate(std::span<const double> design, EvaluationSlot resu
 
 /// The words of the first quantity without a finite value that has some; margins come first, as they are computed.
 std::string DesignProblem::why_failed(const DesignReport& report) const {
-  const DesignView<double> view{*parts_.mechanism, report.parameters, &report.survey};
+  Scratch scratch;
+  const DesignView<double> view{*parts_.mechanism, report.parameters, &report.survey, scratch};
   std::vector<std::pair<const NamedQuantity*, double>> computed;
   std::size_t margin = 0;
   for (const auto* list : {&parts_.design_margins, &parts_.survey_margins})
@@ -185,10 +198,10 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
   report.margins.assign(margins_.size(), nan);
   report.reports.assign(reports_.size(), nan);
   try {
-    Surveys<double> surveys;
-    report.status = compute(parameters, surveys,
+    Scratch scratch;
+    report.status = compute(parameters, scratch,
                             {report.objectives, report.margins, report.reports, report.status, Detail::complete});
-    if (!surveys.empty()) report.survey = std::move(surveys.front());
+    if (auto& surveys = scratch.get<Room>().surveys; !surveys.empty()) report.survey = std::move(surveys.front());
     if (report.status == Status::failed) report.reason = why_failed(report);
   } catch (const std::exception& error) {
     report.status = Status::failed;

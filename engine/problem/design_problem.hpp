@@ -37,10 +37,6 @@ struct ProblemParts {
   std::vector<NamedQuantity> reports;
 };
 
-/// "" or one sentence saying why the problem has no derivatives: a survey that is read or a quantity lacks them. Throws
-/// std::invalid_argument where the mechanism cannot serve a survey's plan.
-std::string no_derivatives(const ProblemParts& parts);
-
 /// All that is known of one design, for the command line and /final.
 struct DesignReport {
   std::vector<double> parameters;
@@ -52,18 +48,22 @@ struct DesignReport {
 
 class DesignProblem final : public Problem {
  public:
+  /// Throws std::invalid_argument where the mechanism cannot serve a survey's plan.
   explicit DesignProblem(ProblemParts parts);
 
   const DesignSpace& space() const override { return parts_.space; }
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
   const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level ones first
   const std::vector<ReportInfo>& reports() const override { return reports_; }
-  void evaluate(std::span<const double> design, EvaluationSlot result) const override;
-  std::string no_derivatives() const override { return no_derivatives_; }
+  void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const override;
+  /// A survey that is read or a quantity lacks them.
+  Refusal no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
   /// All parameters of a design given by its variables.
   std::vector<double> parameters(std::span<const double> design) const;
+  /// The survey of the workspace alone.
+  Survey<double> workspace(std::span<const double> parameters) const;
   /// Evaluates a full parameter vector (a baseline may lie outside the variables' bounds). Computes what it can even
   /// where a design-level margin is violated.
   DesignReport report(std::span<const double> parameters) const;
@@ -76,18 +76,19 @@ class DesignProblem final : public Problem {
   template <class S>
   using Surveys = std::vector<Survey<S>>;
 
-  Status compute(std::span<const double> parameters, Surveys<double>& surveys, EvaluationSlot result) const;
+  struct Room;  ///< what evaluations overwrite
+
+  Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const;
   std::string why_failed(const DesignReport& report) const;
-  /// Fills `slopes`; `surveys` receive the surveys' values.
+  /// Fills `slopes`; the surveys of the scratch receive the values.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> slopes,
-                     Surveys<double>& surveys) const;
+                     Scratch& scratch) const;
   template <class S>
-  void survey(std::span<const S> parameters, bool all, Surveys<S>& surveys) const;
+  void survey(std::span<const S> parameters, bool all, Scratch& scratch, Surveys<S>& surveys) const;
 
   ProblemParts parts_;
   std::vector<std::unique_ptr<const Surveyor>> surveyors_;
   std::vector<bool> used_;  ///< whether a quantity reads the survey
-  std::string no_derivatives_;
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;
   std::vector<ReportInfo> reports_;

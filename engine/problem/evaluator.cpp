@@ -20,10 +20,10 @@ bool contradicts(const EvaluationSlot& slot) {
          std::any_of(slot.margins.begin(), slot.margins.end(), [](double m) { return !(m >= 0); });
 }
 
-void evaluate_row(const Problem& problem, EvaluationTable& table, std::size_t row) {
+void evaluate_row(const Problem& problem, EvaluationTable& table, std::size_t row, Scratch& scratch) {
   const EvaluationSlot slot = table.slot(row);
   try {
-    problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), slot);
+    problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, slot);
     if (contradicts(slot)) slot.status = Status::failed;
   } catch (...) {  // whatever went wrong belongs to this design alone
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -33,10 +33,11 @@ void evaluate_row(const Problem& problem, EvaluationTable& table, std::size_t ro
 }
 
 // Rows [first, last), each with its time. One reading of the clock ends a row and begins the next.
-void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t first, std::size_t last) {
+void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t first, std::size_t last,
+                   Scratch& scratch) {
   auto begin = Clock::now();
   for (std::size_t row = first; row < last; ++row) {
-    evaluate_row(problem, table, row);
+    evaluate_row(problem, table, row, scratch);
     const auto end = Clock::now();
     table.seconds[row] = std::chrono::duration<float>(end - begin).count();
     begin = end;
@@ -54,23 +55,26 @@ double seconds_each(const EvaluationTable& table, std::size_t first) {
 }  // namespace
 
 void SerialEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
-  evaluate_rows(problem, table, first, table.size());
+  evaluate_rows(problem, table, first, table.size(), scratch_);
 }
 
 void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   constexpr double kWorthSharing = 5e-6, kLong = 200e-6;  // s
-  const std::size_t end = table.size(), count = end - first, team = static_cast<std::size_t>(threads());
+  const std::size_t end = table.size(), count = end - first;
   const double each = seconds_each(table, first);
-  const std::size_t rounds = (count + team - 1) / team;
-  const bool uneven = 4 * count < 3 * rounds * team;  // shared out, a quarter of the threads' time would be waiting
-  if (team == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing))
-    return evaluate_rows(problem, table, first, end);
-  if (count == 1 || (uneven && each > kLong)) {
-    const LentTeam within(team_);
-    return evaluate_rows(problem, table, first, end);
+  if (threads_ == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing)) {
+    const WithoutTeam alone;
+    return evaluate_rows(problem, table, first, end, scratch_.front());
   }
-  team_.share(count,
-              [&](std::size_t begin, std::size_t stop) { evaluate_rows(problem, table, first + begin, first + stop); });
+  with_team(threads_, [&] {
+    const std::size_t team = workers(), rounds = (count + team - 1) / team;
+    if (scratch_.size() < team) scratch_.resize(team);
+    const bool uneven = 4 * count < 3 * rounds * team;  // shared out, a quarter of the threads' time would be waiting
+    if (uneven && each > kLong) return evaluate_rows(problem, table, first, end, scratch_.front());
+    share_pieces(count, [&](std::size_t begin, std::size_t stop, std::size_t worker) {  // of one design, what is within
+      evaluate_rows(problem, table, first + begin, first + stop, scratch_[worker]);
+    });
+  });
 }
 
 }  // namespace pkm

@@ -22,19 +22,24 @@ class Evaluator {
 class SerialEvaluator final : public Evaluator {
  public:
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
+
+ private:
+  Scratch scratch_;
 };
 
 /// By a team of threads: it shares out the designs, or, where they are few and take long, what surveys have to share
-/// out within each.
+/// out within each. The team is the caller's; outside with_team() one is made for each call, which a run of many calls
+/// is better without.
 class ParallelEvaluator final : public Evaluator {
  public:
-  /// @param threads  0: as many as the machine has cores
-  explicit ParallelEvaluator(int threads = 0) : team_(threads) {}
+  /// @param threads  as for team_size(); within with_team(), 1 or those of the team
+  explicit ParallelEvaluator(int threads = 0) : threads_(team_size(threads)), scratch_(1) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
-  int threads() const { return team_.threads(); }
+  int threads() const { return threads_; }
 
  private:
-  Team team_;
+  int threads_;
+  std::vector<Scratch> scratch_;  ///< of each worker
 };
 
 }  // namespace pkm

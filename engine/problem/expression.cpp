@@ -11,26 +11,35 @@
 #include "engine/problem/survey_results.hpp"
 
 namespace pkm {
+namespace {
+
+template <class S>
+struct Room {
+  std::vector<S> values, thresholds, stack;
+};
+
+}  // namespace
 
 using Origin = ExpressionName::Origin;
 
-std::vector<ExpressionName> expression_names(const MechanismInfo& mechanism, const SurveyPlan& plan) {
+std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const SurveyPlan& plan) {
+  const MechanismInfo& info = mechanism.info();
   std::vector<ExpressionName> names;
-  for (std::size_t i = 0; i < mechanism.parameters.size(); ++i) {
-    const Parameter& parameter = mechanism.parameters[i];
-    if (find_named(mechanism.limits, parameter.name)) continue;  // known as the threshold in force
+  for (std::size_t i = 0; i < info.parameters.size(); ++i) {
+    const Parameter& parameter = info.parameters[i];
+    if (find_named(info.limits, parameter.name)) continue;  // known as the threshold in force
     names.push_back({parameter.name, parameter.unit, parameter.meaning, Origin::parameter, i});
   }
-  for (std::size_t i = 0; i < mechanism.limits.size(); ++i) {
-    const LimitInfo& limit = mechanism.limits[i];
+  for (std::size_t i = 0; i < info.limits.size(); ++i) {
+    const LimitInfo& limit = info.limits[i];
     names.push_back({limit.name, limit.unit, "threshold in force: " + limit.meaning, Origin::threshold, i});
   }
-  if (!mechanism.size_unit.empty())
-    names.push_back({"size", mechanism.size_unit, mechanism.size_meaning, Origin::size, 0});
+  if (const Size* const size = mechanism.size())
+    names.push_back({"size", size->unit(), size->meaning(), Origin::size, 0});
   for (std::size_t i = 0; i < survey_results().size(); ++i) {
     const SurveyResult& result = survey_results()[i];
     if (result.available(mechanism))
-      names.push_back({result.name, result.unit(mechanism, plan), result.meaning, Origin::survey, i});
+      names.push_back({result.name, result.unit(info, plan), result.meaning, Origin::survey, i});
   }
   return names;
 }
@@ -52,7 +61,7 @@ std::vector<OptionSpec> expression_options() {
 }
 
 Expression::Expression(const EntryContext& context)
-    : names_(expression_names(context.mechanism.info(), context.plan)),
+    : names_(expression_names(context.mechanism, context.plan)),
       formula_(context.options.word("expression"), names_of(names_)),
       limits_(context.plan.limits),
       sharpness_(context.options.number("sharpness")) {
@@ -85,10 +94,10 @@ void Expression::refuse_idle_options(const Options& options, const Demand& deman
 
 template <class S>
 S Expression::value(const DesignView<S>& design) const {
-  thread_local std::vector<S> values, thresholds;
+  auto& [values, thresholds, stack] = design.scratch.template get<Room<S>>();
   values.resize(names_.size());
   thresholds.resize(limits_.given.size());
-  if (uses(Origin::threshold)) design.mechanism.thresholds(design.parameters, limits_, std::span<S>(thresholds));
+  if (uses(Origin::threshold)) find_thresholds<S>(design.mechanism, design.parameters, limits_, thresholds);
   for (const std::size_t i : formula_.used()) {
     const auto& [name, unit, meaning, origin, index] = names_[i];
     switch (origin) {
@@ -99,16 +108,16 @@ S Expression::value(const DesignView<S>& design) const {
         values[i] = thresholds[index];
         break;
       case Origin::size:
-        values[i] = design.mechanism.size(design.parameters);
+        values[i] = size_of<S>(design.mechanism, design.parameters);
         break;
       case Origin::survey:
         if constexpr (std::is_same_v<S, double>)
-          values[i] = survey_results()[index].value(*design.survey);
+          values[i] = survey_results()[index].value(*design.survey, design.scratch);
         else
-          values[i] = survey_results()[index].smooth(*design.survey, sharpness_);
+          values[i] = survey_results()[index].smooth(*design.survey, sharpness_, design.scratch);
     }
   }
-  return formula_.value(std::span<const S>(values));
+  return formula_.value(std::span<const S>(values), stack);
 }
 
 template double Expression::value(const DesignView<double>&) const;

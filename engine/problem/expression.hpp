@@ -24,7 +24,7 @@ struct ExpressionName {
 };
 
 /// Every name that the expressions of a mechanism know; `pi` and the functions are the formula's own.
-std::vector<ExpressionName> expression_names(const MechanismInfo& mechanism, const SurveyPlan& plan);
+std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const SurveyPlan& plan);
 
 /// The options of every entry made of an expression.
 std::vector<OptionSpec> expression_options();

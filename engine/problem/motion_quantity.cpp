@@ -34,6 +34,11 @@ Wrench<double> wrench_of(const Options& options) {
   return wrench;
 }
 
+template <class S>
+struct Loads {
+  std::vector<S> of_samples;
+};
+
 class AlongMotion final : public Quantity {
  public:
   AlongMotion(const EntryContext& context, AppendLoads<double> append, AppendLoads<Dual4> append_smooth)
@@ -46,14 +51,14 @@ class AlongMotion final : public Quantity {
         append_(append),
         append_smooth_(append_smooth) {
     for (const MotionSample& at : samples_)
-      for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t i = 0; i < at.pose.size(); ++i)
         if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
           throw std::invalid_argument("the motion " + name_ + " has no finite pose, velocity and acceleration at t = " +
                                       with_unit(at.time, "s"));
   }
 
   double value(const DesignView<double>& design) const override {
-    thread_local std::vector<double> loads;
+    std::vector<double>& loads = design.scratch.get<Loads<double>>().of_samples;
     if (collect(design, append_, loads) < samples_.size()) return std::numeric_limits<double>::quiet_NaN();
     double greatest = 0;
     for (const double load : loads) {
@@ -63,7 +68,7 @@ class AlongMotion final : public Quantity {
     return greatest;
   }
   Dual4 smooth(const DesignView<Dual4>& design) const override {
-    thread_local std::vector<Dual4> loads;
+    std::vector<Dual4>& loads = design.scratch.get<Loads<Dual4>>().of_samples;
     if (collect(design, append_smooth_, loads) < samples_.size())
       return Dual4(std::numeric_limits<double>::quiet_NaN());
     return power_mean(loads, sharpness_);
@@ -74,7 +79,7 @@ class AlongMotion final : public Quantity {
     if (last < samples_.size()) {
       const MotionSample& at = samples_[last];
       const PoseReport report =
-          design.mechanism.inspect(design.parameters, at.as_pose(), mode_, no_limits(design.mechanism.info()));
+          design.mechanism.inspect(design.parameters, at.pose, mode_, no_limits(design.mechanism.info()));
       return "the motion " + name_ + " leaves the reach of the mechanism at t = " + with_unit(at.time, "s") +
              (report.reason.empty() ? "" : " (" + report.reason + ")");
     }
@@ -89,9 +94,10 @@ class AlongMotion final : public Quantity {
   template <class S>
   std::size_t collect(const DesignView<S>& design, AppendLoads<S> append, std::vector<S>& loads) const {
     loads.clear();
-    return drive_along<S>(
-        design.mechanism, design.parameters, mode_, samples_, wrench_,
-        [&](std::size_t, const Drive<S>& drive) { append(joint_, drive.forces, drive.speeds, loads); });
+    return drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
+                          design.scratch.template get<DriveScratch<S>>(), [&](std::size_t, const Drive<S>& drive) {
+                            append(joint_, drive.forces, drive.speeds, loads);
+                          });
   }
 
   std::string name_;
@@ -107,8 +113,6 @@ class AlongMotion final : public Quantity {
 }  // namespace
 
 std::vector<OptionSpec> motion_options(const std::vector<std::string>& joints) {
-  std::vector<std::string> choices = {"1", "2", "3", "4"};
-  choices.insert(choices.end(), joints.begin(), joints.end());
   std::vector<std::pair<std::string, std::string>> wrench;
   for (std::size_t i = 0; i < wrench_names().size(); ++i) wrench.emplace_back(wrench_names()[i], i < 3 ? "N" : "N m");
   return {
@@ -116,7 +120,7 @@ std::vector<OptionSpec> motion_options(const std::vector<std::string>& joints) {
       {.name = "joint",
        .kind = OptionKind::word,
        .initial = joints.front(),
-       .choices = choices,
+       .choices = numbers_of_joints(joints),
        .meaning = "the joint looked at; worst: the greatest of all joints" +
                   std::string(joints.size() > 1 ? "; total: the sum over the joints" : "")},
       {.name = "samples",
@@ -146,6 +150,18 @@ std::string motion_detail(const std::string& what, const EntryContext& context) 
                          : joint == "total" ? "all joints together"
                                             : "joint " + joint;
   return what + " of " + of + " along the motion " + context.options.word("motion");
+}
+
+std::string force_unit(const EntryContext& context) {
+  const auto& joints = context.mechanism.info().joints;
+  const std::string& joint = context.options.word("joint");
+  refuse_unknown_joint(context.mechanism, joint);
+  const bool turns = (joint == "worst" ? joints.front() : joints[static_cast<std::size_t>(joint[0] - '1')]).turns();
+  if (joint == "worst" && std::ranges::any_of(joints, [turns](const AxisInfo& j) { return j.turns() != turns; }))
+    throw std::invalid_argument("mechanism " + context.mechanism.info().name +
+                                " has joints of both kinds, whose forces [N] and torques [N m] have no greatest; name "
+                                "a joint");
+  return turns ? "N m" : "N";
 }
 
 std::unique_ptr<const Quantity> make_motion_quantity(const EntryContext& context, AppendLoads<double> value,

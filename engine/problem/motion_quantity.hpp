@@ -23,12 +23,16 @@ std::string motion_detail(const std::string& what, const EntryContext& context);
 /// Appends to `field`, per sample, what is to be kept small, >= 0. Which joints it looks at is of its own.
 /// @param forces  tau [N], speeds  qdot [m/s] of the four joints
 template <class S>
-using AppendLoads = void (*)(const std::string& joint, const Vector<S, 4>& forces, const Vector<S, 4>& speeds,
+using AppendLoads = void (*)(const std::string& joint, const AxisVector<S>& forces, const AxisVector<S>& speeds,
                              std::vector<S>& field);
 
 /// The greatest of all loads along a motion, and as its smooth stand-in their power mean of exponent `sharpness`.
 /// Throws std::invalid_argument when the options name no motion of the study or a mode or wrench that there is not.
 std::unique_ptr<const Quantity> make_motion_quantity(const EntryContext& context, AppendLoads<double> value,
                                                      AppendLoads<Dual4> smooth);
+
+/// Unit of the force of the joint that the options name. Throws std::invalid_argument where the joints looked at have
+/// different ones.
+std::string force_unit(const EntryContext& context);
 
 }  // namespace pkm

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/core/parameter.hpp"
+#include "engine/core/refusal.hpp"
+#include "engine/core/scratch.hpp"
 #include "engine/problem/evaluation.hpp"
 
 namespace pkm {
@@ -43,13 +45,13 @@ class Problem {
   virtual const std::vector<MarginInfo>& margins() const = 0;
   virtual const std::vector<ReportInfo>& reports() const = 0;
 
-  /// Evaluates one design (dimension() values in the space's units). Thread-safe. Neither an exception nor a NaN
-  /// leaves it unmarked: whatever cannot be used has status `failed`.
+  /// Evaluates one design (dimension() values in the space's units). Thread-safe where each thread has a scratch of its
+  /// own. Neither an exception nor a NaN leaves it unmarked: whatever cannot be used has status `failed`.
   ///
   /// result.detail says how much is wanted. Under Detail::enough a broken design-level margin may save the rest.
-  virtual void evaluate(std::span<const double> design, EvaluationSlot result) const = 0;
-  /// "" or one sentence saying why there are no derivatives (Detail::derivatives must then not be asked for).
-  virtual std::string no_derivatives() const { return "the problem gives no derivatives"; }
+  virtual void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const = 0;
+  /// Why there are no derivatives (Detail::derivatives must then not be asked for).
+  virtual Refusal no_derivatives() const { return "the problem gives no derivatives"; }
 
   EvaluationShape shape(Detail detail = Detail::enough) const {
     return {space().dimension(), objectives().size(), margins().size(), reports().size(), detail};
@@ -62,20 +64,6 @@ inline double violation(std::span<const double> margins) {
   for (const double margin : margins)
     if (margin < 0) sum -= margin;
   return sum;
-}
-
-/// Feasibility rules for one objective (Deb 2000): status first, then the objective among feasible designs, the
-/// violation among the others. A failed evaluation is worse than everything. Strict weak order; equal rows keep their
-/// order of evaluation where a sort is stable.
-inline bool better(const EvaluationTable& table, Direction direction, std::size_t a, std::size_t b) {
-  const Status sa = table.status[a], sb = table.status[b];
-  if (sa != sb) return sa < sb;
-  if (sa == Status::failed) return false;
-  if (sa == Status::feasible) {
-    const double fa = table.objective_row(a)[0], fb = table.objective_row(b)[0];
-    return direction == Direction::maximise ? fa > fb : fa < fb;
-  }
-  return violation(table.margin_row(a)) < violation(table.margin_row(b));
 }
 
 }  // namespace pkm

@@ -22,6 +22,7 @@ struct DesignView {
   const Mechanism& mechanism;
   std::span<const S> parameters;  ///< all of the mechanism's parameters
   const Survey<S>* survey;        ///< null for design-level quantities
+  Scratch& scratch;               ///< what quantities overwrite, from design to design
 };
 
 class Quantity {
@@ -99,7 +100,7 @@ struct ObjectiveEntry {
   std::vector<OptionSpec> options;
   std::string (*unit)(const EntryContext&);
   /// "" or one sentence saying why this mechanism cannot serve the objective.
-  std::string (*refusal)(const MechanismInfo&);
+  std::string (*refusal)(const Mechanism&);
   void (*demand)(const EntryContext&, Demand&);  ///< adds what the survey has to compute
   std::unique_ptr<const Quantity> (*make)(const EntryContext&);
   /// What one with these options computes; none: `meaning`.
@@ -116,7 +117,7 @@ struct ConstraintEntry {
   /// Options may depend on the mechanism (its limits' names).
   std::vector<OptionSpec> (*options)(const MechanismInfo&);
   std::string (*unit)(const EntryContext&);  ///< not of pose-level ones
-  std::string (*refusal)(const MechanismInfo&);
+  std::string (*refusal)(const Mechanism&);
   /// Pose-level only: thresholds this constraint sets, merged by the reader (the same threshold twice is an error).
   LimitSpec (*limits)(const MechanismInfo&, const Options&);
   /// Not of pose-level ones. Throws std::invalid_argument with a sentence when the options name something unknown.

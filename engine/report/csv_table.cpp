@@ -52,8 +52,8 @@ void CsvTable::add_empty(std::size_t cells) {
   for (; cells > 0; --cells) next_cell();
 }
 
-void CsvTable::add(const Vector<double, 4>& values) {
-  for (const double value : values.m) add(value);
+void CsvTable::add(const AxisVector<double>& values) {
+  for (const double value : values) add(value);
 }
 
 void CsvTable::write(const std::string& path) const {

@@ -24,7 +24,7 @@ class CsvTable {
   void add(std::int64_t number);
   void add(const std::string& text);
   void add_empty(std::size_t cells);
-  void add(const Vector<double, 4>& values);
+  void add(const AxisVector<double>& values);
 
   /// The whole file.
   std::string text() const { return text_ + '\n'; }

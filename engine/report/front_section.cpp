@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/report/sections.hpp"
 

@@ -1,8 +1,10 @@
 #include "engine/report/isosurface.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
+#include "engine/core/error.hpp"
 #include "engine/core/team.hpp"
 
 namespace pkm {
@@ -89,13 +91,14 @@ class Builder {
   void refine(const WorkspaceFields& workspace, const PoseMargin& margin) {
     constexpr std::size_t kBlock = 256;
     const std::size_t count = edges_.size();
-    share_pieces((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end) {
+    std::vector<std::vector<double>> scratch(workers());
+    share_pieces((count + kBlock - 1) / kBlock, [&](std::size_t block, std::size_t end, std::size_t worker) {
       for (std::size_t k = block * kBlock; k < std::min(end * kBlock, count); ++k) {
         if (edges_[k].ends) continue;
         double inside = 0, outside = 1;
         for (int step = 0; step < 7; ++step) {
           const double middle = (inside + outside) / 2;
-          (margin(workspace.pose(edges_[k].at(middle))) >= 0 ? inside : outside) = middle;
+          (margin(workspace.pose(edges_[k].at(middle)), scratch[worker]) >= 0 ? inside : outside) = middle;
         }
         surface_.vertices[k] = edges_[k].at((inside + outside) / 2);
       }
@@ -179,7 +182,15 @@ double Isosurface::volume() const {
   return sixfold / 6;
 }
 
+Refusal refuse_surface(const WorkspaceFields& workspace) {
+  if (workspace.axes.size() == 3) return {};
+  std::vector<std::string> swept;
+  for (const WorkspaceAxis& axis : workspace.axes) swept.push_back(axis.name);
+  return "a surface needs three swept coordinates, and this workspace sweeps " + join(swept);
+}
+
 Isosurface isosurface(const WorkspaceFields& workspace, const PoseMargin* margin) {
+  if (const Refusal reason = refuse_surface(workspace)) throw std::invalid_argument(*reason);
   const Nodes nodes(workspace);
   Builder builder(nodes);
   for (std::size_t i = 0; i + 1 < nodes.size[0]; ++i)

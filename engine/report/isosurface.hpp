@@ -24,7 +24,10 @@ struct Isosurface {
   double volume() const;
 };
 
-/// Empty where no cell is feasible.
+/// Why a workspace has no surface: it takes three swept coordinates.
+Refusal refuse_surface(const WorkspaceFields& workspace);
+
+/// Empty where no cell is feasible. Throws std::invalid_argument with that sentence.
 /// @param margin  of the same design. Without it vertices lie where the margins of two cells, taken as linear between
 ///                them, have their zero; with it where the pose's own margin changes its sign, to a 128th of a cell,
 ///                which takes some time and is shared among the team lent to the caller

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kSteps = 9;      // of each coordinate that the workspace sweeps over
-constexpr std::size_t kHeldSteps = 7;  // of the one that it holds
+constexpr std::size_t kHeldSteps = 7;  // of the first that it holds; the others stay where they are
 
 struct Slider {
   std::vector<double> values;
@@ -29,23 +29,34 @@ struct Slider {
   }
 };
 
-/// Values of x, y, z and rotation that span the feasible cells, and the held coordinate's range.
-std::array<Slider, 4> sliders_of(const View& view) {
+/// One for each coordinate: values that span the feasible cells, and the first held coordinate's range.
+using Sliders = std::vector<Slider>;
+
+Sliders sliders_of(const View& view) {
   const WorkspaceFields& workspace = *view.workspace;
   const std::vector<double>& feasible = workspace.field("feasible").values;
-  std::array<std::array<double, 2>, 4> range;
-  range.fill({1e300, -1e300});
+  const std::size_t coordinates = workspace.axes.size() + workspace.held.size();
+  std::vector<std::array<double, 2>> range(coordinates, {1e300, -1e300});
   for (std::size_t cell = 0; cell < feasible.size(); ++cell) {
     if (!(feasible[cell] > 0)) continue;
     const Pose<double> pose = workspace.pose(cell);
-    const double at[] = {pose.x, pose.y, pose.z, pose.angle};
-    for (std::size_t c = 0; c < 4; ++c) range[c] = {std::min(range[c][0], at[c]), std::max(range[c][1], at[c])};
+    for (std::size_t c = 0; c < coordinates; ++c)
+      range[c] = {std::min(range[c][0], pose[c]), std::max(range[c][1], pose[c])};
   }
-  std::array<Slider, 4> sliders;
-  for (std::size_t c = 0; c < 4; ++c) sliders[c] = Slider(range[c][0], range[c][1], kSteps);
-  sliders[static_cast<std::size_t>(workspace.held.coordinate)] =
-      Slider(view.held_range[0], view.held_range[1], kHeldSteps);
+  Sliders sliders;
+  for (const auto& [lower, upper] : range) sliders.emplace_back(lower, upper, kSteps);
+  if (!workspace.held.empty())
+    sliders[static_cast<std::size_t>(workspace.held[0].coordinate)] =
+        Slider(view.held_range[0][0], view.held_range[0][1], kHeldSteps);
   return sliders;
+}
+
+/// Which step of each slider a pose is at: of the poses the last slider runs fastest.
+std::vector<std::size_t> steps_of(std::size_t pose, const Sliders& sliders) {
+  std::vector<std::size_t> steps(sliders.size());
+  for (std::size_t c = sliders.size(); c-- > 0; pose /= sliders[c].values.size())
+    steps[c] = pose % sliders[c].values.size();
+  return steps;
 }
 
 /// What the page knows of one pose.
@@ -54,19 +65,18 @@ struct DrawnPose {
   std::vector<PlacedLink> links;
 };
 
-/// Every combination of the sliders' values, the rotation running fastest.
-std::vector<DrawnPose> draw(const Views& views, const View& view, const std::array<Slider, 4>& sliders) {
+/// Every combination of the sliders' values.
+std::vector<DrawnPose> draw(const Views& views, const View& view, const Sliders& sliders) {
   std::size_t count = 1;
   for (const Slider& slider : sliders) count *= slider.values.size();
   std::vector<DrawnPose> poses(count);
   share_pieces(count, [&](std::size_t pose, std::size_t end) {
     for (; pose < end; ++pose) {
-      std::array<double, 4> at{};
-      for (std::size_t c = 4, rest = pose; c-- > 0; rest /= sliders[c].values.size())
-        at[c] = sliders[c].values[rest % sliders[c].values.size()];
-      const Pose<double> drawn{at[0], at[1], at[2], at[3]};
+      const std::vector<std::size_t> steps = steps_of(pose, sliders);
+      Pose<double> drawn(sliders.size());
+      for (std::size_t c = 0; c < sliders.size(); ++c) drawn[c] = sliders[c].values[steps[c]];
       poses[pose].report = views.mechanism.inspect(view.parameters, drawn, views.mode, views.limits);
-      poses[pose].links = views.mechanism.links(view.parameters, drawn, views.mode);
+      poses[pose].links = views.mechanism.links()->place(view.parameters, drawn, views.mode);
     }
   });
   return poses;
@@ -102,18 +112,13 @@ struct Ends {
 };
 
 /// The feasible pose nearest to the middle of the feasible ones, else the first that is drawn.
-std::size_t usual_pose(const std::vector<DrawnPose>& poses, const std::array<Slider, 4>& sliders) {
-  const auto place = [&](std::size_t pose) {
-    std::array<double, 4> at{};
-    for (std::size_t c = 4, rest = pose; c-- > 0; rest /= sliders[c].values.size())
-      at[c] = static_cast<double>(rest % sliders[c].values.size());
-    return at;
-  };
-  std::array<double, 4> middle{};
+std::size_t usual_pose(const std::vector<DrawnPose>& poses, const Sliders& sliders) {
+  std::vector<double> middle(sliders.size());
   double count = 0;
   for (std::size_t pose = 0; pose < poses.size(); ++pose) {
     if (!poses[pose].report.feasible) continue;
-    for (std::size_t c = 0; c < 4; ++c) middle[c] += place(pose)[c];
+    const std::vector<std::size_t> steps = steps_of(pose, sliders);
+    for (std::size_t c = 0; c < steps.size(); ++c) middle[c] += static_cast<double>(steps[c]);
     ++count;
   }
   std::size_t best = 0;
@@ -121,8 +126,9 @@ std::size_t usual_pose(const std::vector<DrawnPose>& poses, const std::array<Sli
   for (std::size_t pose = 0; pose < poses.size(); ++pose) {
     if (poses[pose].links.empty() || (count > 0 && !poses[pose].report.feasible)) continue;
     double distance = 0;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const double away = place(pose)[c] - (count > 0 ? middle[c] / count : 0);
+    const std::vector<std::size_t> steps = steps_of(pose, sliders);
+    for (std::size_t c = 0; c < steps.size(); ++c) {
+      const double away = static_cast<double>(steps[c]) - (count > 0 ? middle[c] / count : 0);
       distance += away * away;
     }
     if (distance < least) {
@@ -135,15 +141,16 @@ std::size_t usual_pose(const std::vector<DrawnPose>& poses, const std::array<Sli
 
 Json mechanism(const Views& views, const View& view) {
   const MechanismInfo& info = views.mechanism.info();
-  const std::array<Slider, 4> sliders = sliders_of(view);
+  const Sliders sliders = sliders_of(view);
   const std::vector<DrawnPose> poses = draw(views, view, sliders);
   const auto drawn = std::ranges::find_if(poses, [](const DrawnPose& pose) { return !pose.links.empty(); });
   if (drawn == poses.end()) return Json();
 
-  Json json = {{"name", view.name}, {"coordinates", Json::array()}, {"joints", info.joints}, {"links", Json::array()}};
-  for (std::size_t c = 0; c < 4; ++c)
-    json["coordinates"].push_back(
-        {{"name", info.coordinates[c]}, {"unit", c == 3 ? "rad" : "m"}, {"values", sliders[c].values}});
+  Json json = {{"name", view.name},
+               {"coordinates", axes_data<Json>(info.coordinates)},
+               {"joints", axes_data<Json>(info.joints)},
+               {"links", Json::array()}};
+  for (std::size_t c = 0; c < sliders.size(); ++c) json["coordinates"][c]["values"] = sliders[c].values;
   const Ends ends(poses);
   for (std::size_t k = 0; k < drawn->links.size(); ++k) {
     const PlacedLink& link = drawn->links[k];
@@ -158,7 +165,7 @@ Json mechanism(const Views& views, const View& view) {
   std::vector<std::uint8_t> is_drawn;
   std::vector<std::int64_t> reason;
   std::vector<double> conditioning;
-  std::array<std::vector<double>, 4> joints;
+  std::vector<std::vector<double>> joints(info.joints.size());
   for (const DrawnPose& pose : poses) {
     is_drawn.push_back(!pose.links.empty());
     const std::string why = pose.report.feasible ? "" : pose.report.reason;
@@ -167,7 +174,7 @@ Json mechanism(const Views& views, const View& view) {
     if (known == reasons.end()) reasons.push_back(why);
     if (pose.links.empty()) continue;
     conditioning.push_back(pose.report.conditioning.value_or(std::nan("")));
-    for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i < joints.size(); ++i)
       joints[i].push_back(pose.report.joints ? (*pose.report.joints)[i] : std::nan(""));
   }
   json["start"] = usual_pose(poses, sliders);
@@ -184,7 +191,7 @@ Json mechanism(const Views& views, const View& view) {
 }  // namespace
 
 std::string mechanism_data(const Views& views) {
-  if (!views.mechanism.info().has_links) return "";
+  if (!views.mechanism.links()) return "";
   Json designs = Json::array();
   for (const View& view : views.designs)
     if (view.workspace)

@@ -11,33 +11,34 @@ namespace pkm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Column = std::optional<Vector<double, 4>> TrajectoryPoint::*;
+using Column = std::optional<AxisVector<double>> TrajectoryPoint::*;
 
 constexpr std::size_t kSamples = 201;
 
-/// Four columns of something that a sample may lack; null where all do.
-Json columns(const Trajectory& trajectory, Column what) {
-  std::array<std::vector<double>, 4> values;
-  bool any = false;
-  for (const TrajectoryPoint& point : trajectory.points) {
-    any = any || point.*what;
-    for (std::size_t i = 0; i < 4; ++i) values[i].push_back(point.*what ? (*(point.*what))[i] : std::nan(""));
-  }
-  if (!any) return Json();
+/// A column for each of `count`. @param of  their values in a sample; null: it lacks them
+template <class Of>
+Json packed_columns(const Trajectory& trajectory, std::size_t count, const Of& of) {
   Json packed = Json::array();
-  for (const auto& column : values) packed.push_back(packed_floats(column));
-  return packed;
-}
-
-Json poses(const Trajectory& trajectory) {
-  Json packed = Json::array();
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     std::vector<double> column;
-    for (const TrajectoryPoint& point : trajectory.points) column.push_back(point.motion.pose[i]);
+    for (const TrajectoryPoint& point : trajectory.points) {
+      const AxisVector<double>* const values = of(point);
+      column.push_back(values ? (*values)[i] : std::nan(""));
+    }
     packed.push_back(packed_floats(column));
   }
   return packed;
 }
+
+/// A column per joint of something that a sample may lack; null where all do.
+Json columns(const Trajectory& trajectory, std::size_t joints, Column what) {
+  if (std::ranges::none_of(trajectory.points, [&](const auto& point) { return (point.*what).has_value(); }))
+    return Json();
+  return packed_columns(trajectory, joints,
+                        [&](const TrajectoryPoint& point) { return point.*what ? &*(point.*what) : nullptr; });
+}
+
+std::vector<double> listed(const AxisVector<double>& values) { return {values.begin(), values.end()}; }
 
 /// Input and output of the auxiliary chain, and their derivatives by time; null where no sample has a chain.
 Json chain(const Trajectory& trajectory) {
@@ -58,11 +59,11 @@ Json chain(const Trajectory& trajectory) {
 
 /// Peaks and energies; what needs forces is null where a sample has none.
 Json summary(const TrajectorySummary& s) {
-  Json json = {{"infeasible", s.infeasible}, {"peak_speed", s.peak_speed.m}};
+  Json json = {{"infeasible", s.infeasible}, {"peak_speed", listed(s.peak_speed)}};
   if (s.has_forces)
-    json.update({{"peak_force", s.peak_force.m},
-                 {"rms_force", s.rms_force.m},
-                 {"peak_power", s.peak_power.m},
+    json.update({{"peak_force", listed(s.peak_force)},
+                 {"rms_force", listed(s.rms_force)},
+                 {"peak_power", listed(s.peak_power)},
                  {"peak_total_power", s.peak_total_power},
                  {"energy", s.energy},
                  {"energy_drawn", s.energy_drawn}});
@@ -71,22 +72,25 @@ Json summary(const TrajectorySummary& s) {
 
 Json along(const Views& views, const View& view, const Motion& motion) {
   const Trajectory found = follow(views.mechanism, view.parameters, views.mode, views.limits, motion, kSamples);
+  const MechanismInfo& info = views.mechanism.info();
+  const std::size_t joints = info.joints.size();
   std::vector<double> conditioning;
   std::vector<std::string> reasons;
   for (const TrajectoryPoint& point : found.points) {
     conditioning.push_back(point.conditioning.value_or(std::nan("")));
     reasons.push_back(point.reason);
   }
-  return {{"name", view.name},
-          {"poses", poses(found)},
-          {"positions", columns(found, &TrajectoryPoint::joints)},
-          {"speeds", columns(found, &TrajectoryPoint::speeds)},
-          {"forces", columns(found, &TrajectoryPoint::forces)},
-          {"power", columns(found, &TrajectoryPoint::power)},
-          {"chain", chain(found)},
-          {"conditioning", packed_floats(conditioning)},
-          {"reasons", reasons},
-          {"summary", summary(found.summary)}};
+  return {
+      {"name", view.name},
+      {"poses", packed_columns(found, info.coordinates.size(), [](const auto& point) { return &point.motion.pose; })},
+      {"positions", columns(found, joints, &TrajectoryPoint::joints)},
+      {"speeds", columns(found, joints, &TrajectoryPoint::speeds)},
+      {"forces", columns(found, joints, &TrajectoryPoint::forces)},
+      {"power", columns(found, joints, &TrajectoryPoint::power)},
+      {"chain", chain(found)},
+      {"conditioning", packed_floats(conditioning)},
+      {"reasons", reasons},
+      {"summary", summary(found.summary)}};
 }
 
 }  // namespace
@@ -104,9 +108,11 @@ std::string motions_data(const Views& views) {
     if (!json["designs"].empty()) motions.push_back(std::move(json));
   }
   if (motions.empty()) return "";
-  return json_text(Json{{"coordinates", info.coordinates},
-                        {"joints", info.joints},
-                        {"chain", {info.chain_input, info.chain_output}},
+  Json chain = Json::array();
+  if (const AuxiliaryChain* const shafts = views.mechanism.chain()) chain = {shafts->input(), shafts->output()};
+  return json_text(Json{{"coordinates", axes_data<Json>(info.coordinates)},
+                        {"joints", axes_data<Json>(info.joints)},
+                        {"chain", chain},
                         {"motions", motions}});
 }
 

@@ -30,7 +30,8 @@ std::string workspace_data(const Views& views);
 std::string workspace_data(const StudyContents& contents);
 /// The links of each design at the poses that the page's sliders reach.
 std::string mechanism_data(const Views& views);
-/// Coupling indices against the rotation; maps and histograms are drawn from the workspace's fields.
+/// Coupling indices against the first rotation, where there is one; maps and histograms are drawn from the workspace's
+/// fields.
 std::string coupling_data(const Views& views);
 /// Joints, forces and power along the study's motions.
 std::string motions_data(const Views& views);

@@ -1,8 +1,9 @@
 #include "engine/report/study_tables.hpp"
 
+#include <algorithm>
 #include <span>
 
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
 #include "engine/report/standing.hpp"
 
 namespace pkm {

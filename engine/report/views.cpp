@@ -14,14 +14,14 @@ namespace {
 constexpr std::int64_t kMostCells = 40;  // per axis of a page
 
 /// Voxels of the study's workspace, at most as many as a page can carry.
-SurveyPlan page_plan(const SurveyPlan& plan) {
-  SurveyPlan picture = picture_plan(plan, {kMostCells, kMostCells, kMostCells});
-  for (std::int64_t& cells : picture.cells) cells = std::min(cells, kMostCells);
+SurveyPlan page_plan(const MechanismInfo& info, const SurveyPlan& plan) {
+  SurveyPlan picture = picture_plan(info, plan, {kMostCells, kMostCells, kMostCells});
+  for (std::int64_t& cells : std::get<VoxelOptions>(picture.method).cells) cells = std::min(cells, kMostCells);
   return picture;
 }
 
-/// How far the held coordinate can move from the workspace's value until none of some feasible poses is feasible.
-std::array<double, 2> held_range(const Views& views, const View& view) {
+/// How far a held coordinate can move from the workspace's value until none of some feasible poses is feasible.
+std::array<double, 2> range_of(const WorkspaceAxis& held, const Views& views, const View& view) {
   constexpr std::size_t kPoses = 100;
   constexpr int kSteps = 60;
   const WorkspaceFields& workspace = *view.workspace;
@@ -33,22 +33,21 @@ std::array<double, 2> held_range(const Views& views, const View& view) {
   for (const std::size_t i : Thinning(cells.size(), kPoses).indices) poses.push_back(workspace.pose(cells[i]));
 
   double reach = std::numbers::pi;  // of a rotation; of a length twice the workspace's largest extent
-  if (workspace.held.coordinate != 3) {
+  if (held.unit == "m") {
     reach = 0;
     for (const WorkspaceAxis& axis : workspace.axes)
-      if (axis.coordinate != 3) reach = std::fmax(reach, 2 * (axis.upper - axis.lower));
+      if (axis.unit == "m") reach = std::fmax(reach, 2 * (axis.upper - axis.lower));
   }
   const auto any_feasible = [&](double value) {
     return std::ranges::any_of(poses, [&](Pose<double> pose) {
-      double* const coordinate[] = {&pose.x, &pose.y, &pose.z, &pose.angle};
-      *coordinate[workspace.held.coordinate] = value;
+      pose[static_cast<std::size_t>(held.coordinate)] = value;
       return views.mechanism.inspect(view.parameters, pose, views.mode, views.limits).feasible;
     });
   };
-  std::array<double, 2> range = {workspace.held.lower, workspace.held.lower};
+  std::array<double, 2> range = {held.lower, held.lower};
   for (const int side : {0, 1})
     for (int k = 1; k <= kSteps; ++k) {
-      const double value = workspace.held.lower + (side ? k : -k) * reach / kSteps;
+      const double value = held.lower + (side ? k : -k) * reach / kSteps;
       if (!any_feasible(value)) break;
       range[static_cast<std::size_t>(side)] = value;
     }
@@ -58,16 +57,19 @@ std::array<double, 2> held_range(const Views& views, const View& view) {
 Views no_views(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
                const std::vector<NamedMotion>& motions) {
   const MechanismInfo& info = mechanism.info();
-  return {
-      mechanism, page_plan(plan), survey_limits(info, plan.limits), mode.empty() ? info.modes.front() : mode, motions,
-      {}};
+  return {mechanism,
+          page_plan(info, plan),
+          survey_limits(info, plan.limits),
+          mode.empty() ? info.modes.front() : mode,
+          motions,
+          {}};
 }
 
 void add_view(Views& views, const std::string& name, const std::vector<double>& parameters) {
   View view{name, parameters, {}};
   try {
     view.workspace = workspace_fields(views.mechanism, parameters, views.plan, views.mode);
-    view.held_range = held_range(views, view);
+    for (const WorkspaceAxis& held : view.workspace->held) view.held_range.push_back(range_of(held, views, view));
     if (!(view.workspace->volume > 0)) {
       view.workspace.reset();
       view.problem = "it has no feasible pose";

@@ -12,11 +12,11 @@ namespace pkm {
 
 /// A design with its workspace.
 struct View {
-  std::string name;                          ///< "best", "baseline"
-  std::vector<double> parameters;            ///< all of the mechanism's
-  std::optional<WorkspaceFields> workspace;  ///< none: the design has none, see `problem`
-  std::array<double, 2> held_range{};        ///< of the held coordinate, where poses of the workspace stay feasible
-  std::string problem = {};                  ///< why there is no workspace, in a sentence
+  std::string name;                                    ///< "best", "baseline"
+  std::vector<double> parameters;                      ///< all of the mechanism's
+  std::optional<WorkspaceFields> workspace;            ///< none: the design has none, see `problem`
+  std::vector<std::array<double, 2>> held_range = {};  ///< of each held one, where poses of the workspace stay feasible
+  std::string problem = {};                            ///< why there is no workspace, in a sentence
 };
 
 /// Designs of one mechanism, under the same plan.

@@ -20,14 +20,17 @@ VtkImage vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, 
                    const std::string& title) {
   VtkImage image;
   image.title = title;
-  for (std::size_t i = 0; i < 3; ++i) {
+  image.axes.fill({"none", "1", 0, 1, 1});
+  for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
     const WorkspaceAxis& axis = workspace.axes[i];
     image.axes[i] = {axis.name, axis.unit, axis.lower, axis.upper, axis.cells};
   }
   for (const WorkspaceField& field : workspace.fields)
     image.arrays.push_back({field.name, field.unit, field.meaning, field.values});
-  const WorkspaceAxis& held = workspace.held;
-  image.numbers.push_back({"held_" + held.name, held.unit, workspace.held_note, {held.lower}});
+  for (std::size_t i = 0; i < workspace.held.size(); ++i) {
+    const WorkspaceAxis& held = workspace.held[i];
+    image.numbers.push_back({"held_" + held.name, held.unit, workspace.held_note[i], {held.lower}});
+  }
   image.numbers.push_back({"volume", workspace.volume_unit, "volume of the feasible cells", {workspace.volume}});
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
@@ -38,16 +41,15 @@ VtkImage vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, 
 
 CsvTable workspace_table(const WorkspaceFields& workspace) {
   std::vector<std::string> columns;
-  for (const WorkspaceAxis& axis : workspace.axes) columns.push_back(header(axis.name, axis.unit));
-  columns.push_back(header(workspace.held.name, workspace.held.unit));
+  for (const auto* const axes : {&workspace.axes, &workspace.held})
+    for (const WorkspaceAxis& axis : *axes) columns.push_back(header(axis.name, axis.unit));
   for (const WorkspaceField& field : workspace.fields) columns.push_back(header(field.name, field.unit));
   CsvTable table(columns);
   for (std::size_t cell = 0; cell < workspace.cells(); ++cell) {
     const Pose<double> pose = workspace.pose(cell);
-    const std::array<double, 4> at = {pose.x, pose.y, pose.z, pose.angle};
     table.begin_row();
-    for (const WorkspaceAxis& axis : workspace.axes) table.add(at[static_cast<std::size_t>(axis.coordinate)]);
-    table.add(workspace.held.lower);
+    for (const auto* const axes : {&workspace.axes, &workspace.held})
+      for (const WorkspaceAxis& axis : *axes) table.add(pose[static_cast<std::size_t>(axis.coordinate)]);
     for (const WorkspaceField& field : workspace.fields) table.add(field.values[cell]);
   }
   return table;

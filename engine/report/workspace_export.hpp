@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// For ParaView: every field, the value of the held coordinate, the volume and the design's parameters.
+/// For ParaView: every field, the values of the held coordinates, the volume and the design's parameters.
 VtkImage vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, std::span<const double> parameters,
                    const std::string& title);
 

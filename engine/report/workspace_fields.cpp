@@ -8,6 +8,7 @@
 #include "engine/core/team.hpp"
 #include "engine/dynamics/coupling.hpp"
 #include "engine/survey/picture_plan.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm {
 namespace {
@@ -17,9 +18,23 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 WorkspaceAxis axis_of(const MechanismInfo& info, int coordinate) {
   WorkspaceAxis axis;
   axis.coordinate = coordinate;
-  axis.name = info.coordinates[static_cast<std::size_t>(coordinate)];
-  axis.unit = coordinate == 3 ? "rad" : "m";
+  axis.name = info.coordinates[static_cast<std::size_t>(coordinate)].name;
+  axis.unit = info.coordinates[static_cast<std::size_t>(coordinate)].unit;
   return axis;
+}
+
+std::string note_of(const HeldCoordinate& held) {
+  switch (held.kind) {
+    case HeldCoordinate::Kind::value:
+      return "as given";
+    case HeldCoordinate::Kind::middle:
+      return "the middle of the design";
+    case HeldCoordinate::Kind::listed:
+      return "the first of those listed";
+    case HeldCoordinate::Kind::integrated:
+      break;
+  }
+  return "the middle of what the plan integrates over";
 }
 
 /// Fills fields in, one row of cells along the last axis after the other.
@@ -34,22 +49,23 @@ class Rows {
         margin_(mechanism, parameters, limits),
         mode_(mode.empty() ? info_.modes.front() : mode),
         found_(found),
-        size_(static_cast<std::size_t>(found.axes[2].cells)) {
+        size_(static_cast<std::size_t>(found.grid().cells[2])) {
     const std::size_t cells = found_.fields[kFeasible].values.size();
     const auto add = [&](std::string name, std::string unit, std::string meaning) {
       found_.fields.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
       found_.fields.back().values.assign(cells, kNone);
     };
-    const bool mixed = info_.margin_unit.empty();
-    add("margin", mixed ? "mixed" : info_.margin_unit,
+    const PoseMargins* const margins = mechanism.pose_margins();
+    const bool mixed = !margins;
+    add("margin", mixed ? "mixed" : margins->margin_unit(),
         std::string("least margin of the pose, > 0 where it is feasible") + (mixed ? ", in m, rad or 1" : ""));
     add("conditioning", "1",
         "inverse condition number of the Jacobian" + (info_.characteristic_length.empty()
                                                           ? std::string()
                                                           : ", characteristic length " + info_.characteristic_length));
-    for (const std::string& joint : info_.joints) add(joint, "m", "position of joint " + joint);
-    if (!info_.has_dynamics) return;
-    for (int limb = 1; limb <= 4; ++limb)
+    for (const AxisInfo& joint : info_.joints) add(joint.name, joint.unit, "position of joint " + joint.name);
+    if (!mechanism.dynamics()) return;
+    for (std::size_t limb = 1; limb <= info_.joints.size(); ++limb)
       add("dci_" + std::to_string(limb), "1", "dynamic coupling index of limb " + std::to_string(limb));
     add("dci_worst", "1", "largest dynamic coupling index of the limbs");
     add("inertia_condition", "1", "inverse condition number of the joint-space inertia");
@@ -57,25 +73,33 @@ class Rows {
 
   static constexpr std::size_t kFeasible = 0;  ///< the field that is there before
 
-  void fill(std::size_t row) const {
+  /// What each thread overwrites.
+  struct Room {
+    std::vector<double> margins;
+    std::vector<MotionState<double>> states;
+    std::vector<PoseDynamics<double>> dynamics;
+    std::vector<std::size_t> cells;
+  };
+
+  void fill(std::size_t row, Room& room) const {
     const std::size_t first = row * size_;
-    for (std::size_t cell = first; cell < first + size_; ++cell) fill_pose(cell);
-    if (info_.has_dynamics) fill_inertia(first);
+    for (std::size_t cell = first; cell < first + size_; ++cell) fill_pose(cell, room);
+    if (mechanism_.dynamics()) fill_inertia(first, room);
   }
 
  private:
-  enum Field : std::size_t { kMargin = 1, kConditioning, kJoints, kDci = kJoints + 4, kWorst = kDci + 4, kInertia };
+  enum Field : std::size_t { kMargin = 1, kConditioning, kJoints };
 
   double& at(std::size_t field, std::size_t cell) const { return found_.fields[field].values[cell]; }
   bool feasible(std::size_t cell) const { return at(kFeasible, cell) > 0; }
 
-  void fill_pose(std::size_t cell) const {
+  void fill_pose(std::size_t cell, Room& room) const {
     const Pose<double> pose = found_.pose(cell);
-    at(kMargin, cell) = on_its_side(margin_(pose), feasible(cell));
+    at(kMargin, cell) = on_its_side(margin_(pose, room.margins), feasible(cell));
     if (!feasible(cell)) return;
     const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
     at(kConditioning, cell) = report.conditioning.value_or(kNone);
-    for (std::size_t i = 0; report.joints && i < 4; ++i) at(kJoints + i, cell) = (*report.joints)[i];
+    for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(kJoints + i, cell) = (*report.joints)[i];
   }
 
   /// Rounding, or a pose without margins, must not put a cell on the other side of the surface.
@@ -85,26 +109,26 @@ class Rows {
     return feasible ? std::fmax(margin, kLeast) : std::fmin(margin, -kLeast);
   }
 
-  void fill_inertia(std::size_t first) const {
-    thread_local std::vector<MotionState<double>> states;
-    thread_local std::vector<PoseDynamics<double>> dynamics;
-    thread_local std::vector<std::size_t> cells;
+  void fill_inertia(std::size_t first, Room& room) const {
+    auto& [margins, states, dynamics, cells] = room;
+    const AxisVector<double> at_rest(info_.coordinates.size());
     states.clear();
     cells.clear();
     for (std::size_t cell = first; cell < first + size_; ++cell) {
       if (!feasible(cell)) continue;
       cells.push_back(cell);
-      states.push_back({found_.pose(cell), {}});
+      states.push_back({found_.pose(cell), at_rest});
     }
     dynamics.resize(states.size());
-    mechanism_.dynamics(parameters_, mode_, states, dynamics);
+    mechanism_.dynamics()->equations(parameters_, mode_, states, dynamics);
+    const std::size_t joints = info_.joints.size(), first_index = kJoints + joints;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (!dynamics[k].assembles) continue;
-      const Matrix<double, 4, 4> inertia = joint_inertia(dynamics[k]);
-      const Vector<double, 4> index = coupling_indices(inertia);
-      for (std::size_t i = 0; i < 4; ++i) at(kDci + i, cells[k]) = index[i];
-      at(kWorst, cells[k]) = *std::ranges::max_element(index.m);
-      at(kInertia, cells[k]) = inertia_condition(inertia);
+      const AxisMatrix<double> inertia = joint_inertia(dynamics[k]);
+      const AxisVector<double> index = coupling_indices(inertia);
+      for (std::size_t i = 0; i < joints; ++i) at(first_index + i, cells[k]) = index[i];
+      at(first_index + joints, cells[k]) = *std::max_element(index.begin(), index.end());
+      at(first_index + joints + 1, cells[k]) = inertia_condition(inertia);
     }
   }
 
@@ -121,24 +145,29 @@ class Rows {
 }  // namespace
 
 VoxelGrid WorkspaceFields::grid() const {
+  std::array<std::int64_t, 3> n = {1, 1, 1};
   Box box;
-  for (std::size_t i = 0; i < 3; ++i) box[i] = {axes[i].lower, axes[i].upper};
-  return {{axes[0].cells, axes[1].cells, axes[2].cells}, box};
+  box.fill({0, 1});
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    n[i] = axes[i].cells;
+    box[i] = {axes[i].lower, axes[i].upper};
+  }
+  return {n, box};
 }
 
 Pose<double> WorkspaceFields::pose(std::size_t cell) const {
   const VoxelGrid all = grid();
   auto rest = static_cast<std::int64_t>(cell);
   std::array<double, 3> at{};
-  for (std::size_t i = 3; i-- > 0; rest /= axes[i].cells) at[i] = all.centre(i, rest % axes[i].cells);
+  for (std::size_t i = 3; i-- > 0; rest /= all.cells[i]) at[i] = all.centre(i, rest % all.cells[i]);
   return pose(at);
 }
 
 Pose<double> WorkspaceFields::pose(const std::array<double, 3>& at) const {
-  std::array<double, 4> all{};
-  all[static_cast<std::size_t>(held.coordinate)] = held.lower;
-  for (std::size_t i = 0; i < 3; ++i) all[static_cast<std::size_t>(axes[i].coordinate)] = at[i];
-  return {all[0], all[1], all[2], all[3]};
+  Pose<double> all(axes.size() + held.size());
+  for (const WorkspaceAxis& fixed : held) all[static_cast<std::size_t>(fixed.coordinate)] = fixed.lower;
+  for (std::size_t i = 0; i < axes.size(); ++i) all[static_cast<std::size_t>(axes[i].coordinate)] = at[i];
+  return all;
 }
 
 const WorkspaceField* WorkspaceFields::find(std::string_view name) const {
@@ -156,56 +185,58 @@ PoseMargin::PoseMargin(const Mechanism& mechanism, std::span<const double> param
       parameters_(parameters.begin(), parameters.end()),
       limits_(survey_limits(mechanism.info(), limits)) {}
 
-double PoseMargin::operator()(const Pose<double>& pose) const {
+double PoseMargin::operator()(const Pose<double>& pose, std::vector<double>& scratch) const {
   double least = std::numeric_limits<double>::infinity();
-  if (mechanism_.info().margin_unit.empty()) {  // what exists of them, also where the pose does not assemble
+  const PoseMargins* const ability = mechanism_.pose_margins();
+  if (!ability) {  // what exists of them, also where the pose does not assemble
     const auto report = mechanism_.inspect(parameters_, pose, mechanism_.info().modes.front(), limits_);
     for (const auto& named : report.margins) least = std::fmin(least, named.second);
     return report.feasible || least < 0 ? least : -1;
   }
-  thread_local std::vector<double> margins;
-  margins.clear();
-  mechanism_.pose_margins(parameters_, limits_, {&pose, 1}, margins);
-  for (const double margin : margins) least = std::fmin(least, margin);
+  scratch.clear();
+  ability->append(parameters_, limits_, {&pose, 1}, scratch);
+  for (const double margin : scratch) least = std::fmin(least, margin);
   return least;
 }
 
 WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
                                  const std::string& mode) {
   const MechanismInfo& info = mechanism.info();
-  if (const std::string reason = mechanism.refuse(parameters); !reason.empty()) throw std::invalid_argument(reason);
-  const SurveyPlan picture = picture_plan(plan, {kPictureCells, kPictureCells, kPictureCells});
-  const Sweep sweep = sweep_of(info, picture);
-  const VoxelMap map = mechanism.voxel_map(parameters, picture);
+  if (const Refusal reason = mechanism.refuse(parameters)) throw std::invalid_argument(*reason);
+  const SurveyPlan picture = picture_plan(info, plan, {kPictureCells, kPictureCells, kPictureCells});
+  const Sweep& sweep = sweep_of(info, picture);
+  const VoxelMap map = voxel_map(mechanism, parameters, picture);
 
   WorkspaceFields found;
   found.mechanism = info.name;
-  for (std::size_t i = 0; i < 3; ++i) {
-    found.axes[i] = axis_of(info, sweep.swept[i]);
-    found.axes[i].lower = map.lower[i];
-    found.axes[i].upper = map.upper[i];
-    found.axes[i].cells = map.cells[i];
+  for (std::size_t i = 0; i < sweep.swept.size(); ++i) {
+    WorkspaceAxis& axis = found.axes.emplace_back(axis_of(info, sweep.swept[i]));
+    axis.lower = map.lower[i];
+    axis.upper = map.upper[i];
+    axis.cells = map.cells[i];
   }
-  found.held = axis_of(info, sweep.held);
-  found.held.lower = found.held.upper = held_value(mechanism, parameters, picture);
-  found.held_note = plan.held.kind == HeldCoordinate::Kind::value    ? "as given"
-                    : plan.held.kind == HeldCoordinate::Kind::middle ? "the middle of the design"
-                                                                     : "the middle of what the plan integrates over";
+  for (const int coordinate : sweep.held) {
+    WorkspaceAxis& held = found.held.emplace_back(axis_of(info, coordinate));
+    held.lower = held.upper = held_value(mechanism, parameters, picture, coordinate);
+    found.held_note.push_back(note_of(how_held(plan, coordinate)));
+  }
   found.fields.push_back({"feasible",
                           "1",
                           "1 where the pose at the cell's centre is feasible, else 0",
                           {map.feasible.begin(), map.feasible.end()}});
   const VoxelGrid grid = found.grid();
   Survey<double> summary;
-  summarise(grid, map, summary);
+  summarise(grid, map, summary, found.axes.size());
   found.volume = summary.volume;
-  found.volume_unit = sweep.volume_unit;
-  found.touches_box = picture.box && summary.touches_box;
+  found.volume_unit = volume_unit(info, picture);
+  found.touches_box = picture.box() && summary.touches_box;
 
   const Rows rows(mechanism, parameters, picture.limits, mode, found);
-  share_pieces(static_cast<std::size_t>(grid.cells[0] * grid.cells[1]), [&](std::size_t row, std::size_t end) {
-    for (; row < end; ++row) rows.fill(row);
-  });
+  std::vector<Rows::Room> rooms(workers());
+  share_pieces(static_cast<std::size_t>(grid.cells[0] * grid.cells[1]),
+               [&](std::size_t row, std::size_t end, std::size_t worker) {
+                 for (; row < end; ++row) rows.fill(row, rooms[worker]);
+               });
   return found;
 }
 

@@ -36,17 +36,22 @@ Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
   return {{"vertices", vertices}, {"cells", packed_integers(cells)}, {"triangles", packed_integers(corners)}};
 }
 
-Json axis_data(const WorkspaceAxis& axis) {
-  return {{"name", axis.name}, {"unit", axis.unit}, {"coordinate", axis.coordinate}};
+Json axis_of(const WorkspaceAxis& axis) {
+  Json json = axis_data<Json>(axis.name, axis.unit);
+  json["coordinate"] = axis.coordinate;
+  return json;
 }
 
 Json workspace(const std::string& name, const WorkspaceFields& found, const PoseMargin* margin) {
-  Json json = {{"name", name}, {"axes", Json::array()}, {"held", axis_data(found.held)}};
+  Json json = {{"name", name}, {"axes", Json::array()}, {"held", Json::array()}};
   for (const WorkspaceAxis& axis : found.axes) {
-    json["axes"].push_back(axis_data(axis));
+    json["axes"].push_back(axis_of(axis));
     json["axes"].back().update({{"lower", axis.lower}, {"upper", axis.upper}, {"cells", axis.cells}});
   }
-  json["held"].update({{"value", found.held.lower}, {"note", found.held_note}});
+  for (std::size_t i = 0; i < found.held.size(); ++i) {
+    json["held"].push_back(axis_of(found.held[i]));
+    json["held"].back().update({{"value", found.held[i].lower}, {"note", found.held_note[i]}});
+  }
   json["volume"] = found.volume;
   json["volume_unit"] = found.volume_unit;
   const std::vector<double>& feasible = found.field("feasible").values;
@@ -58,19 +63,16 @@ Json workspace(const std::string& name, const WorkspaceFields& found, const Pose
                                 {"unit", field.unit},
                                 {"meaning", field.meaning},
                                 {"values", packed_levels(of_feasible(found, field))}});
-  json["surface"] = surface(found, margin);
+  if (!refuse_surface(found)) json["surface"] = surface(found, margin);
   return json;
 }
 
-/// All that a file's own map says: which cells of the best design are feasible.
+/// All that a file's own map says: which cells of the best design are feasible, not where the rest is held.
 WorkspaceFields fields_of(const MapRecord& map, const DesignRecord& best, const std::string& volume_unit) {
   WorkspaceFields found;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::string& name = map.axes[i];
-    const int coordinate = map.units[i] == "rad" ? 3 : name == "x" ? 0 : name == "y" ? 1 : 2;
-    found.axes[i] = {coordinate, name, map.units[i], map.voxels.lower[i], map.voxels.upper[i], map.voxels.cells[i]};
-  }
-  found.held.coordinate = -1;  // the map does not say
+  for (std::size_t i = 0; i < map.axes.size() && !map.axes[i].empty(); ++i)
+    found.axes.push_back({static_cast<int>(i), map.axes[i], map.units[i], map.voxels.lower[i], map.voxels.upper[i],
+                          map.voxels.cells[i]});
   found.volume = best.volume;
   found.volume_unit = volume_unit;
   std::vector<double> margin;
@@ -84,11 +86,10 @@ WorkspaceFields fields_of(const MapRecord& map, const DesignRecord& best, const 
 
 std::string workspace_data(const Views& views) {
   const SurveyPlan& plan = views.plan;
-  Json json = {
-      {"column",
-       views.mechanism.info().coordinates[static_cast<std::size_t>(sweep_of(views.mechanism.info(), plan).column)]},
-      {"designs", Json::array()},
-      {"problems", Json::array()}};
+  const MechanismInfo& info = views.mechanism.info();
+  Json json = {{"column", info.coordinates[static_cast<std::size_t>(sweep_of(info, plan).column)].name},
+               {"designs", Json::array()},
+               {"problems", Json::array()}};
   for (const View& view : views.designs) {
     if (!view.workspace) {
       json["problems"].push_back("The design “" + view.name + "” is not shown: " + view.problem + ".");
@@ -105,7 +106,7 @@ std::string workspace_data(const StudyContents& contents) {
   const FinalRecord& final = *contents.final;
   Json design = workspace("best", fields_of(*final.map, *final.best, final.volume_unit), nullptr);
   design["fields"].clear();  // the margin is only made up for the surface
-  return json_text(Json{{"column", final.map->axes[2]}, {"designs", {design}}, {"problems", Json::array()}});
+  return json_text(Json{{"column", design["axes"].back()["name"]}, {"designs", {design}}, {"problems", Json::array()}});
 }
 
 }  // namespace pkm

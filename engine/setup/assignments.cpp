@@ -90,34 +90,32 @@ std::vector<Assignable> assignable_parameters(const MechanismInfo& info) {
 
 std::vector<Assignable> assignable_coordinates(const MechanismInfo& info) {
   std::vector<Assignable> known;
-  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
-    known.push_back({info.coordinates[i], i == 3 ? "rad" : "m"});  // x, y, z, rotation
+  for (const AxisInfo& coordinate : info.coordinates) known.push_back({coordinate.name, coordinate.unit});
   return known;
 }
 
 std::vector<Assignable> assignable_joints(const MechanismInfo& info) {
   std::vector<Assignable> known;
-  for (const auto& joint : info.joints) known.push_back({joint, "m"});
+  for (const auto& joint : info.joints) known.push_back({joint.name, joint.unit});
   return known;
 }
 
-std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::string& per) {
+std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::string& per) {
   std::vector<Assignable> known;
-  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
-    known.push_back({info.coordinates[i], (i == 3 ? "rad/" : "m/") + per});
-  if (!info.chain_input.empty()) known.push_back({info.chain_input, "rad/" + per});
+  for (const AxisInfo& axis : mechanism.info().coordinates) known.push_back({axis.name, axis.unit + "/" + per});
+  if (const AuxiliaryChain* const chain = mechanism.chain()) known.push_back({chain->input(), "rad/" + per});
   return known;
 }
 
 std::vector<Assignable> assignable_joint_rates(const MechanismInfo& info, const std::string& per) {
   std::vector<Assignable> known;
-  for (const auto& joint : info.joints) known.push_back({joint, "m/" + per});
+  for (const AxisInfo& joint : info.joints) known.push_back({joint.name, joint.unit + "/" + per});
   return known;
 }
 
 std::vector<Assignable> assignable_forces(const MechanismInfo& info) {
   std::vector<Assignable> known;
-  for (const auto& joint : info.joints) known.push_back({joint, "N"});
+  for (const AxisInfo& joint : info.joints) known.push_back({joint.name, joint.turns() ? "N m" : "N"});
   return known;
 }
 

@@ -25,7 +25,7 @@ std::vector<Assignable> assignable_coordinates(const MechanismInfo& info);
 std::vector<Assignable> assignable_joints(const MechanismInfo& info);
 /// The pose coordinates as names of their rates, per "s" or "s^2", and behind them the auxiliary chain's input where
 /// there is one; the joints as names of theirs and of their forces; force and moment on the platform.
-std::vector<Assignable> assignable_rates(const MechanismInfo& info, const std::string& per);
+std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::string& per);
 std::vector<Assignable> assignable_joint_rates(const MechanismInfo& info, const std::string& per);
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);
 std::vector<Assignable> assignable_wrench();

@@ -51,51 +51,55 @@ void write_parameters(std::ostream& out, const Study& study) {
 /// "x = 0 m to 0.4 m, ..."
 std::string box_text(const MechanismInfo& info, const SurveyPlan& plan) {
   std::string text;
-  const Sweep sweep = sweep_of(info, plan);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int swept = sweep.swept[k];
-    text += (k == 0 ? "" : ", ") + info.coordinates[static_cast<std::size_t>(swept)] + " = " +
-            range((*plan.box)[k][0], (*plan.box)[k][1], swept == 3 ? "rad" : "m");
+  const Sweep& sweep = sweep_of(info, plan);
+  for (std::size_t k = 0; k < sweep.swept.size(); ++k) {
+    const AxisInfo& swept = info.coordinates[static_cast<std::size_t>(sweep.swept[k])];
+    const auto& [lower, upper] = (*plan.box())[k];
+    text += (k == 0 ? "" : ", ") + swept.name + " = " + range(lower, upper, swept.unit);
   }
   return text;
 }
 
+/// How a coordinate is held.
+std::string held_text(const HeldCoordinate& held, const std::string& unit) {
+  using Kind = HeldCoordinate::Kind;
+  if (held.kind == Kind::middle) return "middle of each design";
+  if (held.kind == Kind::integrated) return "integrated over its range";
+  if (held.kind == Kind::value) return with_unit(held.value, unit);
+  std::string values;
+  for (const double value : held.values) values += (values.empty() ? "" : ", ") + with_unit(value, unit);
+  return values;
+}
+
 std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
-  const auto unit = [](int i) { return std::string(i == 3 ? "rad" : "m"); };
-  const Sweep sweep = sweep_of(info, plan);
+  const Sweep& sweep = sweep_of(info, plan);
   std::vector<Row> rows;
-  if (plan.method == Method::voxels) {
+  if (const VoxelOptions* const voxels = plan.voxels()) {
     std::string cells;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::string separator = k == 0 ? "" : ", ";
-      const int swept = sweep.swept[k];
-      cells += separator + coordinate(swept) + " = " + std::to_string(plan.cells[k]);
-    }
-    if (plan.held_cells > 0) cells += ", " + coordinate(sweep.held) + " = " + std::to_string(plan.held_cells);
-    rows = {
-        {"method", "voxels"}, {"cells", cells}, {"box", plan.box ? box_text(info, plan) : "derived from each design"}};
+    for (std::size_t k = 0; k < sweep.swept.size(); ++k)
+      cells += (k == 0 ? "" : ", ") + coordinate(sweep.swept[k]).name + " = " + std::to_string(voxels->cells[k]);
+    for (const HeldCoordinate& held : plan.held)
+      if (held.cells > 0) cells += ", " + coordinate(held.coordinate).name + " = " + std::to_string(held.cells);
+    rows = {{"method", "voxels"},
+            {"cells", cells},
+            {"box", voxels->box ? box_text(info, plan) : "derived from each design"}};
   } else {
+    const ColumnOptions& columns = *plan.columns();
     rows = {{"method", "columns"}};
     std::string nodes;
     std::size_t k = 0;
     for (const int swept : sweep.swept)
       if (swept != sweep.column)
-        nodes += (nodes.empty() ? "" : ", ") + coordinate(swept) + " = " + std::to_string(plan.nodes[k++]);
-    if (plan.box) rows.push_back({"box", box_text(info, plan)});
-    if (plan.nodes[0] > 0)
+        nodes += (nodes.empty() ? "" : ", ") + coordinate(swept).name + " = " + std::to_string(columns.nodes[k++]);
+    if (columns.box) rows.push_back({"box", box_text(info, plan)});
+    if (columns.nodes[0] > 0)
       rows.push_back({"nodes", nodes + " per piece"});
     else
-      rows.push_back({"tolerance", shortest(plan.tolerance) + " relative"});
+      rows.push_back({"tolerance", shortest(columns.tolerance) + " relative"});
   }
-  using Kind = HeldCoordinate::Kind;
-  const std::string held = plan.held.kind == Kind::middle       ? "middle of each design"
-                           : plan.held.kind == Kind::integrated ? "integrated over its range"
-                                                                : with_unit(plan.held.value, unit(sweep.held));
-  std::string values;
-  for (const double value : plan.held_values)
-    values += (values.empty() ? "" : ", ") + with_unit(value, unit(sweep.held));
-  rows.push_back({coordinate(sweep.held), values.empty() ? held : values});
+  for (const int held : sweep.held)
+    rows.push_back({coordinate(held).name, held_text(how_held(plan, held), coordinate(held).unit)});
   return rows;
 }
 

@@ -64,9 +64,9 @@ void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& mechanism : draft.catalogues.mechanisms)
     if (mechanism->info().name == type) draft.parts.mechanism = mechanism;
   if (const auto masses = table.find("masses")) {
-    const std::vector<std::string>& models = draft.info().mass_models;
-    if (models.empty()) throw masses->refusal("the mechanism " + type + " has no masses");
-    draft.parts.mechanism = draft.parts.mechanism->with_masses(masses->word(models));
+    const Dynamics* const dynamics = draft.parts.mechanism->dynamics();
+    if (!dynamics) throw masses->refusal("the mechanism " + type + " has no masses");
+    draft.parts.mechanism = dynamics->with_masses(masses->word(dynamics->mass_models()));
   }
 
   for (const auto& parameter : draft.info().parameters) draft.parts.parameters.push_back(parameter.nominal);
@@ -95,8 +95,7 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
   }
   draft.parts.space = DesignSpace(std::move(variables));
   warn_of_lattice_end(draft.parts.space, draft.study.warnings);
-  if (const std::string reason = draft.parts.mechanism->refuse(nominal); !reason.empty())
-    throw mechanism.refusal(reason);
+  if (const Refusal reason = draft.parts.mechanism->refuse(nominal)) throw mechanism.refusal(*reason);
 }
 
 void read_baseline(const ConfigValue& root, StudyDraft& draft) {
@@ -104,7 +103,7 @@ void read_baseline(const ConfigValue& root, StudyDraft& draft) {
   if (!table) return;
   std::vector<double> values = draft.parts.parameters;
   read_parameters(*table, draft.info().parameters, values);
-  if (const std::string reason = draft.parts.mechanism->refuse(values); !reason.empty()) throw table->refusal(reason);
+  if (const Refusal reason = draft.parts.mechanism->refuse(values)) throw table->refusal(*reason);
   draft.study.baseline = std::move(values);
 }
 

@@ -12,12 +12,10 @@
 namespace pkm {
 namespace {
 
-using Names = std::array<std::string, 4>;
+using Coordinates = std::vector<AxisInfo>;
 using Keys = std::vector<std::string>;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-
-const char* unit_of(std::size_t coordinate) { return coordinate == 3 ? "rad" : "m"; }
 
 double positive(const ConfigValue& value, const std::string& unit) {
   const double number = value.number(unit);
@@ -52,18 +50,19 @@ TimeLaw law_of(const ConfigValue& table) {
   return static_cast<TimeLaw>(std::find(names.begin(), names.end(), law->word(names)) - names.begin());
 }
 
-void allow(const ConfigValue& table, const Names& coordinates, Keys keys, const Keys& more_keys) {
+void allow(const ConfigValue& table, const Coordinates& coordinates, Keys keys, const Keys& more_keys) {
   Keys known = more_keys;
   known.push_back("type");
-  known.insert(known.end(), coordinates.begin(), coordinates.end());
+  for (const AxisInfo& axis : coordinates) known.push_back(axis.name);
   known.insert(known.end(), keys.begin(), keys.end());
   table.allow(known);
 }
 
 /// Every coordinate of a pose.
-Vector<double, 4> pose_at(const ConfigValue& table, const Names& names) {
-  Vector<double, 4> pose;
-  for (std::size_t i = 0; i < 4; ++i) pose[i] = table.at(names[i], quantity_hint(unit_of(i))).number(unit_of(i));
+Pose<double> pose_at(const ConfigValue& table, const Coordinates& names) {
+  Pose<double> pose(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i)
+    pose[i] = table.at(names[i].name, quantity_hint(names[i].unit)).number(names[i].unit);
   return pose;
 }
 
@@ -87,45 +86,47 @@ Pace pace_of(const ConfigValue& table, const Pace& general) {
 }
 
 /// Throws where the pace says nothing of this move.
-double time_of(const ConfigValue& point, const Vector<double, 4>& from, const Vector<double, 4>& to, const Pace& pace,
-               TimeLaw law) {
+double time_of(const ConfigValue& point, const Coordinates& names, const Pose<double>& from, const Pose<double>& to,
+               const Pace& pace, TimeLaw law) {
   if (pace.time) return *pace.time;
-  const Vector<double, 4> way = to - from;
-  const bool moves = way[0] != 0 || way[1] != 0 || way[2] != 0, turns = way[3] != 0;
+  bool moves = false, turns = false;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (to[i] - from[i] != 0) (names[i].turns() ? turns : moves) = true;
   if (!moves && !turns) throw point.refusal("it is the point before; give the time to stay there as its wait");
   if (moves && pace.acceleration == kNone)
     throw point.refusal("nothing says how fast to move there; give time = .. or acceleration = ..");
   if (turns && !moves && pace.angular_acceleration == kNone)
     throw point.refusal("nothing says how fast to turn there; give time = .. or angular_acceleration = ..");
-  return time_within(law, from, to, pace.acceleration, pace.angular_acceleration);
+  return time_within(law, names, from, to, pace.acceleration, pace.angular_acceleration);
 }
 
-std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Coordinates& names, const Keys& more_keys) {
   Keys known = more_keys;
   for (const char* key : {"type", "points", "law", "back"}) known.emplace_back(key);
   known.insert(known.end(), kPaceKeys.begin(), kPaceKeys.end());
   table.allow(known);
-  const std::string expected = "a list of points, [{ " + names[0] + " = .., " + names[1] + " = .., ... }, ...]";
+  const std::string expected = "a list of points, [{ " + names[0].name + " = .., " +
+                               (names.size() > 1 ? names[1].name + " = .., " : "") + "... }, ...]";
   const ConfigValue list = table.at("points", expected);
   const auto points = list.elements(expected);
   if (points.size() < 2) throw list.error("two points at least");
   const TimeLaw law = law_of(table);
   const Pace general = pace_of(table, {});
-  Keys first_keys(names.begin(), names.end()), keys = first_keys;
+  Keys first_keys = names_of(names), keys = first_keys;
   first_keys.emplace_back("wait");
   keys.emplace_back("wait");
   keys.insert(keys.end(), kPaceKeys.begin(), kPaceKeys.end());
   points[0].expect_table("a table of coordinates, { name = value, ... }").allow(first_keys);
-  const Vector<double, 4> start = pose_at(points[0], names);
+  const Pose<double> start = pose_at(points[0], names);
   double wait = time_or_0(points[0], "wait");
   std::vector<Move> moves;
-  Vector<double, 4> at = start;
+  Pose<double> at = start;
   for (std::size_t k = 1; k < points.size(); ++k) {
     const ConfigValue& point = points[k];
     point.expect_table("a table of coordinates, { name = value, ... }").allow(keys);
-    Vector<double, 4> to = at;
-    for (std::size_t i = 0; i < 4; ++i) to[i] = number_or(point, names[i], unit_of(i), at[i]);
-    moves.push_back({wait, to, time_of(point, at, to, pace_of(point, general), law)});
+    Pose<double> to = at;
+    for (std::size_t i = 0; i < names.size(); ++i) to[i] = number_or(point, names[i].name, names[i].unit, at[i]);
+    moves.push_back({wait, to, time_of(point, names, at, to, pace_of(point, general), law)});
     wait = time_or_0(point, "wait");
     at = to;
   }
@@ -138,14 +139,19 @@ std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Names&
   return point_to_point(start, moves, wait, law);
 }
 
-std::shared_ptr<const Motion> read_oscillation(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+std::shared_ptr<const Motion> read_oscillation(const ConfigValue& table, const Coordinates& names,
+                                               const Keys& more_keys) {
   allow(table, names, {"amplitude", "period", "cycles"}, more_keys);
   const auto cycles = table.find("cycles");
-  return oscillation(pose_at(table, names), positive_at(table, "amplitude", "m"), positive_at(table, "period", "s"),
-                     cycles ? positive(*cycles, "1") : 1);
+  const SpaceAxes axes = space_axes(names);
+  if (!axes.x && !axes.y && !axes.z)
+    throw table.refusal("an oscillation moves x, y and z, and the mechanism's poses have none of them");
+  return oscillation(axes, pose_at(table, names), positive_at(table, "amplitude", "m"),
+                     positive_at(table, "period", "s"), cycles ? positive(*cycles, "1") : 1);
 }
 
-std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, const Coordinates& names,
+                                                  const Keys& more_keys) {
   allow(table, names,
         {"lift", "reach", "lift_time", "reach_time", "overlap", "direction", "turn", "wait", "cycle", "law"},
         more_keys);
@@ -162,11 +168,21 @@ std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, cons
   cycle.wait = time_or_0(table, "wait");
   if (const auto kind = table.find("cycle")) cycle.back = kind->word({"half", "whole"}) == "whole";
   cycle.law = law_of(table);
+  cycle.axes = space_axes(names);
+  const auto expect = [&table](const std::optional<std::size_t>& axis, const std::string& name, double way) {
+    if (!axis && way != 0)
+      throw table.refusal("this pick-and-place moves " + name + ", which the mechanism's poses lack");
+  };
+  const auto [sine, cosine] = sincos(cycle.direction);
+  expect(cycle.axes.z, "z", cycle.lift);
+  expect(cycle.axes.x, "x", cycle.reach * cosine);
+  expect(cycle.axes.y, "y", cycle.reach * sine);
+  expect(cycle.axes.turn, "an angle", cycle.turn);
   return pick_and_place(cycle);
 }
 
 /// A number, text with a unit, or a formula of the time.
-Formula coordinate_formula(const ConfigValue& value, const char* unit) {
+Formula coordinate_formula(const ConfigValue& value, const std::string& unit) {
   if (!value.is_text()) return Formula(shortest(value.number(unit)), time_name());
   const std::string& text = value.text("text");
   try {
@@ -180,21 +196,20 @@ Formula coordinate_formula(const ConfigValue& value, const char* unit) {
   }
 }
 
-std::shared_ptr<const Motion> read_formulas(const ConfigValue& table, const Names& names, const Keys& more_keys) {
+std::shared_ptr<const Motion> read_formulas(const ConfigValue& table, const Coordinates& names, const Keys& more_keys) {
   allow(table, names, {"duration"}, more_keys);
   const double duration = positive_at(table, "duration", "s");
-  const auto formula = [&](std::size_t i) {
-    const std::string unit = unit_of(i);
-    return coordinate_formula(
-        table.at(names[i], "a formula of the time t [s], such as \"0.1*sin(2*pi*t)\", or a number in " + unit),
-        unit_of(i));
-  };
-  return formulas_of_time({formula(0), formula(1), formula(2), formula(3)}, duration);
+  std::vector<Formula> formulas;
+  for (const AxisInfo& axis : names)
+    formulas.push_back(coordinate_formula(
+        table.at(axis.name, "a formula of the time t [s], such as \"0.1*sin(2*pi*t)\", or a number in " + axis.unit),
+        axis.unit));
+  return formulas_of_time(std::move(formulas), duration);
 }
 
 struct Kind {
   std::string name;
-  std::shared_ptr<const Motion> (*read)(const ConfigValue&, const Names&, const Keys&);
+  std::shared_ptr<const Motion> (*read)(const ConfigValue&, const Coordinates&, const Keys&);
 };
 
 const std::vector<Kind>& kinds() {
@@ -207,7 +222,9 @@ const std::vector<Kind>& kinds() {
 
 }  // namespace
 
-MotionNames motion_names(const MechanismInfo& info) { return {info.coordinates, info.chain_input}; }
+MotionNames motion_names(const Mechanism& mechanism) {
+  return {mechanism.info().coordinates, mechanism.chain() ? mechanism.chain()->input() : std::string()};
+}
 
 std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const MotionNames& names,
                                           const std::vector<std::string>& more_keys) {
@@ -235,7 +252,7 @@ void read_motions(const ConfigValue& root, StudyDraft& draft) {
     const std::string& text = name.text("a name for objectives to refer to");
     if (text.empty()) throw name.error("a name for objectives to refer to");
     if (find_named(draft.study.motions, text)) throw name.refusal("there is already a motion called '" + text + "'");
-    draft.study.motions.push_back({text, read_motion(table, motion_names(draft.info()), {"name"})});
+    draft.study.motions.push_back({text, read_motion(table, motion_names(*draft.parts.mechanism), {"name"})});
   }
 }
 

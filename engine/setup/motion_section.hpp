@@ -1,7 +1,6 @@
 // A motion as users write it: MOTION.toml, or a table [[motion]] of a study.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 
@@ -11,12 +10,12 @@
 
 namespace pkm {
 
-/// What motions of a mechanism are written in: MechanismInfo::coordinates and chain_input.
+/// What motions of a mechanism are written in: its coordinates and its auxiliary chain's input.
 struct MotionNames {
-  std::array<std::string, 4> coordinates;  ///< x, y, z, rotation
-  std::string chain_input = {};            ///< a formula of the time beside them; "": there is no chain
+  std::vector<AxisInfo> coordinates;
+  std::string chain_input = {};  ///< a formula of the time beside them; "": there is no chain
 };
-MotionNames motion_names(const MechanismInfo& info);
+MotionNames motion_names(const Mechanism& mechanism);
 
 /// Reads one motion.
 /// @param more_keys  keys of the table that the caller reads

@@ -62,7 +62,7 @@ std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, c
 /// What an [[objective]], [[constraint]] or [[report]] made from an entry of the catalogue of objectives has in common.
 NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, const std::string& name,
                              const Options& options, StudyDraft& draft) {
-  if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
+  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
     throw table.find("type")->refusal(reason);
   const std::size_t survey = survey_read(table, entry, draft);
   Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
@@ -72,38 +72,38 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
     Demand own;
     entry.demand(context, own);
     add_demand(table, own, region ? region->demand : draft.parts.demand);
-    const std::string meaning = entry.detail ? entry.detail(context) : entry.meaning;
-    return {name, entry.unit(context), meaning, entry.direction, entry.make(context), survey, entry.reads_survey, {},
-            {}};
+    return {.name = name,
+            .unit = entry.unit(context),
+            .meaning = entry.detail ? entry.detail(context) : entry.meaning,
+            .direction = entry.direction,
+            .quantity = entry.make(context),
+            .survey = survey,
+            .reads_survey = entry.reads_survey};
   } catch (const std::invalid_argument& reason) {
     throw table.refusal(reason.what());
   }
 }
 
-void read_objective(const ConfigValue& table, StudyDraft& draft) {
+/// [[objective]], or a [[report]].
+void read_objective(const ConfigValue& table, StudyDraft& draft, bool optimised) {
   const auto& catalogue = draft.catalogues.objectives;
   const std::string& type = type_of(table, "type", names_of(catalogue));
   const ObjectiveEntry& entry = *find_named(catalogue, type);
-  allow_options(table, {"type", "name", "direction", "region"}, entry.options);
+  std::vector<std::string> keys = {"type", "name", "region"};
+  if (optimised) keys.insert(keys.begin() + 2, "direction");
+  allow_options(table, keys, entry.options);
   const Options options = read_options(table, entry.options);
-  NamedQuantity made = make_objective(table, entry, entry_name(table, type, draft.study.objectives), options, draft);
-  if (const auto direction = table.find("direction"))
-    made.direction =
-        direction->word({"minimise", "maximise"}) == "maximise" ? Direction::maximise : Direction::minimise;
-  const std::string verb = made.direction == Direction::maximise ? "maximise" : "minimise";
-  draft.study.objectives.push_back({type, made.name, verb + ", " + in_unit(made.unit), entry.options, options});
-  draft.parts.objectives.push_back(std::move(made));
-}
-
-void read_report(const ConfigValue& table, StudyDraft& draft) {
-  const auto& catalogue = draft.catalogues.objectives;
-  const std::string& type = type_of(table, "type", names_of(catalogue));
-  const ObjectiveEntry& entry = *find_named(catalogue, type);
-  allow_options(table, {"type", "name", "region"}, entry.options);
-  const Options options = read_options(table, entry.options);
-  NamedQuantity made = make_objective(table, entry, entry_name(table, type, draft.study.reports), options, draft);
-  draft.study.reports.push_back({type, made.name, in_unit(made.unit), entry.options, options});
-  draft.parts.reports.push_back(std::move(made));
+  auto& entries = optimised ? draft.study.objectives : draft.study.reports;
+  NamedQuantity made = make_objective(table, entry, entry_name(table, type, entries), options, draft);
+  std::string role = in_unit(made.unit);
+  if (optimised) {
+    if (const auto direction = table.find("direction"))
+      made.direction =
+          direction->word({"minimise", "maximise"}) == "maximise" ? Direction::maximise : Direction::minimise;
+    role = (made.direction == Direction::maximise ? "maximise, " : "minimise, ") + role;
+  }
+  entries.push_back({type, made.name, role, entry.options, options});
+  (optimised ? draft.parts.objectives : draft.parts.reports).push_back(std::move(made));
 }
 
 /// An objective as a constraint: its value has a least or a greatest allowed value.
@@ -130,7 +130,7 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
 void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
   auto specs = entry.options(draft.info());
   allow_options(table, {"type", "name"}, specs);
-  if (const std::string reason = entry.refusal(draft.info()); !reason.empty())
+  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
     throw table.find("type")->refusal(reason);
   // The margin's unit may follow from some options and be that of others, which are read after it is known.
   std::vector<OptionSpec> first;
@@ -163,7 +163,8 @@ void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry
   const MechanismInfo& info = draft.info();
   const auto specs = entry.options(info);
   allow_options(table, {"type"}, specs);
-  if (const std::string reason = entry.refusal(info); !reason.empty()) throw table.find("type")->refusal(reason);
+  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
+    throw table.find("type")->refusal(reason);
   const Options options = read_options(table, specs);
   LimitSpec& all = draft.parts.plan.limits;
   LimitSpec own;
@@ -221,7 +222,7 @@ void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
 }
 
 void read_quantities(const ConfigValue& root, StudyDraft& draft) {
-  for (const auto& table : tables_of(root, "objective")) read_objective(table, draft);
+  for (const auto& table : tables_of(root, "objective")) read_objective(table, draft, true);
   for_constraints(root, draft, false,
                   [&](const ConfigValue& table, const ConstraintEntry* entry, const std::string& type) {
                     if (entry)
@@ -229,7 +230,7 @@ void read_quantities(const ConfigValue& root, StudyDraft& draft) {
                     else
                       read_bounded_objective(table, *find_named(draft.catalogues.objectives, type), draft);
                   });
-  for (const auto& table : tables_of(root, "report")) read_report(table, draft);
+  for (const auto& table : tables_of(root, "report")) read_objective(table, draft, false);
 }
 
 }  // namespace pkm

@@ -8,17 +8,9 @@
 namespace pkm {
 namespace {
 
-/// "" or why the study has no derivatives.
-std::string why_no_derivatives(const ProblemParts& parts) {
-  try {
-    return no_derivatives(parts);
-  } catch (const std::invalid_argument&) {
-    return "";  // the survey itself is refused, which is told when the problem is made
-  }
-}
-
-/// "" or one sentence naming what the optimiser can do and what the study asks for.
-std::string refusal_of(const OptimiserEntry& entry, const Options& options, const ProblemParts& parts) {
+/// Names what the optimiser can do and what the study asks for.
+Refusal refusal_of(const OptimiserEntry& entry, const Options& options, const DesignProblem& problem) {
+  const ProblemParts& parts = problem.parts();
   const Capabilities can = entry.capabilities(options);
   const std::string who = "the optimiser " + entry.name + " " +
                           (options.has("algorithm") ? "with the algorithm " + options.word("algorithm") + " " : "");
@@ -39,9 +31,8 @@ std::string refusal_of(const OptimiserEntry& entry, const Options& options, cons
     if (!can.discrete && variable.step > 0)
       return who + "handles continuous variables only, but the variable " + variable.name + " has a step";
   if (can.needs_gradient)
-    if (const std::string reason = why_no_derivatives(parts); !reason.empty())
-      return who + "needs derivatives, but " + reason;
-  return "";
+    if (const Refusal reason = problem.no_derivatives()) return who + "needs derivatives, but " + *reason;
+  return {};
 }
 
 /// The designs that a stage is to start from lie in the space that it searches.
@@ -77,9 +68,10 @@ void read_stages(const ConfigValue& root, StudyDraft& draft) {
       for (const NamedQuantity& o : objectives) spec.fields.emplace_back(o.name, o.unit);
       if (spec.kind == OptionKind::word) spec.choices = names_of(objectives);
     }
-    Stage stage{&entry, read_options(table, specs), nullptr, table.place().line, {}};
-    if (const std::string reason = refusal_of(entry, stage.options, draft.parts); !reason.empty())
-      throw table.find("optimiser")->refusal(reason);
+    Stage stage{
+        std::make_shared<const OptimiserEntry>(entry), read_options(table, specs), nullptr, table.place().line, {}};
+    if (const Refusal reason = refusal_of(entry, stage.options, *draft.study.problem))
+      throw table.find("optimiser")->refusal(*reason);
     if (entry.capabilities(stage.options).needs_front && draft.study.stages.empty())
       throw table.find("start")->refusal(
           "start = \"pareto\" needs a [[stage]] before it that finds a front, such as nsga2");

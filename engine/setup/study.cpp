@@ -7,6 +7,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
 #include "engine/setup/text_file.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm {
 namespace {
@@ -53,10 +54,11 @@ void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
 void warn_of_empty_workspace(Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
-  SurveyPlan plan = parts.plan;
-  if (plan.method == Method::voxels) {
-    std::int64_t cells = std::max<std::int64_t>(1, plan.held_cells);
-    for (const std::int64_t n : plan.cells) cells *= n;  // at most 2^48
+  const SurveyPlan& plan = parts.plan;
+  if (const VoxelOptions* const voxels = plan.voxels()) {
+    std::int64_t cells = 1;
+    for (const std::int64_t n : voxels->cells) cells *= n;  // at most 2^28
+    for (const HeldCoordinate& held : plan.held) cells *= std::max<std::int64_t>(1, held.cells);
     if (cells > kMostCellsOfACheck) return;
   }
   std::vector<double> design = parts.parameters;
@@ -69,20 +71,23 @@ void warn_of_empty_workspace(Study& study) {
     for (std::size_t v = 0; v < parts.space.dimension(); ++v)
       design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
   }
-  if (!parts.mechanism->refuse(design).empty()) return;
-  Survey<double> survey;
-  parts.mechanism->prepare(plan, {})->survey(design, survey);
-  if (survey.volume > 0) return;
-  using Kind = HeldCoordinate::Kind;
-  const int coordinate = sweep_of(info, plan).held;
-  const std::string& held = info.coordinates[static_cast<std::size_t>(coordinate)];
-  const std::string where =
-      plan.held.kind == Kind::value
-          ? "on the plane " + held + " = " + with_unit(plan.held.value, coordinate == 3 ? "rad" : "m")
-      : plan.held.kind == Kind::middle ? "on its middle plane"
-                                       : "at any " + held;
-  study.warnings.push_back("the workspace of " + what + " is empty: no pose " + where +
-                           (plan.box ? " in the box" : "") + " is feasible");
+  if (parts.mechanism->refuse(design)) return;
+  try {
+    if (study.problem->workspace(design).volume > 0) return;
+  } catch (const std::exception&) {
+    return;  // a mass that is not positive has a message of its own when the design is evaluated
+  }
+  std::string where;
+  for (const int coordinate : sweep_of(info, plan).held) {
+    using Kind = HeldCoordinate::Kind;
+    const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
+    const HeldCoordinate held = how_held(plan, coordinate);
+    if (held.kind == Kind::value) where += " on the plane " + axis.name + " = " + with_unit(held.value, axis.unit);
+    if (held.kind == Kind::middle) where += " on its middle plane";
+    if (held.kind == Kind::integrated) where += " at any " + axis.name;
+  }
+  study.warnings.push_back("the workspace of " + what + " is empty: no pose" + where +
+                           (plan.box() ? " in the box" : "") + " is feasible");
 }
 
 }  // namespace
@@ -139,14 +144,14 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_regions(root, draft);
   read_motions(root, draft);
   read_quantities(root, draft);
-  read_references(root, draft);
-  read_stages(root, draft);
-  read_run_sections(root, draft);
   try {
-    draft.study.problem = std::make_shared<const DesignProblem>(std::move(draft.parts));
+    draft.study.problem = std::make_shared<const DesignProblem>(draft.parts);
   } catch (const std::invalid_argument& reason) {
     throw root.find("workspace").value_or(*root.find("mechanism")).refusal(reason.what());
   }
+  read_references(root, draft);
+  read_stages(root, draft);
+  read_run_sections(root, draft);
   warn_of_empty_workspace(draft.study);
   return std::move(draft.study);
 }

@@ -12,22 +12,22 @@
 #include <utility>
 #include <vector>
 
-#include "engine/mechanisms/all.hpp"
+#include "engine/mechanism/mechanism.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/problem/design_problem.hpp"
 
 namespace pkm {
 
-/// What a study may name. Stages keep pointers into `optimisers`.
+/// What a study may name.
 struct Catalogues {
-  const MechanismList& mechanisms;
-  const std::vector<ObjectiveEntry>& objectives;
-  const std::vector<ConstraintEntry>& constraints;
-  const std::vector<OptimiserEntry>& optimisers;
+  MechanismList mechanisms;
+  std::vector<ObjectiveEntry> objectives;
+  std::vector<ConstraintEntry> constraints;
+  std::vector<OptimiserEntry> optimisers;
 };
 
 struct Stage {
-  const OptimiserEntry* entry = nullptr;
+  std::shared_ptr<const OptimiserEntry> entry;
   Options options;  ///< defaults filled in, also those that depend on the variables
   std::shared_ptr<const Optimiser> optimiser;
   int line = 0;                   ///< of its [[stage]]

@@ -13,7 +13,9 @@ namespace pkm {
 namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 17;
-constexpr unsigned kDeflateLevel = 1;  // twice as fast as level 6, and files are a few per cent larger
+constexpr std::size_t kLeastDeflated = 1024;  // bytes of a chunk: to start deflate takes a quarter of a megabyte
+constexpr std::size_t kGrowth = std::size_t{1} << 16;  // bytes; HDF5 clears them
+constexpr unsigned kDeflateLevel = 1;                  // twice as fast as level 6, and files are a few per cent larger
 
 /// While one lives, HDF5 prints nothing.
 class QuietErrors {
@@ -122,6 +124,7 @@ Handle dataset_properties(const Extent& extent, std::size_t value_bytes, const s
   for (std::size_t i = 1; i < chunk.size(); ++i) row_bytes *= chunk[i] = std::max<hsize_t>(chunk[i], 1);
   chunk[0] = std::clamp<hsize_t>(extent[0], 1, std::max<std::size_t>(kChunkBytes / row_bytes, 1));
   check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), what);
+  if (chunk[0] * row_bytes < kLeastDeflated) return properties;
   check(H5Pset_shuffle(properties.get()), what);
   check(H5Pset_deflate(properties.get(), kDeflateLevel), what);
   return properties;
@@ -181,7 +184,7 @@ void write_labels(hid_t dataset, const Leaf& leaf) {
 
 Handle core_access(const std::string& what) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
-  check(H5Pset_fapl_core(access.get(), std::size_t{1} << 20, false), what);
+  check(H5Pset_fapl_core(access.get(), kGrowth, false), what);
   check(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), what);
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V110), what);
   return access;

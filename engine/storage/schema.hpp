@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
 #include "engine/storage/schema_fields.hpp"
 #include "engine/storage/study_contents.hpp"
 
@@ -196,7 +196,7 @@ void describe_front(Archive& archive, const std::string& group, const Problem& p
     const Scores scores = scores_of(problem.objectives, stage.table, front.rows);
     std::vector<std::uint8_t> knee(front.rows.size(), 0);
     for (const std::size_t point : knees(scores)) knee[point] = 1;
-    archive.array(Leaf{group + "/knee", "1 where the front bends, see engine/optimisers/front.hpp", {"1"}, {}}, knee,
+    archive.array(Leaf{group + "/knee", "1 where the front bends, see engine/problem/front.hpp", {"1"}, {}}, knee,
                   {knee.size()});
     archive.attribute(group, "compromise",
                       knee.empty() ? std::int64_t{-1} : static_cast<std::int64_t>(compromise(scores)));

@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/options.hpp"
 #include "engine/core/parameter.hpp"
 #include "engine/mechanism/survey.hpp"
-#include "engine/optimisers/optimiser.hpp"
-#include "engine/problem/problem.hpp"
+#include "engine/problem/front.hpp"
+#include "engine/problem/start_outcome.hpp"
 
 namespace pkm {
 

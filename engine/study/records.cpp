@@ -12,43 +12,41 @@
 #include "engine/optimisers/solvers/optimality.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/survey/picture_plan.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm {
 namespace {
 
 DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters) {
   const DesignReport r = problem.report(parameters);
-  const bool box_matters = problem.parts().plan.box.has_value();  // the default box ends where the mechanism does
-  return {r.parameters,
-          r.objectives,
-          r.margins,
-          r.reports,
-          r.status,
-          r.reason,
-          r.survey.volume,
-          r.survey.cells,
-          r.survey.feasible_cells,
-          r.survey.cell_volume,
-          box_matters && r.survey.touches_box};
+  const bool box_matters = problem.parts().plan.box().has_value();  // the default box ends where the mechanism does
+  return {.parameters = r.parameters,
+          .objectives = r.objectives,
+          .margins = r.margins,
+          .reports = r.reports,
+          .status = r.status,
+          .reason = r.reason,
+          .volume = r.survey.volume,
+          .cells = r.survey.cells,
+          .feasible_cells = r.survey.feasible_cells,
+          .cell_volume = r.survey.cell_volume,
+          .touches_box = box_matters && r.survey.touches_box};
 }
 
 /// Rounding may leave the bounds, or what the mechanism is defined for: said in `reason`, and in the latter case
 /// nothing is evaluated.
 DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters) {
   const ProblemParts& parts = problem.parts();
-  const std::string refusal = parts.mechanism->refuse(parameters);
-  if (!refusal.empty()) {
+  if (const Refusal refusal = parts.mechanism->refuse(parameters)) {
     const auto nothing = [](std::size_t size) {
       return std::vector<double>(size, std::numeric_limits<double>::quiet_NaN());
     };
-    DesignRecord refused;
-    refused.parameters = parameters;
-    refused.objectives = nothing(problem.objectives().size());
-    refused.margins = nothing(problem.margins().size());
-    refused.reports = nothing(problem.reports().size());
-    refused.status = Status::failed;
-    refused.reason = refusal;
-    return refused;
+    return {.parameters = parameters,
+            .objectives = nothing(problem.objectives().size()),
+            .margins = nothing(problem.margins().size()),
+            .reports = nothing(problem.reports().size()),
+            .status = Status::failed,
+            .reason = *refusal};
   }
   DesignRecord record = evaluated(problem, parameters);
   for (std::size_t i = 0; i < parts.varies.size(); ++i) {
@@ -64,9 +62,7 @@ DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<d
 /// The same problem on exact columns, or null where the mechanism has none.
 std::unique_ptr<const DesignProblem> on_columns(const ProblemParts& parts) {
   ProblemParts exact = parts;
-  exact.plan.method = Method::columns;
-  exact.plan.tolerance = 1e-10;
-  exact.plan.nodes = {};
+  exact.plan.method = ColumnOptions{.tolerance = 1e-10, .nodes = {}, .box = parts.plan.box()};
   try {
     return std::make_unique<const DesignProblem>(std::move(exact));
   } catch (const std::invalid_argument&) {
@@ -203,7 +199,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
   const DesignProblem& problem = *study.problem;
   const ProblemParts& parts = problem.parts();
   const MechanismInfo& info = parts.mechanism->info();
-  const auto exact = parts.plan.method == Method::voxels ? on_columns(parts) : nullptr;
+  const auto exact = parts.plan.voxels() ? on_columns(parts) : nullptr;
   FinalRecord f;
   f.volume_unit = volume_unit(info, parts.plan);
   if (study.baseline) {
@@ -223,11 +219,14 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
     f.rounded = evaluated_rounded(problem, rounded);
   }
   MapRecord map;
-  map.voxels = parts.mechanism->voxel_map(best, picture_plan(parts.plan, kMapCells));
+  map.voxels = voxel_map(*parts.mechanism, best, picture_plan(info, parts.plan, kMapCells));
   for (const int swept : sweep_of(info, parts.plan).swept) {
-    map.axes.push_back(info.coordinates[static_cast<std::size_t>(swept)]);
-    map.units.push_back(swept == 3 ? "rad" : "m");
+    const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(swept)];
+    map.axes.push_back(axis.name);
+    map.units.push_back(axis.unit);
   }
+  map.axes.resize(3);  // an axis along which nothing is swept has no name
+  map.units.resize(3, "1");
   f.map = std::move(map);
   return f;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "engine/problem/order.hpp"
 #include "engine/problem/replay.hpp"
 #include "engine/storage/checkpoint_clock.hpp"
 #include "engine/storage/study_file.hpp"
@@ -66,7 +67,14 @@ class Run final : public Monitor {
     contents_.algorithms = kAlgorithms;
   }
 
+  /// By one team for all stages.
   RunOutcome run() {
+    RunOutcome outcome;
+    with_team(evaluator_.threads(), [&] { outcome = run_stages(); });
+    return outcome;
+  }
+
+  RunOutcome run_stages() {
     clock_.first([&] {
       if (recorded_.empty()) write(StudyState::running);  // a new study's file precedes its first evaluation
     });
@@ -178,12 +186,12 @@ class Run final : public Monitor {
     std::optional<ReplayEvaluator> replay;
     if (again) replay.emplace(evaluator_, recorded_[index].table);
     Evaluator& evaluator = again ? static_cast<Evaluator&>(*replay) : evaluator_;
-    StageInput input{*study_.problem,
-                     evaluator,
-                     *this,
-                     stage_seed(index),
-                     start_designs(study_, stage, contents_),
-                     known_front(study_, contents_)};
+    StageInput input{.problem = *study_.problem,
+                     .evaluator = evaluator,
+                     .monitor = *this,
+                     .seed = stage_seed(index),
+                     .starts = start_designs(study_, stage, contents_),
+                     .known_front = known_front(study_, contents_)};
     if (again) {
       input.recorded = &recorded_[index].table;
       input.recorded_starts = recorded_[index].starts;
@@ -205,7 +213,8 @@ class Run final : public Monitor {
     record.finished = true;
     record.stop = words(result.reason);
     record.best_row = result.best_row;
-    if (result.front && !record.front) record.front = {result.front->rows, result.front->reference, {}, {}, {}};
+    if (result.front && !record.front)
+      record.front = {.rows = result.front->rows, .reference = result.front->reference};
     if (record.table.shape().detail == Detail::derivatives) record.optimality = optimality_record(study_, record);
     return true;
   }
@@ -221,35 +230,24 @@ class Run final : public Monitor {
     const bool first = contents_.best.row < 0 || contents_.best.stage == stage;
     if (!first) {
       // Earlier stages win ties, so that a stage that finds nothing better changes nothing.
-      const EvaluationTable& before = contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table;
-      EvaluationTable pair(table.shape());
-      pair.extend(2);
-      copy_row(before, static_cast<std::size_t>(contents_.best.row), pair, 0);
-      copy_row(table, static_cast<std::size_t>(row), pair, 1);
+      const auto& objectives = study_.problem->objectives();
+      const Ranked before = ranked(objectives, contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table,
+                                   static_cast<std::size_t>(contents_.best.row));
+      const Ranked candidate = ranked(objectives, table, static_cast<std::size_t>(row));
       // Of several objectives the best is a stage's compromise; the last one that is as feasible stands.
-      if (study_.problem->objectives().size() > 1 ? pair.status[1] > pair.status[0]
-                                                  : !better(pair, study_.problem->objectives()[0].direction, 1, 0))
-        return;
+      if (objectives.size() > 1 ? candidate.status > before.status : !better(candidate, before)) return;
     }
     contents_.best = {stage, row};
   }
 
-  static void copy_row(const EvaluationTable& from, std::size_t row, EvaluationTable& to, std::size_t at) {
-    const EvaluationSlot slot = to.slot(at);
-    std::ranges::copy(from.objective_row(row), slot.objectives.begin());
-    std::ranges::copy(from.margin_row(row), slot.margins.begin());
-    slot.status = from.status[row];
-  }
-
   void report(const Generation& g, const std::string& optimiser) {
-    ProgressReport r;
-    r.stage = stage_;
-    r.stages = study_.stages.size();
-    r.optimiser = optimiser;
-    r.generation = g.number;
-    r.evaluations = static_cast<std::int64_t>(g.table->size());
-    r.evaluation_limit = limit_;
-    r.seconds = now() - start_;
+    ProgressReport r{.stage = stage_,
+                     .stages = study_.stages.size(),
+                     .optimiser = optimiser,
+                     .generation = g.number,
+                     .evaluations = static_cast<std::int64_t>(g.table->size()),
+                     .evaluation_limit = limit_,
+                     .seconds = now() - start_};
     r.evaluations_per_second = r.seconds > 0 ? static_cast<double>(made_) / r.seconds : 0;
     r.feasible_share = contents_.stages.back().generations.feasible_share.back();
     if (!study_.problem->objectives().empty() && g.best_row >= 0) {

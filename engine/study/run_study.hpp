@@ -24,7 +24,7 @@ struct ProgramVersion {
 };
 
 struct RunOptions {
-  int threads = 0;                   ///< 0: as many as the machine has cores
+  int threads = 0;                   ///< as for team_size()
   std::optional<double> time_limit;  ///< [s] of this run; the study then stops early with a checkpoint
   ProgramVersion program;
 };

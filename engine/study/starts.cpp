@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/optimisers/evolutionary/order.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
+#include "engine/problem/order.hpp"
 
 namespace pkm {
 namespace {
@@ -43,11 +43,10 @@ std::vector<StartDesign> basins(const Study& study, const StudyContents& content
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const EvaluationTable& table = contents.stages[s].table;
     for (std::size_t row = 0; row < table.size(); ++row)
-      if (table.status[row] != Status::failed) candidates.push_back({ranked(problem, table, row), s, {}});
+      if (table.status[row] != Status::failed) candidates.push_back({ranked(problem.objectives(), table, row), s, {}});
   }
   const auto by_rank = [](const Candidate& a, const Candidate& b) {
-    if (a.rank.status != b.rank.status) return a.rank.status < b.rank.status;
-    if (a.rank.value != b.rank.value) return a.rank.value < b.rank.value;
+    if (better(a.rank, b.rank) || better(b.rank, a.rank)) return better(a.rank, b.rank);
     return std::pair(a.stage, a.rank.row) < std::pair(b.stage, b.rank.row);
   };
   std::sort(candidates.begin(), candidates.end(), by_rank);

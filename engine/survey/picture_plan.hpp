@@ -1,21 +1,26 @@
 // The voxels that picture the workspace of a study, whichever way it surveys it.
 #pragma once
 
-#include "engine/mechanism/plan.hpp"
+#include "engine/mechanism/mechanism.hpp"
 
 namespace pkm {
 
 /// The plan itself, if it counts voxels, else voxels with the same limits and box; on one value of the held coordinate:
 /// the plan's, or the design's middle where it integrates.
 /// @param cells  for a plan of columns, which has none
-inline SurveyPlan picture_plan(const SurveyPlan& plan, const std::array<std::int64_t, 3>& cells) {
+inline SurveyPlan picture_plan(const MechanismInfo& info, const SurveyPlan& plan,
+                               const std::array<std::int64_t, 3>& cells) {
   SurveyPlan picture = plan;
-  if (plan.method == Method::columns) {
-    picture.method = Method::voxels;
-    picture.cells = cells;
+  if (const ColumnOptions* const columns = plan.columns()) {
+    VoxelOptions voxels{.cells = cells, .box = columns->box};
+    for (std::size_t i = sweep_of(info, plan).swept.size(); i < 3; ++i) voxels.cells[i] = 1;
+    picture.method = voxels;
   }
-  picture.held_values.clear();
-  if (plan.held.kind == HeldCoordinate::Kind::integrated) picture.held.kind = HeldCoordinate::Kind::middle;
+  for (HeldCoordinate& held : picture.held) {
+    if (held.kind == HeldCoordinate::Kind::listed)
+      held = {held.coordinate, HeldCoordinate::Kind::value, held.values[0]};
+    if (held.kind == HeldCoordinate::Kind::integrated) held = {held.coordinate};
+  }
   return picture;
 }
 

@@ -10,7 +10,7 @@
 namespace pkm {
 
 /// Calls fill(piece, survey, worker) for every piece in [0, pieces), which is to add the piece's samples, its feasible
-/// cells and whether they touch the box: in order, or, where a team is lent to this thread, shared out among it. The
+/// cells and whether they touch the box: in order, or, where this thread has a team, shared out among it. The
 /// samples are the same, in the same order.
 /// @param worker  < workers(): pieces at work at once have different ones
 template <class S, class Fill>

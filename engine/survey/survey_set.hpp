@@ -1,15 +1,18 @@
-// Surveys of a plan, also where the held coordinate takes a set of values.
+// Surveys of any plan by any mechanism: by its own columns or voxels, else cell by cell; also where a held coordinate
+// takes a list of values.
 #pragma once
-
-#include <memory>
 
 #include "engine/mechanism/mechanism.hpp"
 
 namespace pkm {
 
-/// Mechanism::prepare, but a plan with SurveyPlan::held_values gives the surveys at all of them as one: samples in the
-/// order of the values, weights and volume divided by their number. Throws as Mechanism::prepare.
+/// The surveyor of a plan. A plan that lists values of held coordinates gives the surveys at all of them (and at all
+/// combinations, if there are several lists) as one: samples in the order of the values, weights and volume divided by
+/// their number. Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
 std::unique_ptr<const Surveyor> prepare_survey(const Mechanism& mechanism, const SurveyPlan& plan,
                                                const Demand& demand);
+
+/// The cells of a voxel plan for one design (the plan's cells; box as in a survey). It throws the same.
+VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan);
 
 }  // namespace pkm

@@ -1,4 +1,5 @@
-// A box of voxels over three swept coordinates: cell k of axis i has its centre at lower + (k + 1/2) step.
+// A box of voxels over the swept coordinates, an axis without one having a single cell [0, 1]: cell k of axis i has its
+// centre at lower + (k + 1/2) step.
 #pragma once
 
 #include <array>
@@ -8,8 +9,6 @@
 #include "engine/mechanism/survey.hpp"
 
 namespace pkm {
-
-using Box = std::array<std::array<double, 2>, 3>;
 
 struct VoxelGrid {
   std::array<std::int64_t, 3> cells{};
@@ -56,12 +55,15 @@ VoxelMap test_every_cell(const VoxelGrid& grid, const Test& feasible) {
 }
 
 /// Volume, counts and box contact of a map.
-inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>& survey) {
+/// @param swept  number of coordinates: the axes behind them touch nothing
+inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>& survey, std::size_t swept = 3) {
   survey.clear();
   survey.cells = grid.count();
   survey.cell_volume = grid.cell_volume();
   std::size_t cell = 0;
-  const auto outer = [&](std::size_t axis, std::int64_t k) { return k == 0 || k == grid.cells[axis] - 1; };
+  const auto outer = [&](std::size_t axis, std::int64_t k) {
+    return axis < swept && (k == 0 || k == grid.cells[axis] - 1);
+  };
   for (std::int64_t i = 0; i < grid.cells[0]; ++i)
     for (std::int64_t j = 0; j < grid.cells[1]; ++j)
       for (std::int64_t k = 0; k < grid.cells[2]; ++k) {

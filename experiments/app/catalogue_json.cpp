@@ -52,7 +52,7 @@ Json options_json(const std::vector<OptionSpec>& specs) {
 /// Whether an objective or a design-level constraint serves a mechanism: with its unit, or the reason why not.
 template <class Entry>
 Json service_json(const Entry& entry, const std::vector<OptionSpec>& specs, const Mechanism& mechanism) {
-  const std::string refusal = entry.refusal(mechanism.info());
+  const std::string refusal = entry.refusal(mechanism);
   Json json = {{"name", mechanism.info().name}, {"serves", refusal.empty()}, {"unit", nullptr}, {"reason", nullptr}};
   if (!refusal.empty()) {
     json["reason"] = refusal;
@@ -75,16 +75,16 @@ Json limits_json(const MechanismInfo& info, const std::string& group) {
                       {"min", limit.lower},
                       {"max", limit.upper},
                       {"constraint", limit.group},
-                      {"derivation", limit.derivation.empty() ? Json() : Json(limit.derivation)},
+                      {"derivation", text_or_null(limit.derivation)},
                       {"meaning", limit.meaning}});
   return list;
 }
 
 /// What expressions may name, with the units of a survey on one plane.
-Json expression_names_json(const MechanismInfo& info) {
+Json expression_names_json(const Mechanism& mechanism) {
   using Origin = ExpressionName::Origin;
   Json list = Json::array();
-  for (const auto& known : expression_names(info, {}))
+  for (const auto& known : expression_names(mechanism, {}))
     list.push_back({{"name", known.name},
                     {"unit", known.unit},
                     {"known", known.origin == Origin::survey ? "after the survey" : "before the survey"},
@@ -94,10 +94,10 @@ Json expression_names_json(const MechanismInfo& info) {
 
 /// Names of the entries that serve a mechanism.
 template <class List>
-Json serving(const List& entries, const MechanismInfo& info) {
+Json serving(const List& entries, const Mechanism& mechanism) {
   Json names = Json::array();
   for (const auto& entry : entries)
-    if (entry.refusal(info).empty()) names.push_back(entry.name);
+    if (entry.refusal(mechanism).empty()) names.push_back(entry.name);
   return names;
 }
 
@@ -116,10 +116,12 @@ Json parameters_json(const std::vector<Parameter>& parameters) {
 /// What the mechanism has with other mass models than the one in force, and only with them.
 Json other_parameters_json(const Mechanism& mechanism) {
   Json models = Json::object();
-  for (const std::string& model : mechanism.info().mass_models) {
-    if (model == mechanism.info().mass_model) continue;
+  const Dynamics* const dynamics = mechanism.dynamics();
+  if (!dynamics) return models;
+  for (const std::string& model : dynamics->mass_models()) {
+    if (model == dynamics->mass_model()) continue;
     std::vector<Parameter> own;
-    const auto other = mechanism.with_masses(model);
+    const auto other = dynamics->with_masses(model);
     for (const Parameter& p : other->info().parameters)
       if (!find_named(mechanism.info().parameters, p.name)) own.push_back(p);
     models["masses = " + model] = parameters_json(own);
@@ -127,45 +129,63 @@ Json other_parameters_json(const Mechanism& mechanism) {
   return models;
 }
 
+Json sweep_json(const MechanismInfo& info, const Sweep& sweep, bool has_columns) {
+  const auto name = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)].name; };
+  Json swept = Json::array(), held = Json::array();
+  for (const int i : sweep.swept) swept.push_back(name(i));
+  for (const int i : sweep.held) held.push_back(name(i));
+  return {{"swept", swept},
+          {"columns_along", has_columns ? Json(name(sweep.column)) : Json()},
+          {"held", held.size() == 1 ? held[0] : held},
+          {"volume_unit", unit_of_product(info, sweep.swept)}};
+}
+
+/// Null where the mechanism lacks an ability that has something to say.
+template <class Ability, class Say>
+Json said_by(const Ability* ability, const Say& say) {
+  return ability ? Json(say(*ability)) : Json();
+}
+
 Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   const MechanismInfo& info = mechanism.info();
-  const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
+  const bool has_columns = mechanism.columns();
   Json json = {{"name", info.name}, {"meaning", info.title}, {"source", info.source}};
-  json["mass_models"] = info.mass_models;
-  json["masses"] = info.mass_model.empty() ? Json() : Json(info.mass_model);
-  json["coordinates"] = info.coordinates;
-  json["joints"] = info.joints;
+  json["mass_models"] = Json::array();
+  if (const Dynamics* dynamics = mechanism.dynamics()) json["mass_models"] = dynamics->mass_models();
+  json["masses"] = mass_model_json(mechanism);
+  json["coordinates"] = names_of(info.coordinates);
+  json["joints"] = names_of(info.joints);
   json["modes"] = info.modes;
   json["default_mode"] = info.modes.front();
   json["branches"] = info.branches.empty() ? Json() : Json(info.branches);
-  json["influence_coefficients"] = info.has_influence;
-  json["chain_input"] = info.chain_input.empty() ? Json() : Json(info.chain_input);
-  json["chain_output"] = info.chain_output.empty() ? Json() : Json(info.chain_output);
-  for (const int swept : info.swept) json["swept"].push_back(coordinate(swept));
-  json["columns_along"] = coordinate(info.column);
-  json["held"] = coordinate(info.held);
-  json["volume_unit"] = info.volume_unit;
+  json["influence_coefficients"] = mechanism.velocities() != nullptr;
+  json["chain_input"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.input(); });
+  json["chain_output"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.output(); });
+  const Sweep& usual = info.sweeps.front();
+  json.update(sweep_json(info, usual, has_columns));
   json["other_sweeps"] = Json::array();
-  for (const Sweep& sweep : info.more_sweeps) {
-    Json other = {{"held", coordinate(sweep.held)}, {"swept", Json::array()}};
-    for (const int swept : sweep.swept) other["swept"].push_back(coordinate(swept));
-    other["columns_along"] = coordinate(sweep.column);
-    other["volume_unit"] = sweep.volume_unit;
+  for (std::size_t k = 1; k < info.sweeps.size(); ++k) {
+    const Json sweep = sweep_json(info, info.sweeps[k], has_columns);
+    Json other = Json::object();
+    for (const char* key : {"held", "swept", "columns_along", "volume_unit"}) other[key] = sweep[key];
     json["other_sweeps"].push_back(other);
   }
-  json["integrated_unit"] = info.held_can_integrate ? Json(info.integrated_unit) : Json();
-  json["size"] = info.size_unit.empty() ? Json() : Json(info.size_meaning);
-  json["size_unit"] = info.size_unit.empty() ? Json() : Json(info.size_unit);
-  json["characteristic_length"] = info.characteristic_length.empty() ? Json() : Json(info.characteristic_length);
-  json["objectives"] = serving(catalogues.objectives, info);
-  json["constraints"] = serving(catalogues.constraints, info);
+  std::vector<int> integrated = usual.swept;
+  integrated.insert(integrated.end(), usual.held.begin(), usual.held.end());
+  json["integrated_unit"] = usual.integrates ? Json(unit_of_product(info, integrated)) : Json();
+  json["size"] = said_by(mechanism.size(), [](const Size& size) { return size.meaning(); });
+  json["size_unit"] = said_by(mechanism.size(), [](const Size& size) { return size.unit(); });
+  json["characteristic_length"] = text_or_null(info.characteristic_length);
+  json["objectives"] = serving(catalogues.objectives, mechanism);
+  json["constraints"] = serving(catalogues.constraints, mechanism);
   json["parameters"] = parameters_json(info.parameters);
   if (Json others = other_parameters_json(mechanism); !others.empty()) json["parameters_besides"] = std::move(others);
   json["limits"] = limits_json(info, "");
   json["design_tests"] = Json::array();
-  for (const auto& test : info.design_margins)
-    json["design_tests"].push_back({{"name", test.name}, {"unit", test.unit}, {"meaning", test.meaning}});
-  json["expression_names"] = expression_names_json(info);
+  if (const DesignTests* tests = mechanism.design_tests())
+    for (const auto& test : tests->list())
+      json["design_tests"].push_back({{"name", test.name}, {"unit", test.unit}, {"meaning", test.meaning}});
+  json["expression_names"] = expression_names_json(mechanism);
   return json;
 }
 
@@ -188,7 +208,7 @@ Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues)
     const MechanismInfo& info = mechanism->info();
     const auto specs = entry.options(info);
     json["mechanisms"].push_back(service_json(entry, specs, *mechanism));
-    if (!entry.refusal(info).empty()) continue;
+    if (!entry.refusal(*mechanism).empty()) continue;
     json["options"][info.name] = options_json(specs);
     if (entry.pose_level) json["limits"][info.name] = limits_json(info, entry.name);
   }
@@ -220,6 +240,11 @@ Json optimiser_json(const OptimiserEntry& entry) {
 }
 
 }  // namespace
+
+Json mass_model_json(const Mechanism& mechanism) {
+  const Dynamics* const dynamics = mechanism.dynamics();
+  return dynamics ? Json(dynamics->mass_model()) : Json();
+}
 
 bool needs_options(const std::vector<OptionSpec>& specs) {
   return std::any_of(specs.begin(), specs.end(), [](const OptionSpec& spec) { return spec.required; });

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "experiments/app/catalogue_json.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
 
@@ -31,30 +32,39 @@ Json entries_json(const std::vector<StudyEntry>& entries) {
 }
 
 Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
-  const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
-  const Sweep sweep = sweep_of(info, plan);
+  const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)].name; };
+  const Sweep& sweep = sweep_of(info, plan);
   Json json;
-  if (plan.method == Method::voxels) {
+  const auto add_box = [&] {
+    for (std::size_t k = 0; plan.box() && k < sweep.swept.size(); ++k)
+      json["box"][coordinate(sweep.swept[k])] = (*plan.box())[k];
+  };
+  if (const VoxelOptions* voxels = plan.voxels()) {
     json["method"] = "voxels";
-    for (std::size_t k = 0; k < 3; ++k) json["cells"][coordinate(sweep.swept[k])] = plan.cells[k];
-    if (plan.held_cells > 0) json["cells"][coordinate(sweep.held)] = plan.held_cells;
+    for (std::size_t k = 0; k < sweep.swept.size(); ++k) json["cells"][coordinate(sweep.swept[k])] = voxels->cells[k];
+    for (const HeldCoordinate& held : plan.held)
+      if (held.cells > 0) json["cells"][coordinate(held.coordinate)] = held.cells;
     json["box"] = nullptr;  // derived from each design
-    for (std::size_t k = 0; plan.box && k < 3; ++k) json["box"][coordinate(sweep.swept[k])] = (*plan.box)[k];
+    add_box();
   } else {
+    const ColumnOptions& columns = *plan.columns();
     json["method"] = "columns";
-    for (std::size_t k = 0; plan.box && k < 3; ++k) json["box"][coordinate(sweep.swept[k])] = (*plan.box)[k];
-    const bool fixed = plan.nodes[0] > 0;
-    json["tolerance"] = fixed ? Json() : Json(plan.tolerance);
+    add_box();
+    const bool fixed = columns.nodes[0] > 0;
+    json["tolerance"] = fixed ? Json() : Json(columns.tolerance);
     json["nodes"] = nullptr;  // chosen from the tolerance
     std::size_t k = 0;
     for (const int swept : sweep.swept)
-      if (fixed && swept != sweep.column) json["nodes"][coordinate(swept)] = plan.nodes[k++];
+      if (fixed && swept != sweep.column) json["nodes"][coordinate(swept)] = columns.nodes[k++];
   }
   using Kind = HeldCoordinate::Kind;
-  json[coordinate(sweep.held)] = plan.held.kind == Kind::middle       ? Json("middle")
-                                 : plan.held.kind == Kind::integrated ? Json("integrated")
-                                                                      : Json(plan.held.value);
-  if (!plan.held_values.empty()) json[coordinate(sweep.held)] = plan.held_values;
+  for (const int i : sweep.held) {
+    const HeldCoordinate held = how_held(plan, i);
+    json[coordinate(i)] = held.kind == Kind::middle       ? Json("middle")
+                          : held.kind == Kind::integrated ? Json("integrated")
+                          : held.kind == Kind::listed     ? Json(held.values)
+                                                          : Json(held.value);
+  }
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     const auto& given = plan.limits.given[i];
     json["limits"][info.limits[i].name] = given                    ? Json(*given)
@@ -69,7 +79,7 @@ Json study_json(const Study& study) {
   const MechanismInfo& info = parts.mechanism->info();
   Json json = {{"name", study.name},          {"file", study.file_name},
                {"seed", study.seed},          {"output", study.output_file()},
-               {"mechanism", info.name},      {"masses", info.mass_model.empty() ? Json() : Json(info.mass_model)},
+               {"mechanism", info.name},      {"masses", mass_model_json(*parts.mechanism)},
                {"parameters", Json::object()}};
   for (std::size_t i = 0; i < info.parameters.size(); ++i)
     if (std::find(parts.varies.begin(), parts.varies.end(), i) == parts.varies.end())

@@ -12,7 +12,7 @@ namespace {
 
 bool takes_list(const std::string& option) {
   static const std::vector<std::string> options = {"--set",          "--at",     "--joints", "--velocity",
-                                                   "--acceleration", "--forces", "--wrench"};
+                                                   "--acceleration", "--forces", "--wrench", "--held"};
   return std::find(options.begin(), options.end(), option) != options.end();
 }
 
@@ -47,7 +47,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
 /// A subcommand has to come first, unless the program's own --help or --version is asked for.
 void check_subcommand(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto known = subcommand_names(app);
-  const std::string expected = "one of " + join(known) + " (see 'pkmopt --help')";
+  const std::string expected = "one of " + join(known) + " (see '" + app.get_name() + " --help')";
   if (arguments.empty()) throw ConfigError({}, "no command", expected);
   const std::string& first = arguments.front();
   if (first.starts_with('-') || std::find(known.begin(), known.end(), first) != known.end()) return;
@@ -56,14 +56,23 @@ void check_subcommand(const CLI::App& app, const std::vector<std::string>& argum
 
 /// What is left over after parsing: an unknown option or one argument too many.
 ConfigError left_over(const CLI::App& app, const std::string& command) {
+  const std::string program = app.get_parent() ? app.get_parent()->get_name() : app.get_name();
   const std::string word = app.remaining().front();
   if (!word.starts_with('-') || word == "-")
     return ConfigError({"", 0, command}, "the argument '" + word + "'",
-                       "no further argument (see 'pkmopt " + command + " --help')");
+                       "no further argument (see '" + program + " " + command + " --help')");
   const auto known = option_names(app);
   const std::string name = word.substr(0, word.find('='));
   return ConfigError({"", 0, command}, "the unknown option '" + name + "'", "one of " + join(known),
                      nearest_name(name, known));
+}
+
+/// Our help under the name of a user's own program.
+std::string with_name(std::string help, const std::string& name) {
+  const std::string own = "pkmopt ";
+  for (auto at = help.find(own); at != std::string::npos; at = help.find(own, at + name.size()))
+    help.replace(at, own.size() - 1, name);
+  return help;
 }
 
 }  // namespace
@@ -76,7 +85,7 @@ bool parse_command_line(CLI::App& app, const std::vector<std::string>& arguments
     app.parse(spread);
     return true;
   } catch (const CLI::CallForHelp&) {
-    std::cout << app.help() << '\n';
+    std::cout << with_name(app.help(), app.get_name()) << '\n';
     return false;
   } catch (const CLI::CallForVersion& version) {
     std::cout << version.what() << '\n';
@@ -86,7 +95,7 @@ bool parse_command_line(CLI::App& app, const std::vector<std::string>& arguments
     const CLI::App& where = chosen.empty() ? app : *chosen.front();
     const std::string command = chosen.empty() ? "" : where.get_name();
     if (!where.remaining().empty()) throw left_over(where, command);
-    throw ConfigError({"", 0, command}, std::string(error.what()) + " (see 'pkmopt " + command +
+    throw ConfigError({"", 0, command}, std::string(error.what()) + " (see '" + app.get_name() + " " + command +
                                             (command.empty() ? "" : " ") + "--help')");
   }
 }

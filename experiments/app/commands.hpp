@@ -1,8 +1,11 @@
 // The program's subcommands: one function each, which declares the command line and says what runs when it is chosen.
 //
-// To add one: a file of its own, a declaration here and a line in main.cpp. A command reports bad input by ConfigError
-// and everything else by another exception; main turns both into one sentence on stderr and an exit code.
+// To add one: a file of its own, a declaration here and a line in program.cpp. A command reports bad input by
+// ConfigError and everything else by another exception; program_main turns both into one sentence on stderr and an exit
+// code.
 #pragma once
+
+#include <string>
 
 #include "engine/setup/study.hpp"
 
@@ -20,7 +23,8 @@ inline constexpr int kStoppedEarly = 3;  ///< with a checkpoint to go on from
 
 /// What every command is given, and gives back.
 struct Session {
-  Catalogues catalogues;
+  const Catalogues& catalogues;
+  std::string program;  ///< as it was called: "pkmopt", or the name of a user's own
   int exit_code = kDone;
 };
 

@@ -1,10 +1,12 @@
 // `pkmopt coupling`: statistics of the dynamic coupling indices over a box of poses, and the map behind them.
 
+#include <algorithm>
 #include <iostream>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/problem/inertia_options.hpp"
 #include "engine/report/csv_table.hpp"
@@ -36,13 +38,19 @@ Statistics statistics(const Survey<double>& survey, const std::string& limb) {
           weighted_quantile(survey.weight, field, 0.95)};
 }
 
-const std::vector<std::string>& fields() {
-  static const std::vector<std::string> names = {"1", "2", "3", "4", "worst", "mean"};
+/// The joints by their numbers, and what is said of all of a pose.
+std::vector<std::string> fields(const MechanismInfo& info) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= info.joints.size(); ++i) names.push_back(std::to_string(i));
+  names.insert(names.end(), {"worst", "mean"});
   return names;
 }
 
-Assignable held_coordinate(const MechanismInfo& info) {
-  return {info.coordinates[static_cast<std::size_t>(info.held)], info.held == 3 ? "rad" : "m"};
+std::vector<std::string> held_names(const MechanismInfo& info, const SurveyPlan& plan) {
+  std::vector<std::string> names;
+  for (const int held : sweep_of(info, plan).held)
+    names.push_back(info.coordinates[static_cast<std::size_t>(held)].name);
+  return names;
 }
 
 /// The voxels asked for: the study's limits, its plan where the command line says nothing.
@@ -51,62 +59,71 @@ SurveyPlan plan_of(const Target& target, const CouplingArguments& arguments) {
   SurveyPlan plan;
   if (target.study) plan = target.study->problem->parts().plan;
   plan.limits = target.limits;
-  plan.method = Method::voxels;
-  plan.held_values.clear();
-  const Sweep sweep = sweep_of(info, plan);
+  using Kind = HeldCoordinate::Kind;
+  for (HeldCoordinate& held : plan.held)
+    if (held.kind == Kind::listed) held = {held.coordinate, Kind::value, held.values.front()};
   set_grid(plan, info, arguments, kUsualCells, kMostCells);
-  const Assignable held = held_coordinate(info);
-  if (!arguments.phi.empty()) {
-    if (sweep.held != info.held || held.name != "phi")
-      throw ConfigError({"", 0, "--phi"}, "the survey does not hold phi: it holds " +
-                                              info.coordinates[static_cast<std::size_t>(sweep.held)]);
-    plan.held_values = parse_values(arguments.phi, "--phi", held);
-  }
+  if (arguments.phi.empty()) return plan;
+  const std::vector<std::string> held = held_names(info, plan);
+  if (std::ranges::find(held, "phi") == held.end())
+    throw ConfigError({"", 0, "--phi"},
+                      "the survey does not hold phi: it holds " + (held.empty() ? "nothing" : join(held)));
+  const AxisInfo& phi = *find_named(info.coordinates, "phi");
+  const int coordinate = static_cast<int>(&phi - info.coordinates.data());
+  std::erase_if(plan.held, [&](const HeldCoordinate& each) { return each.coordinate == coordinate; });
+  plan.held.push_back({.coordinate = coordinate,
+                       .kind = Kind::listed,
+                       .values = parse_values(arguments.phi, "--phi", {phi.name, phi.unit})});
   return plan;
 }
 
-/// The surveys at each value of the held coordinate, and all of them as one.
+/// The surveys at each value of --phi, and all of them as one.
 struct Found {
   SurveyPlan plan;
   std::string mode;
-  std::vector<double> held;  ///< empty: the plan's own
+  std::vector<double> phi;  ///< empty: the plan's own
   std::vector<Survey<double>> each;
   Survey<double> all;
 };
 
 Found find(const Target& target, const CouplingArguments& arguments) {
   const MechanismInfo& info = target.info();
-  if (!info.has_dynamics)
+  if (!target.mechanism->dynamics())
     throw ConfigError({"", 0, "coupling"}, "mechanism " + info.name + " has no masses, so no coupling indices");
   Found f;
   f.mode = known_mode(info, {arguments.mode, ""});
   f.plan = plan_of(target, arguments);
-  f.held = f.plan.held_values;
   Demand demand;
   demand.dci = true;
   demand.poses = true;
   demand.mode = f.mode;
   try {
-    SurveyPlan one = f.plan;
-    one.held_values.clear();
-    for (const double value : f.held) {
-      one.held.kind = HeldCoordinate::Kind::value;
-      one.held.value = value;
-      f.each.emplace_back();
-      target.mechanism->prepare(one, demand)->survey(target.parameters, f.each.back());
+    const auto survey = [&](const SurveyPlan& plan) {
+      Survey<double> found;
+      survey_once<double>(*prepare_survey(*target.mechanism, plan, demand), target.parameters, found);
+      return found;
+    };
+    if (!arguments.phi.empty()) {
+      SurveyPlan one = f.plan;
+      HeldCoordinate& phi = one.held.back();
+      f.phi = phi.values;
+      for (const double value : f.phi) {
+        phi = {phi.coordinate, HeldCoordinate::Kind::value, value};
+        f.each.push_back(survey(one));
+      }
     }
-    prepare_survey(*target.mechanism, f.plan, demand)->survey(target.parameters, f.all);
+    f.all = survey(f.plan);
   } catch (const std::invalid_argument& reason) {
     throw ConfigError({"", 0, info.name}, reason.what());
   }
   return f;
 }
 
-Json statistics_json(const Survey<double>& survey) {
+Json statistics_json(const MechanismInfo& info, const Survey<double>& survey) {
   Json json = {{"samples", survey.weight.size()}, {"cells", survey.cells}, {"volume", survey.volume}};
   for (const char* name : {"max", "mean", "std", "p95"}) json[name] = Json::object();
   if (survey.weight.empty()) return json;
-  for (const std::string& field : fields()) {
+  for (const std::string& field : fields(info)) {
     const Statistics s = statistics(survey, field);
     json["max"][field] = s.max;
     json["mean"][field] = s.mean;
@@ -116,19 +133,21 @@ Json statistics_json(const Survey<double>& survey) {
   return json;
 }
 
-Json coupling_json(const MechanismInfo& info, const Found& f) {
-  const Sweep sweep = sweep_of(info, f.plan);
-  Json json = {{"mechanism", info.name}, {"mode", f.mode}, {"masses", info.mass_model}, {"box", nullptr}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::string& name = info.coordinates[static_cast<std::size_t>(sweep.swept[k])];
-    json["cells"][name] = f.plan.cells[k];
-    if (f.plan.box) json["box"][name] = (*f.plan.box)[k];
+Json coupling_json(const Mechanism& mechanism, const Found& f) {
+  const MechanismInfo& info = mechanism.info();
+  const std::vector<int>& swept = sweep_of(info, f.plan).swept;
+  Json json = {
+      {"mechanism", info.name}, {"mode", f.mode}, {"masses", mechanism.dynamics()->mass_model()}, {"box", nullptr}};
+  for (std::size_t k = 0; k < swept.size(); ++k) {
+    const std::string& name = info.coordinates[static_cast<std::size_t>(swept[k])].name;
+    json["cells"][name] = f.plan.voxels()->cells[k];
+    if (f.plan.box()) json["box"][name] = (*f.plan.box())[k];
   }
-  json["statistics"] = statistics_json(f.all);
+  json["statistics"] = statistics_json(info, f.all);
   json["each"] = Json::array();
   for (std::size_t k = 0; k < f.each.size(); ++k) {
-    Json one = statistics_json(f.each[k]);
-    one[info.coordinates[static_cast<std::size_t>(sweep.held)]] = f.held[k];
+    Json one = statistics_json(info, f.each[k]);
+    one["phi"] = f.phi[k];
     json["each"].push_back(one);
   }
   return json;
@@ -136,10 +155,10 @@ Json coupling_json(const MechanismInfo& info, const Found& f) {
 
 void print_statistics(const std::string& title, const MechanismInfo& info, const Survey<double>& survey) {
   std::vector<Row> rows = {{"", "mean", "std", "p95", "max"}};
-  for (const std::string& field : fields()) {
+  for (const std::string& field : fields(info)) {
     const Statistics s = statistics(survey, field);
     const bool limb = field.size() == 1;
-    rows.push_back({limb               ? info.joints[static_cast<std::size_t>(field[0] - '1')]
+    rows.push_back({limb               ? info.joints[static_cast<std::size_t>(field[0] - '1')].name
                     : field == "worst" ? "largest of a pose"
                                        : "mean of a pose",
                     number(s.mean), number(s.std), number(s.p95), number(s.max)});
@@ -151,26 +170,25 @@ void print_statistics(const std::string& title, const MechanismInfo& info, const
       rows);
 }
 
-void print_coupling(const MechanismInfo& info, const Found& f) {
-  std::cout << aligned({{"mechanism", info.name}, {"mode", f.mode}, {"masses", info.mass_model}});
-  const Sweep sweep = sweep_of(info, f.plan);
-  const std::string& held = info.coordinates[static_cast<std::size_t>(sweep.held)];
+void print_coupling(const Mechanism& mechanism, const Found& f) {
+  const MechanismInfo& info = mechanism.info();
+  std::cout << aligned({{"mechanism", info.name}, {"mode", f.mode}, {"masses", mechanism.dynamics()->mass_model()}});
   for (std::size_t k = 0; k < f.each.size(); ++k)
-    print_statistics(held + " = " + number(f.held[k], sweep.held == 3 ? "rad" : "m"), info, f.each[k]);
+    print_statistics("phi = " + number(f.phi[k], find_named(info.coordinates, "phi")->unit), info, f.each[k]);
   if (f.each.size() != 1) print_statistics(f.each.empty() ? "coupling indices" : "all of them", info, f.all);
 }
 
 /// One line per feasible cell.
 CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
-  std::vector<std::string> columns{info.coordinates.begin(), info.coordinates.end()};
-  columns.insert(columns.end(), {"dci_1", "dci_2", "dci_3", "dci_4", "dci_worst"});
+  std::vector<std::string> columns = names_of(info.coordinates);
+  for (std::size_t i = 1; i <= info.joints.size(); ++i) columns.push_back("dci_" + std::to_string(i));
+  columns.emplace_back("dci_worst");
   CsvTable table(columns);
   const std::vector<double> worst = coupling_of(survey, "worst");
   for (std::size_t k = 0; k < survey.weight.size(); ++k) {
-    const Pose<double>& at = survey.pose[k];
     table.begin_row();
-    for (const double value : {at.x, at.y, at.z, at.angle}) table.add(value);
-    for (const auto& limb : survey.dci) table.add(limb[k]);
+    table.add(survey.pose[k]);
+    for (std::size_t i = 0; i < info.joints.size(); ++i) table.add(survey.dci[i][k]);
     table.add(worst[k]);
   }
   return table;
@@ -181,9 +199,9 @@ int coupling(const Catalogues& catalogues, const CouplingArguments& arguments) {
   const Found found = find(target, arguments);
   if (!arguments.csv.empty()) table_of(target.info(), found.all).write(arguments.csv);
   if (arguments.json)
-    print_json(std::cout, coupling_json(target.info(), found));
+    print_json(std::cout, coupling_json(*target.mechanism, found));
   else
-    print_coupling(target.info(), found);
+    print_coupling(*target.mechanism, found);
   return kDone;
 }
 

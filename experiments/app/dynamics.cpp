@@ -7,8 +7,8 @@
 
 #include "engine/dynamics/coupling.hpp"
 #include "engine/setup/assignments.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/matrices.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -22,50 +22,53 @@ struct DynamicsArguments : DesignArguments, ModeArguments {
 /// What the command line asks for, and what was found.
 struct Found {
   std::string mode;
-  std::vector<double> at, velocity, acceleration;
+  AxisVector<double> at, velocity, acceleration;
   Wrench<double> wrench;
   PoseReport pose;
   std::optional<PoseDynamics<double>> dynamics;  ///< absent where the pose does not assemble
   std::optional<Reactions> reactions;
 };
 
-Vector<double, 4> four(const std::vector<double>& v) { return {{v[0], v[1], v[2], v[3]}}; }
-
 Found find(const Target& target, const DynamicsArguments& arguments) {
   const MechanismInfo& info = target.info();
   const Mechanism& mechanism = *target.mechanism;
-  if (!info.has_dynamics)
-    throw ConfigError({"", 0, "dynamics"}, "mechanism " + info.name + " has no masses, so no dynamics");
-  if (arguments.reactions && !info.has_reactions)
+  const Dynamics* const equations = mechanism.dynamics();
+  if (!equations) throw ConfigError({"", 0, "dynamics"}, "mechanism " + info.name + " has no masses, so no dynamics");
+  if (arguments.reactions && !mechanism.reactions())
     throw ConfigError({"", 0, "--reactions"}, "mechanism " + info.name + " has no model of the forces in its joints");
   Found f;
   f.mode = known_mode(info, arguments);
-  f.at = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
-  f.velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
-  f.acceleration = parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(info, "s^2"));
+  const std::size_t n = info.coordinates.size();  // behind them an auxiliary chain's input
+  const auto rates = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(mechanism, "s"));
+  const auto changes =
+      parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(mechanism, "s^2"));
+  f.at = axis_vector(parse_all_assignments(arguments.at, "--at", assignable_coordinates(info)));
+  f.velocity = axis_vector(std::span(rates).first(n));
+  f.acceleration = axis_vector(std::span(changes).first(n));
   f.wrench = parse_wrench(arguments.wrench);
-  const MotionState<double> state{{f.at[0], f.at[1], f.at[2], f.at[3]}, four(f.velocity)};
+  const MotionState<double> state{f.at, f.velocity};
   f.pose = mechanism.inspect(target.parameters, state.pose, f.mode, target.limits);
   if (!f.pose.assembles) return f;
   PoseDynamics<double> d;
-  mechanism.dynamics(std::span<const double>(target.parameters), f.mode, {&state, 1}, {&d, 1});
+  equations->equations(std::span<const double>(target.parameters), f.mode, {&state, 1}, {&d, 1});
   f.dynamics = d;
   if (!arguments.reactions) return f;
-  f.reactions = mechanism.reactions(target.parameters, f.mode, state, four(f.acceleration), f.wrench);
+  f.reactions = mechanism.reactions()->find(target.parameters, f.mode, state, f.acceleration, f.wrench);
   return f;
 }
 
 /// Everything that the joints feel.
 struct Forces {
   JointSpace<double> at_joints;
-  Vector<double, 4> dci, tau, q_rate, power;
+  AxisVector<double> dci, tau, q_rate, power;
 };
 
 Forces forces(const Found& f) {
   const PoseDynamics<double>& d = *f.dynamics;
-  Forces found{joint_space(d), {}, drive_forces(d, four(f.acceleration), f.wrench), d.J * four(f.velocity), {}};
+  Forces found{joint_space(d), {}, drive_forces(d, f.acceleration, f.wrench), d.J * f.velocity, {}};
   found.dci = coupling_indices(found.at_joints.M_q);
-  for (std::size_t i = 0; i < 4; ++i) found.power[i] = found.tau[i] * found.q_rate[i];
+  found.power = found.tau;
+  for (std::size_t i = 0; i < found.power.size(); ++i) found.power[i] *= found.q_rate[i];
   return found;
 }
 
@@ -77,29 +80,27 @@ Json reactions_json(const Reactions& reactions) {
     joints[joint.name] = {{"on", joint.on}, {"force", joint.force}, {"couple", couple}};
   }
   Json json = {{"joints", joints}};
-  json["reason"] = reactions.reason.empty() ? Json() : Json(reactions.reason);
+  json["reason"] = text_or_null(reactions.reason);
   json["equations"] = reactions.equations;
   json["unknowns"] = reactions.unknowns;
   json["rank"] = reactions.rank;
   return json;
 }
 
-Json dynamics_json(const MechanismInfo& info, const Found& f) {
-  Json pose = Json::object();
-  for (std::size_t i = 0; i < 4; ++i) pose[info.coordinates[i]] = f.at[i];
+Json dynamics_json(const Mechanism& mechanism, const Found& f) {
+  const MechanismInfo& info = mechanism.info();
   Json json = {{"mechanism", info.name},
                {"mode", f.mode},
-               {"masses", info.mass_model},
-               {"pose", pose},
+               {"masses", mechanism.dynamics()->mass_model()},
+               {"pose", axes_json(info.coordinates, f.at)},
                {"feasible", f.pose.feasible},
                {"assembles", f.pose.assembles},
-               {"reason", f.pose.reason.empty() ? Json() : Json(f.pose.reason)}};
+               {"reason", text_or_null(f.pose.reason)}};
   for (const char* key : {"joints", "J", "Mq", "dci", "tau", "coriolis", "gravity", "joint_speeds", "power"})
     json[key] = nullptr;
   if (f.dynamics) {
     const Forces found = forces(f);
-    json["joints"] = Json::object();
-    for (std::size_t i = 0; i < 4; ++i) json["joints"][info.joints[i]] = f.dynamics->q[i];
+    json["joints"] = axes_json(info.joints, f.dynamics->q);
     json["J"] = matrix_json(f.dynamics->J);
     json["Mq"] = matrix_json(found.at_joints.M_q);
     json["dci"] = vector_json(found.dci);
@@ -113,26 +114,34 @@ Json dynamics_json(const MechanismInfo& info, const Found& f) {
   return json;
 }
 
-void print_dynamics(const MechanismInfo& info, const Found& f) {
-  std::string pose;
-  for (std::size_t i = 0; i < 4; ++i)
-    pose += (i == 0 ? "" : ", ") + info.coordinates[i] + " = " + number(f.at[i], i == 3 ? "rad" : "m");
+/// Elements of an inertia between joints.
+std::string inertia_units(const Axes& joints) {
+  const std::string units = units_of(joints);
+  return units == "m" ? "kg" : units == "rad" ? "kg m^2" : "kg, kg m, kg m^2";
+}
+
+void print_dynamics(const Mechanism& mechanism, const Found& f) {
+  const MechanismInfo& info = mechanism.info();
   std::cout << aligned({{"mechanism", info.name},
                         {"mode", f.mode},
-                        {"masses", info.mass_model},
-                        {"pose", pose},
+                        {"masses", mechanism.dynamics()->mass_model()},
+                        {"pose", axes_text(info.coordinates, f.at)},
                         {"assembles", f.pose.assembles ? "yes" : "no: " + f.pose.reason},
                         {"feasible", f.pose.feasible ? "yes" : "no"}});
   if (!f.dynamics) return;
   const Forces found = forces(f);
   std::vector<Row> joints = {
       {"", "position", "speed", "force tau", "of velocities", "of weight", "power", "coupling index"}};
-  for (std::size_t i = 0; i < 4; ++i)
-    joints.push_back({info.joints[i], number(f.dynamics->q[i], "m"), number(found.q_rate[i], "m/s"),
-                      number(found.tau[i], "N"), number(found.at_joints.c_q[i], "N"),
-                      number(found.at_joints.G_q[i], "N"), number(found.power[i], "W"), number(found.dci[i])});
+  for (std::size_t i = 0; i < info.joints.size(); ++i) {
+    const auto& [name, unit] = info.joints[i];
+    const std::string force = force_unit(info.joints[i]);
+    joints.push_back({name, number(f.dynamics->q[i], unit), number(found.q_rate[i], unit + "/s"),
+                      number(found.tau[i], force), number(found.at_joints.c_q[i], force),
+                      number(found.at_joints.G_q[i], force), number(found.power[i], "W"), number(found.dci[i])});
+  }
   print_section(std::cout, "joints", joints);
-  print_matrix(std::cout, "inertia M_q as the joints feel it (kg)", found.at_joints.M_q);
+  print_matrix(std::cout, "inertia M_q as the joints feel it (" + inertia_units(info.joints) + ")",
+               found.at_joints.M_q);
   print_matrix(std::cout, "J, where qdot = J Xdot", f.dynamics->J);
   if (!f.reactions) return;
   if (!f.reactions->reason.empty()) {
@@ -157,9 +166,9 @@ int dynamics(const Catalogues& catalogues, const DynamicsArguments& arguments) {
   const Target target = find_target(catalogues, arguments);
   const Found found = find(target, arguments);
   if (arguments.json)
-    print_json(std::cout, dynamics_json(target.info(), found));
+    print_json(std::cout, dynamics_json(*target.mechanism, found));
   else
-    print_dynamics(target.info(), found);
+    print_dynamics(*target.mechanism, found);
   if (!found.dynamics)
     throw std::runtime_error("the pose does not assemble in mode " + found.mode + ": " + found.pose.reason);
   return kDone;

@@ -8,6 +8,7 @@
 #include "engine/core/team.hpp"
 #include "experiments/app/catalogue_json.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/grid.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/target.hpp"
@@ -15,14 +16,18 @@
 namespace pkm {
 namespace {
 
-/// The problem of a bare mechanism: exact columns, no limits, and every objective that serves it by its defaults.
+constexpr std::int64_t kBareCells = 40;
+
+/// The problem of a bare mechanism: exact columns where it has them, else voxels, no limits, and every objective that
+/// serves it by its defaults.
 std::shared_ptr<const DesignProblem> default_problem(const Target& target, const Catalogues& catalogues) {
   ProblemParts parts;
   parts.mechanism = target.mechanism;
   parts.parameters = target.parameters;
   parts.plan.limits = target.limits;
+  if (!target.mechanism->columns()) parts.plan.method = equal_cells(target.info().sweeps.front(), kBareCells);
   for (const auto& entry : catalogues.objectives) {
-    if (needs_options(entry.options) || !entry.refusal(target.info()).empty()) continue;
+    if (needs_options(entry.options) || !entry.refusal(*target.mechanism).empty()) continue;
     const Options options = default_options(entry.options);
     const EntryContext context{*target.mechanism, parts.plan, options};
     entry.demand(context, parts.demand);
@@ -45,7 +50,7 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
 
 Json workspace_json(const DesignProblem& problem, const Survey<double>& survey) {
   const SurveyPlan& plan = problem.parts().plan;
-  const bool voxels = plan.method == Method::voxels;
+  const bool voxels = plan.voxels();
   Json json = {{"method", voxels ? "voxels" : "columns"},
                {"volume", survey.volume},
                {"unit", volume_unit(problem.parts().mechanism->info(), plan)}};
@@ -54,11 +59,11 @@ Json workspace_json(const DesignProblem& problem, const Survey<double>& survey) 
     json["feasible_cells"] = survey.feasible_cells;
     json["cell_volume"] = survey.cell_volume;
     // The default box ends where the mechanism does, so touching it says nothing.
-    json["touches_box"] = plan.box ? Json(survey.touches_box) : Json();
+    json["touches_box"] = plan.box() ? Json(survey.touches_box) : Json();
   } else {
     json["columns"] = survey.columns;
     // Fixed nodes come without an estimate.
-    json["relative_error"] = plan.nodes[0] > 0 ? Json() : Json(survey.error);
+    json["relative_error"] = plan.columns()->nodes[0] > 0 ? Json() : Json(survey.error);
   }
   return json;
 }
@@ -66,8 +71,6 @@ Json workspace_json(const DesignProblem& problem, const Survey<double>& survey) 
 Json report_json(const DesignProblem& problem, const DesignReport& report) {
   const ProblemParts& parts = problem.parts();
   const MechanismInfo& info = parts.mechanism->info();
-  Json facts = Json::object();
-  for (const auto& [name, value] : parts.mechanism->facts(report.parameters, parts.plan.limits)) facts[name] = value;
   return {{"mechanism", info.name},
           {"parameters", values_by_name(info.parameters, report.parameters)},
           {"workspace", report.status == Status::failed ? Json() : workspace_json(problem, report.survey)},
@@ -75,7 +78,7 @@ Json report_json(const DesignProblem& problem, const DesignReport& report) {
           {"constraints", values_by_name(problem.margins(), report.margins)},
           {"reports", values_by_name(problem.reports(), report.reports)},
           {"feasible", report.status == Status::feasible},
-          {"facts", facts}};
+          {"facts", values_by_name(parts.mechanism->facts(report.parameters, parts.plan.limits))}};
 }
 
 /// The constraints that do not hold, as "no: ...".
@@ -90,15 +93,15 @@ std::string verdict(const DesignProblem& problem, const DesignReport& report) {
 std::vector<Row> workspace_rows(const DesignProblem& problem, const Survey<double>& survey) {
   const SurveyPlan& plan = problem.parts().plan;
   const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
-  const bool voxels = plan.method == Method::voxels;
+  const bool voxels = plan.voxels();
   std::vector<Row> rows = {{"method", voxels ? "voxels" : "columns"}, {"volume", number(survey.volume, unit)}};
   if (voxels) {
     rows.push_back({"feasible cells", std::to_string(survey.feasible_cells) + " of " + std::to_string(survey.cells)});
     rows.push_back({"cell volume", number(survey.cell_volume, unit)});
-    if (plan.box && survey.touches_box) rows.push_back({"warning", "the feasible set touches the box: it may go on"});
+    if (plan.box() && survey.touches_box) rows.push_back({"warning", "the feasible set touches the box: it may go on"});
   } else {
     rows.push_back({"columns", std::to_string(survey.columns)});
-    if (plan.nodes[0] == 0) rows.push_back({"relative error", number(survey.error)});
+    if (plan.columns()->nodes[0] == 0) rows.push_back({"relative error", number(survey.error)});
   }
   return rows;
 }
@@ -141,9 +144,8 @@ void print_report(const Target& target, const DesignProblem& problem, const Desi
 int evaluate(const Catalogues& catalogues, const DesignArguments& arguments, int threads) {
   const Target target = find_target(catalogues, arguments);
   const auto problem = target.study ? target.study->problem : default_problem(target, catalogues);
-  Team team(threads);
-  const LentTeam lent(team);
-  const DesignReport report = problem->report(target.parameters);
+  DesignReport report;
+  with_team(threads, [&] { report = problem->report(target.parameters); });
   if (arguments.json)
     print_json(std::cout, report_json(*problem, report));
   else

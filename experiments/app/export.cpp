@@ -49,11 +49,10 @@ int export_study(const Catalogues& catalogues, const ExportArguments& arguments)
 
   if (!tables.empty()) make_folder(arguments.csv);
   for (const NamedTable& table : tables) replace_file(path_of(arguments.csv, table), table.table.text());
-  if (target) {
-    Team team(arguments.threads);
-    const LentTeam lent(team);
-    write_workspace(arguments, *target, fields_of(*target, target->study->problem->parts().plan, mode_of(*target)));
-  }
+  if (target)
+    with_team(arguments.threads, [&] {
+      write_workspace(arguments, *target, fields_of(*target, target->study->problem->parts().plan, mode_of(*target)));
+    });
   if (contents.state != StudyState::finished)
     std::cout << "the study is " << words(contents.state) << ": what it has recorded is exported\n";
   if (target) std::cout << "workspace of " << target->words << '\n';

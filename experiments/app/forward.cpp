@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/setup/assignments.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/print.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -20,11 +20,9 @@ struct ForwardArguments : DesignArguments {
   bool all = false;
 };
 
-std::array<double, 4> coordinates(const Pose<double>& pose) { return {pose.x, pose.y, pose.z, pose.angle}; }
-
 /// Motion of the platform in one assembly mode.
 struct PlatformMotion {
-  Vector<double, 4> velocity, acceleration;
+  AxisVector<double> velocity, acceleration;
 };
 
 /// An assembly mode and its motion, where one is asked for and it is not singular.
@@ -36,18 +34,22 @@ struct Solution {
 /// What the joints do beside where they are.
 struct JointMotion {
   bool given = false;
-  Vector<double, 4> speeds, accelerations;
+  AxisVector<double> speeds, accelerations;
 };
 
-JointMotion joint_motion(const MechanismInfo& info, const ForwardArguments& arguments) {
-  const auto four = [](const std::vector<double>& v) { return Vector<double, 4>{{v[0], v[1], v[2], v[3]}}; };
+JointMotion joint_motion(const Mechanism& mechanism, const ForwardArguments& arguments) {
+  const MechanismInfo& info = mechanism.info();
   JointMotion motion;
   motion.given = !(arguments.speeds.empty() && arguments.accelerations.empty());
-  if (motion.given && !info.has_influence)
+  if (motion.given && !mechanism.velocities())
     throw ConfigError({}, "mechanism " + info.name + " has no influence coefficients, so no speeds of the platform");
-  motion.speeds = four(parse_some_assignments(arguments.speeds, "--speeds", assignable_joint_rates(info, "s")));
-  motion.accelerations =
-      four(parse_some_assignments(arguments.accelerations, "--accelerations", assignable_joint_rates(info, "s^2")));
+  if (motion.given && info.joints.size() != info.coordinates.size())
+    throw ConfigError({}, "mechanism " + info.name +
+                              " has not as many joints as coordinates: their speeds do not give "
+                              "those of the platform");
+  motion.speeds = axis_vector(parse_some_assignments(arguments.speeds, "--speeds", assignable_joint_rates(info, "s")));
+  motion.accelerations = axis_vector(
+      parse_some_assignments(arguments.accelerations, "--accelerations", assignable_joint_rates(info, "s^2")));
   return motion;
 }
 
@@ -57,50 +59,42 @@ std::optional<PlatformMotion> platform_motion(const Target& target, const Assemb
   if (!joints.given) return std::nullopt;
   const std::string mode = assembly.working_mode.empty() ? modes.front() : assembly.working_mode;
   if (std::find(modes.begin(), modes.end(), mode) == modes.end()) return std::nullopt;  // between two, a limb singular
-  const auto influence = target.mechanism->influence(target.parameters, assembly.pose, mode);
+  const auto influence = target.mechanism->velocities()->influence(target.parameters, assembly.pose, mode);
   if (!influence) return std::nullopt;
   const Influence<double> back = reversed(*influence);
   const PlatformMotion motion{back.G * joints.speeds, accelerations(back, joints.speeds, joints.accelerations)};
   for (const auto* part : {&motion.velocity, &motion.acceleration})
-    for (const double value : part->m)
+    for (const double value : *part)
       if (!std::isfinite(value)) return std::nullopt;
   return motion;
 }
 
-Json poses_json(const Target& target, const std::vector<double>& joints, const JointMotion& motion,
+Json poses_json(const Target& target, const AxisVector<double>& joints, const JointMotion& motion,
                 const ForwardStatus& status, const std::vector<Solution>& solutions) {
   const MechanismInfo& info = target.info();
   Json poses = Json::array();
-  const auto by_name = [&](const Vector<double, 4>& values) {
-    Json object = Json::object();
-    for (std::size_t i = 0; i < 4; ++i) object[info.coordinates[i]] = values[i];
-    return object;
-  };
   for (const auto& [assembly, platform] : solutions) {
-    Json pose;
-    for (std::size_t i = 0; i < 4; ++i) pose[info.coordinates[i]] = coordinates(assembly.pose)[i];
+    Json pose = values_by_name(info.coordinates, assembly.pose);
     pose["mode"] = assembly.mode;
-    pose["working_mode"] = assembly.working_mode.empty() ? Json() : Json(assembly.working_mode);
+    pose["working_mode"] = text_or_null(assembly.working_mode);
     pose["double_roots"] = assembly.double_roots;
     if (motion.given) {
-      pose["velocity"] = platform ? by_name(platform->velocity) : Json();
-      pose["acceleration"] = platform ? by_name(platform->acceleration) : Json();
+      pose["velocity"] = platform ? values_by_name(info.coordinates, platform->velocity) : Json();
+      pose["acceleration"] = platform ? values_by_name(info.coordinates, platform->acceleration) : Json();
     }
     poses.push_back(pose);
   }
-  Json values;
-  for (std::size_t i = 0; i < 4; ++i) values[info.joints[i]] = joints[i];
   return {{"mechanism", info.name},
-          {"joints", values},
+          {"joints", values_by_name(info.joints, joints)},
           {"status", status.word},
-          {"reason", status.reason.empty() ? Json() : Json(status.reason)},
+          {"reason", text_or_null(status.reason)},
           {"poses", poses}};
 }
 
 void print_motions(const MechanismInfo& info, const std::vector<Solution>& solutions) {
   std::vector<Row> rows = {{"mode"}};
   for (const char* of : {" speed", " acceleration"})
-    for (const auto& name : info.coordinates) rows[0].push_back(name + of);
+    for (const AxisInfo& axis : info.coordinates) rows[0].push_back(axis.name + of);
   for (const auto& [assembly, platform] : solutions) {
     rows.push_back({assembly.mode});
     if (!platform) {
@@ -108,22 +102,25 @@ void print_motions(const MechanismInfo& info, const std::vector<Solution>& solut
       continue;
     }
     for (const auto* part : {&platform->velocity, &platform->acceleration})
-      for (const double value : part->m) rows.back().push_back(number(value));
+      for (const double value : *part) rows.back().push_back(number(value));
   }
-  print_section(std::cout, "motion of the platform (m/s, rad/s, m/s^2, rad/s^2)", rows);
+  print_section(
+      std::cout,
+      "motion of the platform (" + units_of(info.coordinates, "/s") + ", " + units_of(info.coordinates, "/s^2") + ")",
+      rows);
 }
 
-void print_poses(const MechanismInfo& info, const std::vector<double>& joints, const std::vector<Solution>& solutions) {
-  std::string values;
-  for (std::size_t i = 0; i < 4; ++i) values += (i == 0 ? "" : ", ") + info.joints[i] + " = " + number(joints[i], "m");
-  std::cout << aligned({{"mechanism", info.name}, {"joints", values}, {"poses", std::to_string(solutions.size())}});
+void print_poses(const MechanismInfo& info, const AxisVector<double>& joints, const std::vector<Solution>& solutions) {
+  std::cout << aligned({{"mechanism", info.name},
+                        {"joints", axes_text(info.joints, joints)},
+                        {"poses", std::to_string(solutions.size())}});
   if (solutions.empty()) return;
   std::vector<Row> rows = {{}};
-  for (std::size_t i = 0; i < 4; ++i) rows[0].push_back(info.coordinates[i] + (i == 3 ? " [rad]" : " [m]"));
+  for (const AxisInfo& axis : info.coordinates) rows[0].push_back(axis.name + " [" + axis.unit + "]");
   rows[0].push_back("mode");
   for (const auto& [assembly, platform] : solutions) {
     rows.emplace_back();
-    for (const double value : coordinates(assembly.pose)) rows.back().push_back(number(value));
+    for (const double value : assembly.pose) rows.back().push_back(number(value));
     rows.back().push_back(assembly.mode);
     for (const auto& root : assembly.double_roots) rows.back().push_back("double in " + root);
   }
@@ -134,15 +131,15 @@ void print_poses(const MechanismInfo& info, const std::vector<double>& joints, c
 int forward(const Catalogues& catalogues, const ForwardArguments& arguments) {
   const Target target = find_target(catalogues, arguments);
   const MechanismInfo& info = target.info();
-  const auto joints = parse_all_assignments(arguments.joints, "--joints", assignable_joints(info));
-  const std::array<double, 4> at = {joints[0], joints[1], joints[2], joints[3]};
-  const JointMotion motion = joint_motion(info, arguments);
-  const auto modes = target.mechanism->forward(target.parameters, at);
+  const ForwardKinematics& kinematics = needed(target.mechanism->forward(), "forward", "forward kinematics", info);
+  const auto joints = axis_vector(parse_all_assignments(arguments.joints, "--joints", assignable_joints(info)));
+  const JointMotion motion = joint_motion(*target.mechanism, arguments);
+  const auto modes = kinematics.assemblies(target.parameters, joints);
   const std::size_t found = modes.size();
   std::vector<Solution> solutions;
   for (const AssemblyMode& mode : modes)
     if (arguments.all || mode.usual) solutions.push_back({mode, platform_motion(target, mode, motion)});
-  const ForwardStatus status = target.mechanism->forward_status(target.parameters, at);
+  const ForwardStatus status = kinematics.status(target.parameters, joints);
   if (arguments.json)
     print_json(std::cout, poses_json(target, joints, motion, status, solutions));
   else

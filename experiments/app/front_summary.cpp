@@ -2,23 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "engine/core/error.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/math/hypervolume.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/problem/front.hpp"
 
 namespace pkm {
 namespace {
 
 constexpr std::size_t kAll = 20, kShown = 10;  // short lists are shown whole, longer fronts by a choice and their knees
 
-std::string digits(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string six(double value) { return formatted("%.6g", value); }
 
 Scores scores(const ProblemRecord& problem, const StageRecord& stage) {
   return scores_of(problem.objectives, stage.table, stage.front->rows);
@@ -47,13 +42,12 @@ std::string headline(const ProblemRecord& problem, const StageRecord& stage, con
   const FrontRecord& record = *stage.front;
   std::string text = "  front: " + std::to_string(front.size()) + (front.size() == 1 ? " design" : " designs");
   if (!record.reference.empty()) {
-    text += ", hypervolume " + digits(hypervolume_of(problem, stage, front)) + " from";
+    text += ", hypervolume " + six(hypervolume_of(problem, stage, front)) + " from";
     for (std::size_t k = 0; k < record.reference.size(); ++k)
-      text += (k ? ", " : " ") + problem.objectives[k].name + " " + digits(record.reference[k]);
+      text += (k ? ", " : " ") + problem.objectives[k].name + " " + six(record.reference[k]);
   }
-  if (!record.spread.empty() && !std::isnan(record.spread.back())) text += "; spread " + digits(record.spread.back());
-  if (!record.igd_plus.empty() && !std::isnan(record.igd_plus.back()))
-    text += "; IGD+ " + digits(record.igd_plus.back());
+  if (!record.spread.empty() && !std::isnan(record.spread.back())) text += "; spread " + six(record.spread.back());
+  if (!record.igd_plus.empty() && !std::isnan(record.igd_plus.back())) text += "; IGD+ " + six(record.igd_plus.back());
   return text + '\n';
 }
 
@@ -75,8 +69,8 @@ std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
   for (const std::size_t i : shown) {
     const auto row = static_cast<std::size_t>(stage.front->rows[i]);
     auto& cells = rows.emplace_back(std::vector<std::string>{"  " + std::to_string(i + 1)});
-    for (const double x : stage.table.design(row)) cells.push_back(digits(x));
-    for (const double f : stage.table.objective_row(row)) cells.push_back(digits(f));
+    for (const double x : stage.table.design(row)) cells.push_back(six(x));
+    for (const double f : stage.table.objective_row(row)) cells.push_back(six(f));
     cells.push_back(join(mark[i]));
   }
   return headline(problem, stage, front) + aligned(rows);
@@ -117,12 +111,10 @@ std::string front_starts_text(const ProblemRecord& problem, const StageRecord& s
     const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);
     const auto from = stage.table.objective_row(first), to = stage.table.objective_row(end);
     for (std::size_t k = 0; k < from.size(); ++k)
-      cells.push_back(stage.table.status[first] == Status::failed ? "failed"
-                                                                  : digits(from[k]) + " -> " + digits(to[k]));
-    char optimality[16] = "-";
-    if (!std::isnan(start.optimality)) std::snprintf(optimality, sizeof optimality, "%.1e", start.optimality);
-    cells.insert(cells.end(), {optimality, start.stop + (start.message.empty() ? "" : " (" + start.message + ")") +
-                                               (stage.table.status[end] == Status::feasible ? "" : ", infeasible")});
+      cells.push_back(stage.table.status[first] == Status::failed ? "failed" : six(from[k]) + " -> " + six(to[k]));
+    cells.insert(cells.end(), {formatted("%.1e", start.optimality),
+                               start.stop + (start.message.empty() ? "" : " (" + start.message + ")") +
+                                   (stage.table.status[end] == Status::feasible ? "" : ", infeasible")});
   }
   return aligned(rows) +
          (stage.starts.size() > kAll ? "  and " + std::to_string(stage.starts.size() - kAll) + " more\n" : "");

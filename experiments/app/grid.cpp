@@ -1,5 +1,7 @@
 #include "experiments/app/grid.hpp"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 
 #include "engine/core/error.hpp"
@@ -8,6 +10,7 @@
 #include "experiments/app/target.hpp"
 
 namespace pkm {
+
 void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t usual) {
   command.add_option("--box", arguments.box, "Ranges of the swept coordinates; default: all that the design reaches")
       ->type_name("NAME=FROM:TO")
@@ -16,31 +19,41 @@ void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t 
                   "Cells along each of them; default: the study's, else " + std::to_string(usual), false);
 }
 
+VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells) {
+  VoxelOptions voxels;
+  std::fill_n(voxels.cells.begin(), sweep.swept.size(), cells);
+  return voxels;
+}
+
 void set_grid(SurveyPlan& plan, const MechanismInfo& info, const GridArguments& arguments, std::int64_t usual,
               double most) {
+  const Sweep& sweep = sweep_of(info, plan);
   std::vector<Assignable> swept, numbers;
-  for (const int coordinate : sweep_of(info, plan).swept) {
-    const auto index = static_cast<std::size_t>(coordinate);
-    swept.push_back({info.coordinates[index], coordinate == 3 ? "rad" : "m"});
-    numbers.push_back({info.coordinates[index], "1", 1, 1e6});
+  for (const int coordinate : sweep.swept) {
+    const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
+    swept.push_back({axis.name, axis.unit});
+    numbers.push_back({axis.name, "1", 1, 1e6});
   }
+  VoxelOptions voxels = equal_cells(sweep, usual);
+  voxels.box = plan.box();
+  if (plan.voxels()) voxels = *plan.voxels();
   if (!arguments.box.empty()) {
     const auto ranges = parse_ranges(arguments.box, "--box", swept);
-    plan.box = {{ranges[0], ranges[1], ranges[2]}};
+    voxels.box.emplace().fill({0, 1});
+    std::ranges::copy(ranges, voxels.box->begin());
   }
-  for (std::size_t k = 0; k < 3; ++k)
-    if (plan.cells[k] == 0) plan.cells[k] = usual;
   if (!arguments.cells.empty()) {
     const auto cells = parse_all_assignments(arguments.cells, "--cells", numbers);
-    for (std::size_t k = 0; k < 3; ++k) {
-      plan.cells[k] = static_cast<std::int64_t>(cells[k]);
-      if (static_cast<double>(plan.cells[k]) != cells[k])
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      voxels.cells[k] = static_cast<std::int64_t>(cells[k]);
+      if (static_cast<double>(voxels.cells[k]) != cells[k])
         throw ConfigError({"", 0, "--cells"}, numbers[k].name + "=" + shortest(cells[k]), "a whole number of cells");
     }
   }
-  const double all =
-      static_cast<double>(plan.cells[0]) * static_cast<double>(plan.cells[1]) * static_cast<double>(plan.cells[2]);
+  double all = 1;
+  for (const std::int64_t cells : voxels.cells) all *= static_cast<double>(cells);
   if (all > most) throw ConfigError({"", 0, "--cells"}, shortest(all) + " cells", "at most " + shortest(most));
+  plan.method = voxels;
 }
 
 }  // namespace pkm

@@ -27,7 +27,7 @@ void print_found(const Json& found) {
   }
 }
 
-void print_overview(const Json& catalogues) {
+void print_overview(const Json& catalogues, const std::string& program) {
   bool first = true;
   for (const auto& [kind, entries] : catalogues.items()) {
     std::cout << (first ? "" : "\n") << kind << '\n';
@@ -37,7 +37,7 @@ void print_overview(const Json& catalogues) {
     if (kind == "constraints") std::cout << "  or any objective, with min = .. or max = ..\n";
     first = false;
   }
-  std::cout << "\n'pkmopt list KIND NAME' tells everything of one entry.\n";
+  std::cout << "\n'" << program << " list KIND NAME' tells everything of one entry.\n";
 }
 
 std::vector<std::string> entry_names(const Json& entries) {
@@ -71,16 +71,16 @@ Json find_anywhere(const Json& catalogues, const std::string& word) {
   throw ConfigError({"", 0, "list"}, "the unknown word '" + word + "'", expected, nearest_name(word, known));
 }
 
-int list(const Catalogues& catalogues, const ListArguments& arguments) {
+int list(const Session& session, const ListArguments& arguments) {
   const auto& [kind, name, json, markdown] = arguments;
-  const Json all = catalogues_json(catalogues);
+  const Json all = catalogues_json(session.catalogues);
   if (markdown) {
     std::cout << catalogues_markdown(all);
     return kDone;
   }
   if (kind.empty() || (name.empty() && all.contains(kind))) {
     const Json listed = kind.empty() ? all : Json{{kind, all[kind]}};
-    json ? print_json(std::cout, listed) : print_overview(listed);
+    json ? print_json(std::cout, listed) : print_overview(listed, session.program);
   } else {
     Json found = Json::object();
     if (all.contains(kind))
@@ -110,7 +110,7 @@ void add_list(CLI::App& app, Session& session) {
       ->excludes("KIND")
       ->excludes("--json");
   command->footer("Example: pkmopt list mechanisms 4ppa-2par");
-  command->callback([&session, arguments] { session.exit_code = list(session.catalogues, *arguments); });
+  command->callback([&session, arguments] { session.exit_code = list(session, *arguments); });
 }
 
 }  // namespace pkm

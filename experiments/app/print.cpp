@@ -6,11 +6,16 @@
 
 namespace pkm {
 
+std::string formatted(const char* format, double value) {
+  if (std::isnan(value)) return "-";
+  std::array<char, 40> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
 std::string number(double value, std::string_view unit) {
   if (std::isnan(value)) return "not computed";
-  std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.12g", value);
-  std::string text = buffer.data();
+  std::string text = formatted("%.12g", value);
   if (unit != "1" && !unit.empty()) text += " " + std::string(unit);
   return text;
 }
@@ -23,6 +28,12 @@ void print_section(std::ostream& out, std::string_view title, const std::vector<
 void print_json(std::ostream& out, const Json& json) {
   // Names and file names may hold bytes that are no UTF-8; JSON may not.
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+Json values_by_name(const std::vector<std::pair<std::string, double>>& values) {
+  Json object = Json::object();
+  for (const auto& [name, value] : values) object[name] = value;
+  return object;
 }
 
 Json to_json(const OptionValue& value) {

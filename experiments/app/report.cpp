@@ -26,19 +26,20 @@ struct ReportArguments {
   int threads = 0;
 };
 
-PageStudy page_study(const std::string& file, const Catalogues& catalogues) {
+PageStudy page_study(const std::string& file, const Session& session) {
   PageStudy page{std::filesystem::path(file).filename().string(), read_study(file), {}};
   try {
-    page.study = study_of(page.contents, catalogues);
+    page.study = study_of(page.contents, session.catalogues);
   } catch (const std::exception& error) {
     page.unreadable = error.what();
-    std::cerr << "pkmopt: note: " << file << ": this program cannot read the study's text, so what would have to be "
+    std::cerr << session.program << ": note: " << file
+              << ": this program cannot read the study's text, so what would have to be "
               << "evaluated again is left out (" << error.what() << ")\n";
   }
   return page;
 }
 
-void report(const ReportArguments& arguments, const Catalogues& catalogues) {
+void report(const ReportArguments& arguments, const Session& session) {
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
   refuse_existing({output}, arguments.force);
@@ -46,11 +47,10 @@ void report(const ReportArguments& arguments, const Catalogues& catalogues) {
     if (std::error_code none; std::filesystem::equivalent(file, output, none))
       throw ConfigError({"", 0, "--output"}, output, "another file than the study's own");
   page_parts();  // or say at once that there are none
-  Team team(arguments.threads);
-  const LentTeam lent(team);
   std::vector<PageStudy> studies;
-  for (const std::string& file : arguments.files) studies.push_back(page_study(file, catalogues));
-  const std::string page = html_page(page_data(studies, program_words()));
+  for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
+  std::string page;
+  with_team(arguments.threads, [&] { page = html_page(page_data(studies, program_words())); });
   replace_file(output, page);
   char size[32];
   std::snprintf(size, sizeof size, "%.1f MB", 1e-6 * static_cast<double>(page.size()));
@@ -72,7 +72,7 @@ void add_report(CLI::App& app, Session& session) {
   command->footer(
       "The page opens from disk and needs no network. What a study file does not hold is evaluated again.\n"
       "Example: pkmopt report paper-problem.h5");
-  command->callback([arguments, &session] { report(*arguments, session.catalogues); });
+  command->callback([arguments, &session] { report(*arguments, session); });
 }
 
 }  // namespace pkm

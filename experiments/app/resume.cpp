@@ -64,8 +64,8 @@ void add_resume(CLI::App& app, Session& session) {
     const auto progress = make_progress(arguments->common);
     const RunOutcome outcome = resume_study(arguments->file, session.catalogues, extension, options, *progress);
     progress->finish();
-    session.exit_code =
-        print_outcome(outcome, study_of(outcome.contents, session.catalogues), arguments->file, arguments->common);
+    session.exit_code = print_outcome(outcome, study_of(outcome.contents, session.catalogues), arguments->file,
+                                      arguments->common, session.program);
   });
 }
 

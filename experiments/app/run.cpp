@@ -13,6 +13,7 @@
 #include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 
 namespace pkm {
@@ -35,9 +36,10 @@ void print_estimate(const Study& study, int seeds, int threads) {
   for (std::size_t i = 0; i < problem.space().dimension(); ++i) table.design(0)[i] = problem.space().from_unit(i, 0.5);
   using Clock = std::chrono::steady_clock;
   double seconds = 1e30;
+  Scratch scratch;
   for (int i = 0; i < 3 && (i == 0 || seconds < 1); ++i) {  // the first one also warms up
     const auto begin = Clock::now();
-    problem.evaluate(table.design(0), table.slot(0));
+    problem.evaluate(table.design(0), scratch, table.slot(0));
     seconds = std::min(seconds, std::chrono::duration<double>(Clock::now() - begin).count());
   }
   std::int64_t limit = 0;
@@ -50,12 +52,12 @@ void print_estimate(const Study& study, int seeds, int threads) {
 }
 
 /// A given voxel box that cuts the workspace makes it look smaller than it is.
-void warn_of_box(const Study& study) {
+void warn_of_box(const Study& study, const std::string& program) {
   const auto& parts = study.problem->parts();
-  if (parts.plan.method != Method::voxels || !parts.plan.box) return;
+  if (!parts.plan.voxels() || !parts.plan.box()) return;
   const auto report = study.problem->report(study.baseline ? *study.baseline : parts.parameters);
   if (report.survey.touches_box)
-    std::cerr << "pkmopt: warning: feasible cells of the " << (study.baseline ? "baseline" : "nominal design")
+    std::cerr << program << ": warning: feasible cells of the " << (study.baseline ? "baseline" : "nominal design")
               << " touch the box of [workspace]; the workspace may be larger than what is counted\n";
 }
 
@@ -65,7 +67,7 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
   if (arguments.resume && std::filesystem::exists(output)) {
     StudyContents contents = read_study(output);
     const std::string way_out =
-        "; go on with it by 'pkmopt resume " + quoted(output) + "', or overwrite it with --force";
+        "; go on with it by '" + session.program + " resume " + quoted(output) + "', or overwrite it with --force";
     if (contents.toml != study.text)
       throw StorageError(output + " holds another text of the study than " + study.file_name + way_out);
     if (contents.seed != study.seed)
@@ -85,12 +87,6 @@ std::string seed_file(const std::string& output, std::uint64_t seed) {
   const std::filesystem::path path(output);
   return (path.parent_path() / (path.stem().string() + "-seed-" + std::to_string(seed) + path.extension().string()))
       .string();
-}
-
-std::string digits(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
 }
 
 /// Says which of the seeds is under way.
@@ -195,8 +191,8 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
               << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
               << " seeds ended feasible\n";
   if (session.exit_code == kStoppedEarly)
-    std::cout << "stopped; go on with: pkmopt run " << quoted(arguments.study) << " --seeds " << arguments.seeds
-              << " --seed " << first << " --resume --output " << quoted(output) << '\n';
+    std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study) << " --seeds "
+              << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output) << '\n';
 }
 
 }  // namespace
@@ -221,8 +217,8 @@ void add_run(CLI::App& app, Session& session) {
     Study study = load_study_toml(arguments->study, session.catalogues);
     if (arguments->seed) study.seed = static_cast<std::uint64_t>(*arguments->seed);
     const std::string output = arguments->output.empty() ? study.output_file() : arguments->output;
-    for (const auto& warning : study.warnings) std::cerr << "pkmopt: warning: " << warning << '\n';
-    warn_of_box(study);
+    for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
+    warn_of_box(study, session.program);
     if (!arguments->common.quiet) print_estimate(study, arguments->seeds, threads_of(arguments->common));
     if (arguments->seeds > 1) {
       run_seeds(study, output, *arguments, session);
@@ -231,7 +227,7 @@ void add_run(CLI::App& app, Session& session) {
     const auto progress = make_progress(arguments->common);
     const RunOutcome outcome = run_one(study, output, *arguments, session, *progress);
     progress->finish();
-    session.exit_code = print_outcome(outcome, study, output, arguments->common);
+    session.exit_code = print_outcome(outcome, study, output, arguments->common, session.program);
   });
 }
 

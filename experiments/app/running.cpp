@@ -14,7 +14,7 @@
 namespace pkm {
 
 void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "Number of threads (default: one per core)")
+  command.add_option("--threads", threads, "Number of threads (default: OMP_NUM_THREADS, else one per core)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
 }
@@ -46,16 +46,13 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-void print_stop(const RunOutcome& outcome, const std::string& command) {
-  std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations()
-            << " evaluations; go on with: " << command << '\n';
-}
-
 int print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
-                  const RunningArguments& arguments) {
+                  const RunningArguments& arguments, const std::string& program) {
   if (!outcome.stopped.empty()) {
     if (!arguments.quiet) std::cout << summary_text(outcome.contents, study);
-    print_stop(outcome, "pkmopt resume " + quoted(file));  // also when quiet: it must not be missed
+    // Also when quiet: it must not be missed.
+    std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations()
+              << " evaluations; go on with: " << program << " resume " << quoted(file) << '\n';
     return kStoppedEarly;
   }
   if (arguments.quiet) return kDone;

@@ -28,12 +28,11 @@ int threads_of(const RunningArguments& arguments);
 /// A bar or lines on stderr; nothing when quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
-/// "stopped by SIGINT ...; go on with: COMMAND"
-void print_stop(const RunOutcome& outcome, const std::string& command);
 /// A word for a shell: quoted where it needs to be.
 std::string quoted(const std::string& word);
 /// The end of a run; returns the exit code.
+/// @param program  that goes on with it
 int print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
-                  const RunningArguments& arguments);
+                  const RunningArguments& arguments, const std::string& program);
 
 }  // namespace pkm

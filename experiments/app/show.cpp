@@ -1,7 +1,5 @@
 // pkmopt show: what a study found, from its file.
 
-#include <cmath>
-#include <cstdio>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
@@ -15,15 +13,6 @@
 
 namespace pkm {
 namespace {
-
-/// "-" for what does not exist.
-template <std::size_t size>
-void print_number(char (&text)[size], const char* format, double value) {
-  if (std::isnan(value))
-    std::snprintf(text, size, "-");
-  else
-    std::snprintf(text, size, format, value);
-}
 
 /// The history in brief: about ten generations of each stage.
 std::string history(const StudyContents& contents) {
@@ -42,19 +31,15 @@ std::string history(const StudyContents& contents) {
          g = g + step < list.size() || g == list.size() - 1 ? g + step : list.size() - 1) {
       const std::size_t rows_so_far =
           g + 1 < list.size() ? static_cast<std::size_t>(list.first_row[g + 1]) : stage.table.size();
-      char best[40] = "-", share[16], spread[16];
+      std::string best = "-";
       if (front)
-        print_number(best, "%.10g", stage.front->hypervolume[g]);
+        best = digits(stage.front->hypervolume[g]);
       else if (list.best_row[g] >= 0)
-        std::snprintf(best, sizeof best, "%.10g",
-                      stage.table.objective_row(static_cast<std::size_t>(list.best_row[g]))[0]);
-      std::snprintf(share, sizeof share, "%.0f %%", 100 * list.feasible_share[g]);
-      std::snprintf(spread, sizeof spread, "%.2g", list.diversity[g]);
-      rows.push_back(
-          {std::to_string(g), std::to_string(rows_so_far), best, share, spread, duration_text(list.seconds[g])});
-      if (!front) continue;
-      print_number(spread, "%.2g", stage.front->spread[g]);
-      rows.back().insert(rows.back().begin() + 3, spread);
+        best = digits(stage.table.objective_row(static_cast<std::size_t>(list.best_row[g]))[0]);
+      rows.push_back({std::to_string(g), std::to_string(rows_so_far), best,
+                      formatted("%.0f %%", 100 * list.feasible_share[g]), formatted("%.2g", list.diversity[g]),
+                      duration_text(list.seconds[g])});
+      if (front) rows.back().insert(rows.back().begin() + 3, formatted("%.2g", stage.front->spread[g]));
     }
     text += '\n' + stage.optimiser + '\n' + aligned(rows);
   }

@@ -9,8 +9,8 @@
 #include "engine/dynamics/simulation.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/print.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -21,26 +21,24 @@ struct SimulateArguments : DesignArguments, ModeArguments {
   std::string duration, step, csv;
 };
 
-Vector<double, 4> four(const std::vector<double>& x) { return {{x[0], x[1], x[2], x[3]}}; }
-
 double time_of(const std::string& text, const std::string& option) {
   const double value = parse_number(text, option, "s");
   if (!(value > 0)) throw ConfigError({"", 0, option}, text, "a number > 0 s");
   return value;
 }
 
-SimulationSetup setup_of(const Target& target, const std::string& mode, const SimulateArguments& arguments) {
+SimulationSetup setup_of(const Target& target, const Dynamics& dynamics, const std::string& mode,
+                         const SimulateArguments& arguments) {
   constexpr double kMostSteps = 1e7;
   const MechanismInfo& info = target.info();
   SimulationSetup setup;
-  setup.dynamics = [&target, mode](const MotionState<double>& state) {
+  setup.dynamics = [&target, &dynamics, mode](const MotionState<double>& state) {
     PoseDynamics<double> d;
-    target.mechanism->dynamics(target.parameters, mode, {&state, 1}, {&d, 1});
+    dynamics.equations(std::span<const double>(target.parameters), mode, {&state, 1}, {&d, 1});
     return d;
   };
-  setup.forces = [tau = four(parse_some_assignments(arguments.forces, "--forces", assignable_forces(info)))](double) {
-    return tau;
-  };
+  setup.forces = [tau = axis_vector(parse_some_assignments(arguments.forces, "--forces", assignable_forces(info)))](
+                     double) { return tau; };
   setup.wrench = parse_wrench(arguments.wrench);
   setup.refuse = [&target, mode](const Pose<double>& pose) {
     const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
@@ -56,7 +54,7 @@ SimulationSetup setup_of(const Target& target, const std::string& mode, const Si
 CsvTable table_of(const MechanismInfo& info, const Simulation& run) {
   std::vector<std::string> columns = {"time"};
   for (const char* suffix : {"", "_speed", "_acceleration"})
-    for (const auto& name : info.coordinates) columns.push_back(name + suffix);
+    for (const AxisInfo& axis : info.coordinates) columns.push_back(axis.name + suffix);
   for (const char* name : {"kinetic_energy", "work_of_drives", "work_of_weight", "work_of_wrench"})
     columns.emplace_back(name);
   CsvTable table(columns);
@@ -70,17 +68,11 @@ CsvTable table_of(const MechanismInfo& info, const Simulation& run) {
   return table;
 }
 
-Json by_name(const MechanismInfo& info, const Vector<double, 4>& values) {
-  Json object = Json::object();
-  for (std::size_t i = 0; i < 4; ++i) object[info.coordinates[i]] = values[i];
-  return object;
-}
-
 Json state_json(const MechanismInfo& info, const SimulationState& s) {
   return {{"time", s.time},
-          {"pose", by_name(info, s.pose)},
-          {"velocity", by_name(info, s.velocity)},
-          {"acceleration", by_name(info, s.acceleration)},
+          {"pose", values_by_name(info.coordinates, s.pose)},
+          {"velocity", values_by_name(info.coordinates, s.velocity)},
+          {"acceleration", values_by_name(info.coordinates, s.acceleration)},
           {"kinetic_energy", s.kinetic_energy},
           {"work_of_drives", s.work_of_drives},
           {"work_of_weight", s.work_of_weight},
@@ -90,14 +82,8 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
 Json run_json(const MechanismInfo& info, const std::string& mode, const Simulation& run) {
   Json states = Json::array();
   for (const auto& state : run.states) states.push_back(state_json(info, state));
-  Json json = {{"mechanism", info.name},
-               {"mode", mode},
-               {"imbalance", run.imbalance},
-               {"turned_over", run.turned_over},
-               {"states", states}};
-  json["stopped"] = nullptr;
-  if (!run.stopped.empty()) json["stopped"] = run.stopped;
-  return json;
+  return {{"mechanism", info.name},         {"mode", mode},     {"imbalance", run.imbalance},
+          {"turned_over", run.turned_over}, {"states", states}, {"stopped", text_or_null(run.stopped)}};
 }
 
 void print_run(const MechanismInfo& info, const std::string& mode, const Simulation& run) {
@@ -107,10 +93,10 @@ void print_run(const MechanismInfo& info, const std::string& mode, const Simulat
                         {"steps", std::to_string(run.states.size() - 1)},
                         {"end", number(last.time, "s")}});
   std::vector<Row> rows = {{"", "begin", "end", "speed at end"}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::string unit = i == 3 ? "rad" : "m";
-    rows.push_back({info.coordinates[i], number(first.pose[i], unit), number(last.pose[i], unit),
-                    number(last.velocity[i], unit + "/s")});
+  for (std::size_t i = 0; i < info.coordinates.size(); ++i) {
+    const auto& [name, unit] = info.coordinates[i];
+    rows.push_back(
+        {name, number(first.pose[i], unit), number(last.pose[i], unit), number(last.velocity[i], unit + "/s")});
   }
   print_section(std::cout, "pose", rows);
   print_section(
@@ -126,11 +112,13 @@ void print_run(const MechanismInfo& info, const std::string& mode, const Simulat
 int simulate_target(const Catalogues& catalogues, const SimulateArguments& arguments) {
   const Target target = find_target(catalogues, arguments);
   const MechanismInfo& info = target.info();
-  if (!info.has_dynamics) throw ConfigError({}, "simulate needs dynamics, and mechanism " + info.name + " has none");
+  const Dynamics& dynamics = needed(target.mechanism->dynamics(), "simulate", "dynamics", info);
   const std::string mode = known_mode(info, arguments);
   const auto pose = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
-  const auto velocity = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(info, "s"));
-  const Simulation run = simulate(setup_of(target, mode, arguments), four(pose), four(velocity));
+  const auto velocity =
+      parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(*target.mechanism, "s"));
+  const Simulation run = simulate(setup_of(target, dynamics, mode, arguments), axis_vector(pose),
+                                  axis_vector(std::span(velocity).first(pose.size())));
   if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
   if (!arguments.csv.empty()) table_of(info, run).write(arguments.csv);
   if (arguments.json)

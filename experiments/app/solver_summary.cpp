@@ -2,25 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "engine/core/text_table.hpp"
+#include "engine/problem/order.hpp"
 #include "experiments/app/front_summary.hpp"
 
 namespace pkm {
 namespace {
 
 constexpr std::size_t kMostStarts = 12;  // that a table shows
-
-std::string number(const char* format, double value) {
-  if (std::isnan(value)) return "-";
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 /// "3.47 rad/m" -> per mm for lengths, per degree for angles: what an engineer thinks in.
 struct Step {
@@ -38,8 +29,10 @@ std::vector<std::size_t> by_end(const ProblemRecord& problem, const StageRecord&
   std::vector<std::size_t> order(stage.starts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return better(stage.table, problem.objectives[0].direction, static_cast<std::size_t>(stage.starts[a].end_row),
-                  static_cast<std::size_t>(stage.starts[b].end_row));
+    const auto rank = [&](std::size_t start) {
+      return ranked(problem.objectives, stage.table, static_cast<std::size_t>(stage.starts[start].end_row));
+    };
+    return better(rank(a), rank(b));
   });
   return order;
 }
@@ -74,11 +67,9 @@ std::vector<std::size_t> optima(const ProblemRecord& problem, const StageRecord&
 std::string objective_at(const StageRecord& stage, std::int64_t row) {
   const auto r = static_cast<std::size_t>(row);
   if (stage.table.status[r] == Status::failed) return "failed";
-  const std::string value = number("%.10g", stage.table.objective_row(r)[0]);
+  const std::string value = formatted("%.10g", stage.table.objective_row(r)[0]);
   return stage.table.status[r] == Status::feasible ? value : value + " (infeasible)";
 }
-
-std::vector<double> values(std::span<const double> row) { return {row.begin(), row.end()}; }
 
 }  // namespace
 
@@ -93,7 +84,7 @@ std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) 
     const StartOutcome& start = stage.starts[order[k]];
     rows.push_back({"  " + start.origin, std::to_string(start.rows), objective_at(stage, start.first_row),
                     objective_at(stage, start.end_row), optimum[order[k]] ? std::to_string(optimum[order[k]]) : "-",
-                    number("%.1e", start.optimality),
+                    formatted("%.1e", start.optimality),
                     start.stop + (start.message.empty() ? "" : " (" + start.message + ")")});
   }
   std::string text = aligned(rows);
@@ -106,11 +97,11 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
   if (!stage.optimality) return "";
   const OptimalityRecord& record = *stage.optimality;
   const ObjectiveInfo& objective = problem.objectives[0];
-  std::string text = "first-order optimality " + number("%.1e", record.optimality) + '\n';
+  std::string text = "first-order optimality " + formatted("%.1e", record.optimality) + '\n';
   std::vector<std::vector<std::string>> rows = {{"active", "", "multiplier", ""}};
   for (const ActiveRecord& a : record.active) {
     const Step step = handy(a.unit);
-    rows.push_back({a.name, a.kind, number("%.4g", a.multiplier * step.size),
+    rows.push_back({a.name, a.kind, formatted("%.4g", a.multiplier * step.size),
                     objective.unit + (step.unit == "1" ? "" : " per " + step.unit)});
   }
   if (rows.size() > 1) text += '\n' + aligned(rows);
@@ -119,8 +110,8 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
     if (s.as_built == 0 && !(s.reoptimised != 0)) continue;  // has no influence
     const Step step = handy(s.unit);
     rows.push_back({s.parameter, std::isnan(s.reoptimised) ? "varies" : "fixed",
-                    number("%+.4g", s.as_built * step.size),
-                    std::isnan(s.reoptimised) ? "" : number("%+.4g", s.reoptimised * step.size),
+                    formatted("%+.4g", s.as_built * step.size),
+                    std::isnan(s.reoptimised) ? "" : formatted("%+.4g", s.reoptimised * step.size),
                     objective.unit + (step.unit == "1" ? "" : " per " + step.unit)});
   }
   return text + '\n' + aligned(rows);
@@ -133,15 +124,10 @@ Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
       one ? optima(problem, stage, by_end(problem, stage)) : std::vector<std::size_t>(stage.starts.size(), 0);
   const auto point = [&](std::int64_t row) {
     const auto r = static_cast<std::size_t>(row);
-    Json json = {{"design", Json::object()}, {"objectives", Json::object()}, {"constraints", Json::object()}};
-    const auto fill = [](Json& object, const auto& infos, const std::vector<double>& numbers) {
-      for (std::size_t i = 0; i < infos.size(); ++i) object[infos[i].name] = finite(numbers[i]);
-    };
-    fill(json["design"], problem.variables, values(stage.table.design(r)));
-    fill(json["objectives"], problem.objectives, values(stage.table.objective_row(r)));
-    fill(json["constraints"], problem.margins, values(stage.table.margin_row(r)));
-    json["feasible"] = stage.table.status[r] == Status::feasible;
-    return json;
+    return Json{{"design", values_by_name(problem.variables, stage.table.design(r))},
+                {"objectives", values_by_name(problem.objectives, stage.table.objective_row(r))},
+                {"constraints", values_by_name(problem.margins, stage.table.margin_row(r))},
+                {"feasible", stage.table.status[r] == Status::feasible}};
   };
   for (std::size_t s = 0; s < stage.starts.size(); ++s) {
     const StartOutcome& start = stage.starts[s];
@@ -150,7 +136,7 @@ Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
                     {"start", point(start.first_row)},
                     {"end", point(start.end_row)},
                     {"optimum", optimum[s] ? Json(optimum[s]) : Json()},
-                    {"optimality", finite(start.optimality)},
+                    {"optimality", start.optimality},
                     {"stop", start.stop},
                     {"message", start.message}});
   }
@@ -158,15 +144,14 @@ Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
 }
 
 Json optimality_json(const OptimalityRecord& record) {
-  Json json = {{"optimality", finite(record.optimality)}, {"active", Json::array()}, {"sensitivities", Json::array()}};
+  Json json = {{"optimality", record.optimality}, {"active", Json::array()}, {"sensitivities", Json::array()}};
   for (const ActiveRecord& a : record.active)
-    json["active"].push_back(
-        {{"name", a.name}, {"kind", a.kind}, {"multiplier", finite(a.multiplier)}, {"unit", a.unit}});
+    json["active"].push_back({{"name", a.name}, {"kind", a.kind}, {"multiplier", a.multiplier}, {"unit", a.unit}});
   for (const SensitivityRecord& s : record.sensitivities)
     json["sensitivities"].push_back({{"parameter", s.parameter},
                                      {"unit", s.unit},
                                      {"as_built", finite(s.as_built)},
-                                     {"reoptimised", finite(s.reoptimised)}});
+                                     {"reoptimised", s.reoptimised}});
   return json;
 }
 

@@ -12,15 +12,6 @@
 namespace pkm {
 namespace {
 
-/// Ten digits; "-" for what was not computed.
-std::string digits(double value) {
-  if (std::isnan(value)) return "-";
-  std::ostringstream out;
-  out.precision(10);
-  out << value;
-  return out.str();
-}
-
 /// "+1.52 %": how much better than the baseline, in the objective's direction.
 std::string gain(double best, double baseline, Direction direction) {
   const std::optional<Gain> found = gain_over(baseline, best, direction);
@@ -226,10 +217,7 @@ Json summary_json(const StudyContents& contents) {
   if (contents.best.row >= 0) {
     const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
     const auto row = static_cast<std::size_t>(contents.best.row);
-    Json design = Json::object();
-    for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
-      design[contents.problem.variables[i].name] = stage.table.design(row)[i];
-    object["best"] = {{"design", design},
+    object["best"] = {{"design", values_by_name(contents.problem.variables, stage.table.design(row))},
                       {"objectives", values_by_name(contents.problem.objectives, stage.table.objective_row(row))},
                       {"constraints", values_by_name(contents.problem.margins, stage.table.margin_row(row))},
                       {"reports", values_by_name(contents.problem.reports, stage.table.report_row(row))},

@@ -72,12 +72,12 @@ void set_masses(Target& target, const std::string& model) {
   if (target.study)
     throw ConfigError({"", 0, "--masses"}, "'" + model + "' together with a study",
                       "a bare mechanism; a study says masses = \"..\" in its [mechanism]");
-  const auto other = target.mechanism->with_masses(model);
-  if (!other && info.mass_models.empty())
-    throw ConfigError({"", 0, "--masses"}, "the mechanism " + info.name + " has no masses");
+  const Dynamics* const dynamics = target.mechanism->dynamics();
+  if (!dynamics) throw ConfigError({"", 0, "--masses"}, "the mechanism " + info.name + " has no masses");
+  const auto other = dynamics->with_masses(model);
   if (!other)
-    throw ConfigError({"", 0, "--masses"}, "'" + model + "'", "one of " + join(info.mass_models),
-                      nearest_name(model, info.mass_models));
+    throw ConfigError({"", 0, "--masses"}, "'" + model + "'", "one of " + join(dynamics->mass_models()),
+                      nearest_name(model, dynamics->mass_models()));
   target = bare_mechanism(other);
 }
 
@@ -166,8 +166,7 @@ Target find_target(const Catalogues& catalogues, const DesignArguments& argument
     target.words += " with " + join(arguments.set);
     target.file_name += "-changed";
   }
-  if (const std::string reason = target.mechanism->refuse(target.parameters); !reason.empty())
-    throw ConfigError({"", 0, "--set"}, reason);
+  if (const Refusal reason = target.mechanism->refuse(target.parameters)) throw ConfigError({"", 0, "--set"}, *reason);
   return target;
 }
 

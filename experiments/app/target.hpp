@@ -45,6 +45,14 @@ void add_mode_options(CLI::App& command, ModeArguments& arguments);
 /// The mode asked for, as the mechanism calls it. Refuses one that it does not have.
 std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments);
 
+/// The ability of a mechanism that a command needs. Throws ConfigError, naming both, where it has it not.
+template <class Ability>
+const Ability& needed(const Ability* ability, const std::string& command, const std::string& what,
+                      const MechanismInfo& info) {
+  if (!ability) throw ConfigError({}, command + " needs " + what + ", and mechanism " + info.name + " has none");
+  return *ability;
+}
+
 /// One design of a mechanism, and the study that it comes from, if it does.
 struct Target {
   std::shared_ptr<const Mechanism> mechanism;

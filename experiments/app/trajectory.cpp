@@ -1,6 +1,7 @@
 // `pkmopt trajectory`: a mechanism along a motion.
 
 #include <iostream>
+#include <numeric>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
@@ -11,8 +12,8 @@
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/setup/motion_section.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/print.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -26,17 +27,17 @@ struct TrajectoryArguments : DesignArguments, ModeArguments {
   bool allow_infeasible = false;
 };
 
-using Values = std::optional<Vector<double, 4>>;
+using Values = std::optional<AxisVector<double>>;
 
 /// A [[motion]] of the study by its name, else a file.
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
   if (target.study)
     if (const NamedMotion* known = find_named(target.study->motions, name)) return known->motion;
-  return load_motion_toml(name, motion_names(target.info()));
+  return load_motion_toml(name, motion_names(*target.mechanism));
 }
 
 /// The auxiliary chain at a sample, NaN for what does not exist; empty where there is no chain.
-NamedValues chain_values(const MechanismInfo& info, const TrajectoryPoint& p) {
+NamedValues chain_values(const AuxiliaryChain* chain, const TrajectoryPoint& p) {
   constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
   NamedValues values;
   if (!p.chain) return values;
@@ -46,8 +47,8 @@ NamedValues chain_values(const MechanismInfo& info, const TrajectoryPoint& p) {
     values.emplace_back(name + "_speed", turning.speed);
     values.emplace_back(name + "_acceleration", turning.acceleration);
   };
-  add(info.chain_input, in);
-  add(info.chain_output, out);
+  add(chain->input(), in);
+  add(chain->output(), out);
   values.insert(values.end(), p.chain->angles.begin(), p.chain->angles.end());
   const auto add_axes = [&](const std::string& name, const Vector<double, 3>& vector) {
     for (std::size_t k = 0; k < 3; ++k)
@@ -59,30 +60,31 @@ NamedValues chain_values(const MechanismInfo& info, const TrajectoryPoint& p) {
 }
 
 /// Names of the above, as far as any sample has a chain.
-std::vector<std::string> chain_columns(const MechanismInfo& info, const Trajectory& trajectory) {
+std::vector<std::string> chain_columns(const AuxiliaryChain* chain, const Trajectory& trajectory) {
   std::vector<std::string> names;
   for (const TrajectoryPoint& p : trajectory.points)
     if (names.empty())
-      for (const auto& [name, value] : chain_values(info, p)) names.push_back(name);
+      for (const auto& [name, value] : chain_values(chain, p)) names.push_back(name);
   return names;
 }
 
-CsvTable table_of(const MechanismInfo& info, const Trajectory& trajectory) {
+CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
+  const MechanismInfo& info = mechanism.info();
   std::vector<std::string> columns = {"time"};
-  const auto add_names = [&](const auto& names, const std::string& suffix) {
-    for (const auto& name : names) columns.push_back(name + suffix);
+  const auto add_names = [&](const Axes& axes, const std::string& suffix) {
+    for (const AxisInfo& axis : axes) columns.push_back(axis.name + suffix);
   };
   for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.coordinates, suffix);
   for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.joints, suffix);
   for (const char* name : {"conditioning", "feasible", "reason"}) columns.emplace_back(name);
-  if (info.has_dynamics) {
+  if (mechanism.dynamics()) {
     for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
     columns.emplace_back("power");
   }
-  const auto chain = chain_columns(info, trajectory);
+  const auto chain = chain_columns(mechanism.chain(), trajectory);
   columns.insert(columns.end(), chain.begin(), chain.end());
   CsvTable table(columns);
-  const auto add = [&table](const Values& values) { values ? table.add(*values) : table.add_empty(4); };
+  const auto add = [&](const Values& values) { values ? table.add(*values) : table.add_empty(info.joints.size()); };
   for (const TrajectoryPoint& p : trajectory.points) {
     table.begin_row();
     table.add(p.motion.time);
@@ -91,33 +93,26 @@ CsvTable table_of(const MechanismInfo& info, const Trajectory& trajectory) {
     p.conditioning ? table.add(*p.conditioning) : table.add_empty(1);
     table.add(p.feasible ? 1.0 : 0.0);
     table.add(p.reason);
-    if (info.has_dynamics) {
+    if (mechanism.dynamics()) {
       add(p.forces);
       add(p.power);
-      p.power ? table.add((*p.power)[0] + (*p.power)[1] + (*p.power)[2] + (*p.power)[3]) : table.add_empty(1);
+      p.power ? table.add(std::accumulate(p.power->begin() + 1, p.power->end(), (*p.power)[0])) : table.add_empty(1);
     }
-    const NamedValues turning = chain_values(info, p);
+    const NamedValues turning = chain_values(mechanism.chain(), p);
     for (const auto& [name, value] : turning) table.add(value);
     if (turning.empty()) table.add_empty(chain.size());
   }
   return table;
 }
 
-template <class Names>
-Json by_name(const Names& names, const Values& values) {
-  if (!values) return {};
-  Json object = Json::object();
-  for (std::size_t i = 0; i < 4; ++i) object[names[i]] = (*values)[i];
-  return object;
-}
-
-Json summary_json(const MechanismInfo& info, const Trajectory& trajectory) {
+Json summary_json(const Mechanism& mechanism, const Trajectory& trajectory) {
+  const Axes& joints = mechanism.info().joints;
   const TrajectorySummary& s = trajectory.summary;
-  Json json = {{"infeasible", s.infeasible}, {"peak_speed", by_name(info.joints, s.peak_speed)}};
-  if (!info.has_dynamics) return json;
+  Json json = {{"infeasible", s.infeasible}, {"peak_speed", axes_json(joints, s.peak_speed)}};
+  if (!mechanism.dynamics()) return json;
   const auto number_or_null = [&s](double value) { return s.has_forces ? Json(value) : Json(); };
-  const auto values_or_null = [&](const Vector<double, 4>& values) {
-    return by_name(info.joints, s.has_forces ? Values(values) : Values());
+  const auto values_or_null = [&](const AxisVector<double>& values) {
+    return axes_json(joints, s.has_forces ? Values(values) : Values());
   };
   json["peak_force"] = values_or_null(s.peak_force);
   json["rms_force"] = values_or_null(s.rms_force);
@@ -129,45 +124,44 @@ Json summary_json(const MechanismInfo& info, const Trajectory& trajectory) {
   return json;
 }
 
-Json sample_json(const MechanismInfo& info, const TrajectoryPoint& p) {
+Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
+  const MechanismInfo& info = mechanism.info();
   Json json = {{"time", p.motion.time},
-               {"pose", by_name(info.coordinates, p.motion.pose)},
-               {"velocity", by_name(info.coordinates, p.motion.velocity)},
-               {"acceleration", by_name(info.coordinates, p.motion.acceleration)},
-               {"joints", by_name(info.joints, p.joints)},
-               {"speeds", by_name(info.joints, p.speeds)},
-               {"accelerations", by_name(info.joints, p.accelerations)}};
-  json["conditioning"] = nullptr;
-  if (p.conditioning) json["conditioning"] = *p.conditioning;
+               {"pose", axes_json(info.coordinates, p.motion.pose)},
+               {"velocity", axes_json(info.coordinates, p.motion.velocity)},
+               {"acceleration", axes_json(info.coordinates, p.motion.acceleration)},
+               {"joints", axes_json(info.joints, p.joints)},
+               {"speeds", axes_json(info.joints, p.speeds)},
+               {"accelerations", axes_json(info.joints, p.accelerations)}};
+  json["conditioning"] = json_or_null(p.conditioning);
   json["feasible"] = p.feasible;
-  json["reason"] = nullptr;
-  if (!p.reason.empty()) json["reason"] = p.reason;
-  if (info.has_dynamics) {
-    json["forces"] = by_name(info.joints, p.forces);
-    json["power"] = by_name(info.joints, p.power);
+  json["reason"] = text_or_null(p.reason);
+  if (mechanism.dynamics()) {
+    json["forces"] = axes_json(info.joints, p.forces);
+    json["power"] = axes_json(info.joints, p.power);
   }
   if (p.chain) {
-    json["chain"] = Json::object();
-    for (const auto& [name, value] : chain_values(info, p)) json["chain"][name] = value;
+    json["chain"] = values_by_name(chain_values(mechanism.chain(), p));
   }
   return json;
 }
 
-Json trajectory_json(const MechanismInfo& info, const std::string& mode, const std::string& motion,
+Json trajectory_json(const Mechanism& mechanism, const std::string& mode, const std::string& motion,
                      const Trajectory& trajectory) {
   Json samples = Json::array();
-  for (const auto& point : trajectory.points) samples.push_back(sample_json(info, point));
-  return {{"mechanism", info.name},
+  for (const auto& point : trajectory.points) samples.push_back(sample_json(mechanism, point));
+  return {{"mechanism", mechanism.info().name},
           {"mode", mode},
           {"motion", motion},
           {"duration", trajectory.duration},
           {"periodic", trajectory.periodic},
-          {"summary", summary_json(info, trajectory)},
+          {"summary", summary_json(mechanism, trajectory)},
           {"samples", samples}};
 }
 
-void print_trajectory(const MechanismInfo& info, const std::string& mode, const std::string& motion,
+void print_trajectory(const Mechanism& mechanism, const std::string& mode, const std::string& motion,
                       const Trajectory& trajectory) {
+  const MechanismInfo& info = mechanism.info();
   const TrajectorySummary& s = trajectory.summary;
   const std::string all = std::to_string(trajectory.points.size());
   std::cout << aligned(
@@ -177,19 +171,21 @@ void print_trajectory(const MechanismInfo& info, const std::string& mode, const 
        {"duration", number(trajectory.duration, "s")},
        {"samples", all},
        {"feasible", s.infeasible == 0 ? "yes" : "not at " + std::to_string(s.infeasible) + " samples"}});
-  std::vector<Row> rows = {{"", info.joints[0], info.joints[1], info.joints[2], info.joints[3]}};
-  const auto add = [&rows](const std::string& title, const Vector<double, 4>& values) {
+  std::vector<Row> rows = {{""}};
+  for (const AxisInfo& joint : info.joints) rows[0].push_back(joint.name);
+  const auto add = [&rows](const std::string& title, const AxisVector<double>& values) {
     rows.push_back({title});
-    for (const double value : values.m) rows.back().push_back(number(value));
+    for (const double value : values) rows.back().push_back(number(value));
   };
-  add("peak speed [m/s]", s.peak_speed);
+  const std::string forces = force_units_of(info.joints);
+  add("peak speed [" + units_of(info.joints, "/s") + "]", s.peak_speed);
   if (s.has_forces) {
-    add("peak force [N]", s.peak_force);
-    add("RMS force [N]", s.rms_force);
+    add("peak force [" + forces + "]", s.peak_force);
+    add("RMS force [" + forces + "]", s.rms_force);
     add("peak power [W]", s.peak_power);
   }
   print_section(std::cout, "joints", rows);
-  if (!info.has_dynamics) std::cout << "\nmechanism " << info.name << " has no dynamics: no forces, no power\n";
+  if (!mechanism.dynamics()) std::cout << "\nmechanism " << info.name << " has no dynamics: no forces, no power\n";
   if (!s.has_forces) return;
   const std::string per = trajectory.periodic ? "per cycle" : "over the motion";
   print_section(std::cout, "all joints together",
@@ -201,22 +197,23 @@ void print_trajectory(const MechanismInfo& info, const std::string& mode, const 
 
 int trajectory(const Catalogues& catalogues, const TrajectoryArguments& arguments) {
   const Target target = find_target(catalogues, arguments);
+  const Mechanism& mechanism = *target.mechanism;
   const MechanismInfo& info = target.info();
   const std::string mode = known_mode(info, arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
-  if (!arguments.wrench.empty() && !info.has_dynamics)
+  if (!arguments.wrench.empty() && !mechanism.dynamics())
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
-  if (!arguments.zeta.empty() && info.chain_input.empty())
+  if (!arguments.zeta.empty() && !mechanism.chain())
     throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");
   const double zeta = arguments.zeta.empty() ? 0 : parse_number(arguments.zeta, "--zeta", "rad");
   const auto motion = find_motion(target, arguments.motion);
   const Trajectory found =
-      follow(*target.mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench, zeta);
-  if (!arguments.csv.empty()) table_of(info, found).write(arguments.csv);
+      follow(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench, zeta);
+  if (!arguments.csv.empty()) table_of(mechanism, found).write(arguments.csv);
   if (arguments.json)
-    print_json(std::cout, trajectory_json(info, mode, arguments.motion, found));
+    print_json(std::cout, trajectory_json(mechanism, mode, arguments.motion, found));
   else
-    print_trajectory(info, mode, arguments.motion, found);
+    print_trajectory(mechanism, mode, arguments.motion, found);
   if (found.summary.infeasible == 0 || arguments.allow_infeasible) return kDone;
   for (const auto& point : found.points)
     if (!point.feasible)

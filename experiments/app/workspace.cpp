@@ -23,30 +23,48 @@ namespace {
 constexpr double kMostCells = 1e7;
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs {
-  std::string held, csv, html;
+  std::vector<std::string> held;
+  std::string csv, html;
   int threads = 0;
 };
 
-/// Holds the coordinate that --held names at its value. A study's box and cells are of other axes then.
-void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::string& text) {
-  const auto values = parse_assignments({text}, "--held", assignable_coordinates(info));
-  std::vector<std::string> known;
-  for (const Sweep& sweep : sweeps_of(info)) known.push_back(info.coordinates[static_cast<std::size_t>(sweep.held)]);
-  const int before = sweep_of(info, plan).held;
-  int given = 0;
-  for (int coordinate = 0; coordinate < 4; ++coordinate) {
-    const auto index = static_cast<std::size_t>(coordinate);
-    if (!values[index]) continue;
-    ++given;
-    if (std::ranges::find(known, info.coordinates[index]) == known.end())
-      throw ConfigError({"", 0, "--held"}, info.coordinates[index],
-                        "a coordinate that surveys can hold: " + join(known));
-    plan.held = {HeldCoordinate::Kind::value, *values[index], coordinate};
+/// Holds the coordinates that --held names at their values. Others that the study holds stay as they are where its
+/// sweep serves; where another does, the study's box and cells are of other axes.
+void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists) {
+  const SourcePlace place{"", 0, "--held"};
+  const auto values = parse_assignments(lists, place.key, assignable_coordinates(info));
+  std::vector<int> known;
+  std::size_t most = 0;
+  for (const Sweep& sweep : info.sweeps) {
+    most = std::max(most, sweep.held.size());
+    for (const int held : sweep.held)
+      if (std::ranges::find(known, held) == known.end()) known.push_back(held);
   }
-  if (given != 1) throw ConfigError({"", 0, "--held"}, text, "one coordinate with its value");
-  if (*plan.held.coordinate == before) return;
-  plan.box.reset();
-  plan.cells = {};
+  const auto name = [&info](int coordinate) { return info.coordinates[static_cast<std::size_t>(coordinate)].name; };
+  std::vector<std::string> names;
+  for (const int coordinate : known) names.push_back(name(coordinate));
+  std::vector<HeldCoordinate> given;
+  for (int i = 0; i < std::ssize(values); ++i) {
+    const auto& value = values[static_cast<std::size_t>(i)];
+    if (value && std::ranges::find(known, i) == known.end())
+      throw ConfigError(place, name(i), "a coordinate that surveys can hold: " + join(names));
+    if (value) given.push_back({i, HeldCoordinate::Kind::value, *value});
+  }
+  const auto serves = [&given](const Sweep& sweep) {
+    return std::ranges::all_of(
+        given, [&](const auto& held) { return std::ranges::find(sweep.held, held.coordinate) != sweep.held.end(); });
+  };
+  if (std::ranges::none_of(info.sweeps, serves))
+    throw ConfigError(
+        place, join(lists),
+        most > 1 ? "coordinates that one survey can hold, with their values" : "one coordinate with its value");
+  if (!serves(sweep_of(info, plan))) {
+    plan.held.clear();
+    plan.method = ColumnOptions();
+  }
+  for (const HeldCoordinate& held : plan.held)
+    if (std::ranges::find(given, held.coordinate, &HeldCoordinate::coordinate) == given.end()) given.push_back(held);
+  plan.held = given;
 }
 
 /// The voxels asked for: the study's limits, its plan where the command line says nothing.
@@ -54,14 +72,13 @@ SurveyPlan plan_of(const Target& target, const WorkspaceArguments& arguments) {
   SurveyPlan plan;
   if (target.study) plan = target.study->problem->parts().plan;
   plan.limits = target.limits;
-  plan.method = Method::voxels;
   if (!arguments.held.empty()) set_held(plan, target.info(), arguments.held);
   set_grid(plan, target.info(), arguments, kPictureCells, kMostCells);
   return plan;
 }
 
 /// Least and greatest value of each axis at which a cell is feasible: the cells' outer faces. Absent: none is.
-using Extents = std::optional<std::array<std::array<double, 2>, 3>>;
+using Extents = std::optional<std::vector<std::array<double, 2>>>;
 
 Extents extents_of(const WorkspaceFields& workspace) {
   Extents extents;
@@ -70,11 +87,10 @@ Extents extents_of(const WorkspaceFields& workspace) {
   for (std::size_t cell = 0; cell < feasible.size(); ++cell) {
     if (!(feasible[cell] > 0)) continue;
     const Pose<double> pose = workspace.pose(cell);
-    const std::array<double, 4> at = {pose.x, pose.y, pose.z, pose.angle};
     const bool first = !extents;
-    if (first) extents.emplace();
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double centre = at[static_cast<std::size_t>(workspace.axes[i].coordinate)], half = grid.step[i] / 2;
+    if (first) extents.emplace(workspace.axes.size());
+    for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
+      const double centre = pose[static_cast<std::size_t>(workspace.axes[i].coordinate)], half = grid.step[i] / 2;
       auto& [least, greatest] = (*extents)[i];
       least = first ? centre - half : std::min(least, centre - half);
       greatest = first ? centre + half : std::max(greatest, centre + half);
@@ -89,16 +105,17 @@ std::int64_t feasible_cells(const WorkspaceFields& workspace) {
 
 Json workspace_json(const Target& target, const WorkspaceFields& workspace, const std::vector<std::string>& files) {
   const Extents extents = extents_of(workspace);
+  Json held = Json::array();
+  for (std::size_t i = 0; i < workspace.held.size(); ++i) {
+    const WorkspaceAxis& axis = workspace.held[i];
+    held.push_back({{"name", axis.name}, {"value", axis.lower}, {"unit", axis.unit}, {"why", workspace.held_note[i]}});
+  }
   Json json = {{"mechanism", target.info().name},
                {"design", target.words},
                {"parameters", values_by_name(target.info().parameters, target.parameters)},
-               {"held",
-                {{"name", workspace.held.name},
-                 {"value", workspace.held.lower},
-                 {"unit", workspace.held.unit},
-                 {"why", workspace.held_note}}},
+               {"held", held.size() == 1 ? held[0] : held},
                {"axes", Json::array()}};
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
     const WorkspaceAxis& axis = workspace.axes[i];
     json["axes"].push_back({{"name", axis.name},
                             {"unit", axis.unit},
@@ -129,7 +146,9 @@ void print_workspace(const Target& target, const WorkspaceFields& workspace, con
   std::vector<Row> head = {{"mechanism", target.info().name}};
   if (target.study) head.push_back({"study", target.study->name});
   head.push_back({"design", target.words});
-  head.push_back({workspace.held.name, number(workspace.held.lower, workspace.held.unit), workspace.held_note});
+  for (std::size_t i = 0; i < workspace.held.size(); ++i)
+    head.push_back(
+        {workspace.held[i].name, number(workspace.held[i].lower, workspace.held[i].unit), workspace.held_note[i]});
   head.push_back(
       {"feasible cells", std::to_string(feasible_cells(workspace)) + " of " + std::to_string(workspace.cells())});
   head.push_back({"volume", number(workspace.volume, workspace.volume_unit)});
@@ -137,7 +156,7 @@ void print_workspace(const Target& target, const WorkspaceFields& workspace, con
   std::cout << aligned(head);
 
   std::vector<Row> axes, fields;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
     const WorkspaceAxis& axis = workspace.axes[i];
     const auto range = [&](double lower, double upper) {
       return number(lower, axis.unit) + " .. " + number(upper, axis.unit);
@@ -161,22 +180,22 @@ int workspace(const Catalogues& catalogues, const WorkspaceArguments& arguments)
     if (!file.empty()) files.push_back(file);
   refuse_existing(files, arguments.force);
   if (!arguments.html.empty()) page_parts();  // or say at once that there are none
-  Team team(arguments.threads);
-  const LentTeam lent(team);
-  const SurveyPlan plan = plan_of(target, arguments);
-  const std::string mode = known_mode(target.info(), arguments);
-  const WorkspaceFields found = fields_of(target, plan, mode);
-  write_workspace(arguments, target, found);
-  if (!arguments.csv.empty()) replace_file(arguments.csv, workspace_table(found).text());
-  if (!arguments.html.empty()) {
-    const auto motions = target.study ? target.study->motions : std::vector<NamedMotion>();
-    const Views views = views_of(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
-    replace_file(arguments.html, html_page(page_data(views, program_words())));
-  }
-  if (arguments.json)
-    print_json(std::cout, workspace_json(target, found, files));
-  else
-    print_workspace(target, found, files);
+  with_team(arguments.threads, [&] {
+    const SurveyPlan plan = plan_of(target, arguments);
+    const std::string mode = known_mode(target.info(), arguments);
+    const WorkspaceFields found = fields_of(target, plan, mode);
+    write_workspace(arguments, target, found);
+    if (!arguments.csv.empty()) replace_file(arguments.csv, workspace_table(found).text());
+    if (!arguments.html.empty()) {
+      const auto motions = target.study ? target.study->motions : std::vector<NamedMotion>();
+      const Views views = views_of(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
+      replace_file(arguments.html, html_page(page_data(views, program_words())));
+    }
+    if (arguments.json)
+      print_json(std::cout, workspace_json(target, found, files));
+    else
+      print_workspace(target, found, files);
+  });
   return kDone;
 }
 
@@ -187,10 +206,8 @@ void add_workspace(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("workspace", "The workspace of one design, for ParaView, tables and CAD.");
   add_design_arguments(*command, *arguments);
   add_grid_options(*command, *arguments, kPictureCells);
-  command
-      ->add_option("--held", arguments->held,
-                   "The coordinate that is not swept and its value; default: the study's, else the design's middle")
-      ->type_name("NAME=VALUE");
+  add_list_option(*command, "--held", arguments->held,
+                  "Coordinates that are not swept; default: the study's, else the design's middle", false);
   command->add_option("--mode", arguments->mode, "Working mode of the coupling indices; default: the first")
       ->type_name("MODE");
   add_workspace_outputs(*command, *arguments);

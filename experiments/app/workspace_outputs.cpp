@@ -60,6 +60,8 @@ WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const st
 }
 
 void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace) {
+  if (const Refusal reason = refuse_surface(workspace); reason && !outputs.stl.empty())
+    throw ConfigError({"", 0, "--stl"}, *reason);
   const std::string title = title_of(target);
   if (!outputs.vtk.empty()) write_vtk_image(outputs.vtk, vtk_image(workspace, target.info(), target.parameters, title));
   if (outputs.stl.empty()) return;

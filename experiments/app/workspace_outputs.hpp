@@ -31,7 +31,8 @@ std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target&
 /// The workspace's fields. Throws ConfigError when the mechanism cannot serve the plan.
 WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode);
 
-/// Writes files_of(); throws StorageError, and std::runtime_error when a surface is asked for and there is none.
+/// Writes files_of(); throws StorageError, ConfigError when the sweep can have no surface and one is asked for, and
+/// std::runtime_error when there is none.
 void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace);
 
 }  // namespace pkm

@@ -1,4 +1,4 @@
-// No evaluation allocates: storage belongs to the thread and grows with the largest design. Every study of the
+// No evaluation allocates: storage belongs to the scratch and grows with the largest design. Every study of the
 // experiments, on a program of its own because it replaces operator new.
 #include <gtest/gtest.h>
 
@@ -64,9 +64,10 @@ TEST_P(Allocations, NoneInAnEvaluation) {
     const auto design = table.design(row);
     for (std::size_t i = 0; i < design.size(); ++i) design[i] = problem.space().from_unit(i, stream.u01());
   }
+  Scratch scratch;
   const auto evaluate_all = [&] {
     for (std::size_t row = 0; row < kDesigns; ++row)
-      problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), table.slot(row));
+      problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, table.slot(row));
   };
   evaluate_all();
   const std::int64_t before = allocations;

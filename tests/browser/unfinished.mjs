@@ -1,4 +1,4 @@
-// Studies that are not finished, and one whose text this program cannot read.
+// Studies that are not finished, also of earlier programs, and one whose text this program cannot read.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, rmSync, writeFileSync } from "node:fs";
@@ -52,6 +52,20 @@ for (const [signal, words] of [
   await page.draw("convergence");
   assert.ok((await page.text("#summary")).includes(words), words);
   assert.ok((await page.sections()).includes("mechanism"));
+  await page.close();
+}
+
+// Real ones that earlier programs were stopped in.
+for (const schema of [1, 2, 3]) {
+  const name = `interrupted-schema-${schema}`,
+    html = path.join(folder, name + ".html");
+  pkmopt("report", path.join(process.env.BROWSER_DATA, name + ".h5"), "--output", html, "--force");
+  const page = await Page.open(html),
+    front = schema === 3 ? ["front"] : [];
+  const sections = ["summary", "workspace", "mechanism", "coupling", "convergence", ...front, "populations"];
+  assert.deepEqual(await page.sections(), sections);
+  for (const section of ["convergence", ...front, "populations"]) await page.draw(section);
+  assert.match(await page.text("#summary"), /interrupted/);
   await page.close();
 }
 

@@ -76,14 +76,15 @@ TEST_F(ExportProgram, VtkAndTheTableOfAnyMechanismsWorkspaceAreTheSame) {
   for (const auto& mechanism : all_mechanisms()) {
     const MechanismInfo& info = mechanism->info();
     std::string cells;
-    for (const int swept : info.swept)
-      cells += (cells.empty() ? "" : ",") + info.coordinates[static_cast<std::size_t>(swept)] + "=" +
-               std::to_string(9 + swept);
+    const std::vector<int>& swept = info.sweeps.front().swept;
+    for (const int axis : swept)
+      cells += (cells.empty() ? "" : ",") + info.coordinates[static_cast<std::size_t>(axis)].name + "=" +
+               std::to_string(9 + axis);
     ASSERT_EQ(run({"workspace", info.name, "--cells", cells, "--vtk", "w.vtkhdf", "--csv", "w.csv", "--force"}), 0)
         << output_;
     EXPECT_THAT(output_, HasSubstr("wrote w.vtkhdf\nwrote w.csv\n"));
-    const int count = (9 + info.swept[0]) * (9 + info.swept[1]) * (9 + info.swept[2]);
-    const std::size_t arrays = info.has_dynamics ? 13 : 7;
+    const int count = (9 + swept[0]) * (9 + swept[1]) * (9 + swept[2]);
+    const std::size_t arrays = mechanism->dynamics() ? 13 : 7;
     EXPECT_EQ(vtk("w.vtkhdf w.csv"),
               "equal " + std::to_string(count) + " cells of " + std::to_string(arrays) + " arrays\n")
         << info.name;

@@ -72,6 +72,16 @@ TEST_F(GaProgram, OneTwoAndSevenThreadsAreTheSame) {
   EXPECT_EQ(first_difference(read("1.h5"), read("7.h5")), "");
 }
 
+TEST_F(GaProgram, ThreadsAreAsManyAsOpenMPIsToldUnlessTheCommandSays) {
+  write_toml(5);
+  ASSERT_EQ(setenv("OMP_NUM_THREADS", "3", 1), 0);
+  EXPECT_EQ(run({"run", "study.toml", "--force"}), 0);
+  EXPECT_NE(output_.find(" on 3 threads, checkpoints"), std::string::npos) << output_;
+  EXPECT_EQ(run({"run", "study.toml", "--force", "--threads", "2"}), 0);
+  EXPECT_NE(output_.find(" on 2 threads, checkpoints"), std::string::npos) << output_;
+  unsetenv("OMP_NUM_THREADS");
+}
+
 TEST_F(GaProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
   write_toml(3000, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;

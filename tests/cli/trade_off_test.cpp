@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/optimisers/evolutionary/dominance.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/dominance.hpp"
+#include "engine/problem/front.hpp"
 #include "tests/cli/study_program.hpp"
 
 namespace pkm::testing {

@@ -204,9 +204,8 @@ TEST(CliMotionStudy, WrongOnesAreRefused) {
   EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swim\"\n"),
             "pkmopt: s.toml:17: objective[1]: the study has no motion called 'swim'; it has swing; did you mean "
             "'swing'?\n");
-  EXPECT_EQ(
-      complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\njoint = \"5\"\n"),
-      "pkmopt: s.toml:20: objective[1].joint: found \"5\"; expected one of 1, 2, 3, 4, worst; did you mean '1'?\n");
+  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\njoint = \"5\"\n"),
+            "pkmopt: s.toml:17: objective[1]: mechanism 3crr-r-cru has 4 joints, so none has the number 5\n");
   EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nwrench = { Fq = 1 }\n"),
             "pkmopt: s.toml:20: objective[1].wrench.Fq: found an unknown name; expected one of Fx, Fy, Fz, Mx, My, Mz; "
             "did you mean 'Fx'?\n");

@@ -17,4 +17,11 @@ std::vector<std::string> broken_rules(const std::string& path, const std::string
 /// before it.
 bool includes_first(const std::string& source, const std::string& header);
 
+struct Source {
+  std::string path;  ///< from the repository's root
+  std::string text;
+};
+/// The outside headers that the rules know and none of the sources includes: "hdf5.h in engine/storage".
+std::vector<std::string> dead_rules(const std::vector<Source>& sources);
+
 }  // namespace pkm::house

@@ -50,10 +50,10 @@ class Comparison {
 
   void check(State s) {
     s.parameters = design_;
-    const Pose<double>& X = s.motion.pose;
+    const SchoenfliesPose<double>& X = s.motion.pose;
     const Solution theirs =
         loops_.solve({s.mode, {X.x, X.y, X.z, X.angle}, s.motion.velocity.m, s.acceleration.m, s.wrench.m});
-    const PoseDynamics<double> d = testing::crr::dynamics_of(name_, s);
+    const crr_cru::PoseDynamics<double> d = testing::crr::dynamics_of(name_, s);
     ASSERT_TRUE(d.assembles);
     const Vector<double, 4> ours = drive_forces(d, s.acceleration, s.wrench);
     double largest = 0, off = 0;

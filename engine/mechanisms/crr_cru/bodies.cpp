@@ -11,7 +11,8 @@ using Map = Matrix<double, 3, 4>;
 
 const Vec kUp{{0, 0, 1}};
 
-Vec vector(const Vector3<double>& v) { return {{v[0], v[1], v[2]}}; }
+Vec vector(const Vector3<double>& v) { return {v}; }
+Vec vector(const Pose<double>& at) { return {{at.x, at.y, at.z}}; }
 
 Vec unit(std::size_t axis) {
   Vec e;
@@ -19,32 +20,20 @@ Vec unit(std::size_t axis) {
   return e;
 }
 
-/// p x + q y of limb i.
-Vec in_plane(std::size_t i, double x, double y) {
-  const LimbFrame& f = kLimbs[i];
-  Vec v;
-  v[f.p] = f.p_sign * x;
-  v[f.q] = f.q_sign * y;
-  return v;
-}
-
-/// Velocity map and acceleration at Xddot = 0 of a point that keeps the distance `arm` from a vertical axis through D.
+/// Velocity map and acceleration at Xddot = 0 of a point at the end of an arm from D.
 struct Carried {
   Map J;
   Vec b;
 };
-Carried carried(const Vec& arm, bool turns, const MotionState<double>& state) {
+Carried carried(const Arm<double>& arm, const MotionState<double>& state) {
   Carried point;
-  for (std::size_t k = 0; k < 3; ++k) point.J(k, k) = 1;
-  if (!turns) return point;
-  const Vec across = cross(kUp, arm);
-  for (std::size_t k = 0; k < 3; ++k) point.J(k, 3) = across[k];
-  point.b = cross(kUp, across) * (state.velocity[3] * state.velocity[3]);
+  const Vec turn = turning(arm);
+  for (std::size_t k = 0; k < 3; ++k) {
+    point.J(k, k) = 1;
+    point.J(k, 3) = turn[k];
+  }
+  point.b = swinging(arm) * (state.velocity[3] * state.velocity[3]);
   return point;
-}
-
-Carried joint_c(const Limbs<double>& limbs, std::size_t i, const MotionState<double>& state) {
-  return carried(vector(limbs.arm[i].to_joint), limbs.arm[i].turns, state);
 }
 
 void add_rods(const Geometry<double>& g, const Masses<double>& masses, const Limbs<double>& limbs, std::size_t i,
@@ -52,12 +41,12 @@ void add_rods(const Geometry<double>& g, const Masses<double>& masses, const Lim
   const Limb<double>& limb = limbs.limb[i];
   const double l1 = g.l_1[i], l2 = g.l_2[i], s = kLimbs[i].sense;
   const Vec e = unit(kLimbs[i].e), A = vector(limb.A), B = vector(limb.B), C = vector(limb.C);
-  const Vec u1 = in_plane(i, limb.u1[0], limb.u1[1]), n1 = in_plane(i, -limb.u1[1], limb.u1[0]);
-  const Vec u2 = in_plane(i, limb.u2[0], limb.u2[1]), n2 = in_plane(i, -limb.u2[1], limb.u2[0]);
-  const Carried at_C = joint_c(limbs, i, state);
+  const LimbFrame& f = kLimbs[i];
+  const Vec u1 = in_space(f, limb.u1), n1 = in_space(f, across(limb.u1));
+  const Vec u2 = in_space(f, limb.u2), n2 = in_space(f, across(limb.u2));
+  const Carried at_C = carried(limbs.arm[i], state);
 
-  const Vec v = at_C.J * state.velocity;
-  const RodRates<double> rates = rod_rates(g, i, limb, {v[0], v[1], v[2]}, {at_C.b[0], at_C.b[1], at_C.b[2]});
+  const RodRates<double> rates = rod_rates(g, i, limb, (at_C.J * state.velocity).m, at_C.b.m);
   const auto jpsi_1 = transpose(u2) * at_C.J * (1 / (l1 * limb.sin_2));
   const auto jpsi_2 = transpose(u1) * at_C.J * (-1 / (l2 * limb.sin_2));
   const Map along = e * (transpose(e) * at_C.J);
@@ -73,29 +62,37 @@ void add_rods(const Geometry<double>& g, const Masses<double>& masses, const Lim
 
   list.push_back({name + "1",
                   (A + B) * 0.5,
-                  {masses.m_1[i], about_e(masses.I_1[i]), along + n1 * jpsi_1 * (0.5 * l1), e * jpsi_1 * s,
-                   b_along + swing_1 * 0.5, e * (s * rates.acceleration[0])}});
+                  {.mass = masses.m_1[i],
+                   .inertia = about_e(masses.I_1[i]),
+                   .J_v = along + n1 * jpsi_1 * (0.5 * l1),
+                   .J_omega = e * jpsi_1 * s,
+                   .b_v = b_along + swing_1 * 0.5,
+                   .b_omega = e * (s * rates.acceleration[0])}});
   list.push_back({name + "2",
                   (B + C) * 0.5,
-                  {masses.m_2[i], about_e(masses.I_2[i]), along + n1 * jpsi_1 * l1 + n2 * jpsi_2 * (0.5 * l2),
-                   e * jpsi_2 * s, b_along + swing_1 + swing_2 * 0.5, e * (s * rates.acceleration[1])}});
+                  {.mass = masses.m_2[i],
+                   .inertia = about_e(masses.I_2[i]),
+                   .J_v = along + n1 * jpsi_1 * l1 + n2 * jpsi_2 * (0.5 * l2),
+                   .J_omega = e * jpsi_2 * s,
+                   .b_v = b_along + swing_1 + swing_2 * 0.5,
+                   .b_omega = e * (s * rates.acceleration[1])}});
 }
 
-/// Part of a platform with its centre of mass at D + arm. It turns about z alone, so of its own inertia I_zz enters.
-PlacedBody platform_part(const std::string& name, double mass, double I_zz, const Vec& arm, bool turns,
+/// Part of a platform with its centre of mass at the end of an arm. It turns about z alone, so of its own inertia I_zz
+/// enters.
+PlacedBody platform_part(const std::string& name, double mass, double I_zz, const Arm<double>& arm,
                          const MotionState<double>& state) {
-  const Carried centre = carried(arm, turns, state);
-  PlacedBody part{name, Vec{{state.pose.x, state.pose.y, state.pose.z}} + arm, {}};
-  part.body = {mass, {}, centre.J, {}, centre.b, {}};
+  const Carried centre = carried(arm, state);
+  PlacedBody part{name, vector(state.pose) + vector(arm.to_joint), {.mass = mass, .J_v = centre.J, .b_v = centre.b}};
   part.body.inertia(2, 2) = I_zz;
-  if (turns) part.body.J_omega(2, 3) = 1;
+  if (arm.turns) part.body.J_omega(2, 3) = 1;
   return part;
 }
 
 /// Along D-C_4.
-Vec on_arm(double distance, double angle) {
+Arm<double> on_arm(double distance, double angle) {
   const auto [s, c] = sincos(angle);
-  return {{distance * c, distance * s, 0}};
+  return {{distance * c, distance * s, 0}, true};
 }
 
 std::vector<JointCouple> normal_to(std::size_t axis) {
@@ -138,10 +135,9 @@ std::vector<PlacedBody> bodies(const Geometry<double>& g, const Masses<double>& 
   for (std::size_t i = 0; i < 4; ++i) add_rods(g, b, limbs, i, state, list);
   const bool jointed = g.platform == Platform::jointed;
   const double phi = state.pose.angle;
-  const PlacedBody middle =
-      platform_part("middle platform", b.m_middle, b.I_middle, Vec{{0, 0, -g.h}}, !jointed, state);
-  const PlacedBody moving = unite("moving platform", platform_part("", b.m, b.I_zz, on_arm(b.c, phi), true, state),
-                                  platform_part("payload", b.payload, 0, on_arm(b.c_payload, phi), true, state));
+  const PlacedBody middle = platform_part("middle platform", b.m_middle, b.I_middle, {{0, 0, -g.h}, !jointed}, state);
+  const PlacedBody moving = unite("moving platform", platform_part("", b.m, b.I_zz, on_arm(b.c, phi), state),
+                                  platform_part("payload", b.payload, 0, on_arm(b.c_payload, phi), state));
   if (jointed) {
     list.push_back(middle);
     list.push_back(moving);
@@ -155,11 +151,11 @@ std::array<PlacedBody, 4> slides(const Masses<double>& b, const Limbs<double>& l
                                  const MotionState<double>& state) {
   std::array<PlacedBody, 4> list;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Carried at_C = joint_c(limbs, i, state);
+    const Carried at_C = carried(limbs.arm[i], state);
     const Vec e = unit(kLimbs[i].e);
-    list[i].name = "slide " + std::to_string(i + 1);
-    list[i].centre = vector(limbs.limb[i].A);
-    list[i].body = {b.slide, {}, e * (transpose(e) * at_C.J), {}, e * dot(e, at_C.b), {}};
+    list[i] = {"slide " + std::to_string(i + 1),
+               vector(limbs.limb[i].A),
+               {.mass = b.slide, .J_v = e * (transpose(e) * at_C.J), .b_v = e * dot(e, at_C.b)}};
   }
   return list;
 }
@@ -176,10 +172,10 @@ NewtonEuler newton_euler(const Geometry<double>& g, const Masses<double>& b, con
     const Vec needed = (moving.a + kUp * kGravity) * moving.mass;
     add_joints(g, limbs, i, needed[kLimbs[i].e], system.joints);
   }
-  const Vec D{{state.pose.x, state.pose.y, state.pose.z}};
+  const Vec D = vector(state.pose);
   if (g.platform == Platform::jointed) system.joints.push_back({"t1", D, 8, 9, normal_to(2), {}});
-  apply(system.bodies.back(), D + on_arm(b.c, state.pose.angle), Vec{{wrench[0], wrench[1], wrench[2]}},
-        Vec{{wrench[3], wrench[4], wrench[5]}});
+  apply(system.bodies.back(), D + vector(on_arm(b.c, state.pose.angle).to_joint),
+        Vec{{wrench[0], wrench[1], wrench[2]}}, Vec{{wrench[3], wrench[4], wrench[5]}});
   return system;
 }
 

@@ -18,7 +18,7 @@ struct Sweeping {
 
 template <class S>
 Sweeping<S> sweeping(const Design<S>& d, const Held& held) {
-  Sweeping<S> s{d, cuts(held), held_value(d.g, held), {}};
+  Sweeping<S> s{.design = d, .cuts = cuts(held), .held = held_value(d.g, held), .frame = {}};
   if (!s.cuts.outer_is_phi) s.frame = frame(d, s.held);
   return s;
 }

@@ -1,17 +1,17 @@
 #include "engine/mechanisms/crr_cru/columns.hpp"
 #include "engine/mechanisms/crr_cru/coupling.hpp"
-#include "engine/mechanisms/crr_cru/samples.hpp"
 #include "engine/mechanisms/crr_cru/survey.hpp"
+#include "engine/mechanisms/crr_cru/surveyor.hpp"
 
 namespace pkm::crr_cru {
 namespace {
 
-/// The plan's box as ranges of x, y, z, phi.
-PoseBox pose_box(const Held& held, const SurveyPlan& plan) {
+/// A box of the swept coordinates as ranges of x, y, z, phi.
+PoseBox pose_box(const Held& held, const std::optional<Box>& swept) {
   PoseBox box = kEverywhere;
-  if (!plan.box) return box;
+  if (!swept) return box;
   for (std::size_t k = 0, axis = 0; k < 4; ++k)
-    if (k != held.coordinate) box[k] = (*plan.box)[axis++];
+    if (k != held.coordinate) box[k] = (*swept)[axis++];
   return box;
 }
 
@@ -25,39 +25,35 @@ void add_inertia(const Matrix<S, 4, 4>& M_q, const Demand& demand, Survey<S>& su
   if (demand.inertia_condition) survey.inertia_condition.push_back(inertia_condition(M_q));
 }
 
-class ColumnSurveyor final : public Surveyor {
+class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
  public:
   ColumnSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
-                 const Demand& demand)
-      : platform_(platform),
-        mass_model_(mass_model),
-        mode_(mode),
-        held_(held_of(held, plan)),
-        box_(pose_box(held_, plan)),
-        limits_(limits(plan.limits)),
-        tolerance_(plan.tolerance),
-        fixed_(plan.nodes[0] > 0),
-        demand_(demand) {
+                 const ColumnOptions& columns, const Demand& demand)
+      : SurveyorOfPlan(platform, mass_model, mode, held, plan, demand),
+        box_(pose_box(held_, columns.box)),
+        tolerance_(columns.tolerance),
+        fixed_(columns.nodes[0] > 0) {
     // Nodes come in the order of the swept coordinates; phi is the last of them.
     const std::size_t outer = cuts(held_).outer_is_phi ? 1 : 0;
     const int usual = needs_inertia() ? kInertiaNodes : kSampleNodes;
-    outer_rule_ = gauss_legendre(fixed_ ? plan.nodes[outer] : usual);
-    inner_rule_ = gauss_legendre(fixed_ ? plan.nodes[1 - outer] : kInertiaNodes);
+    outer_rule_ = gauss_legendre(fixed_ ? columns.nodes[outer] : usual);
+    inner_rule_ = gauss_legendre(fixed_ ? columns.nodes[1 - outer] : kInertiaNodes);
   }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
-  std::string no_derivatives() const override { return {}; }
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<double>>(), survey);
+  }
+  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<Dual4>>(), survey);
+  }
+  const SlopeSurveyor* slopes() const override { return this; }
 
  private:
   static constexpr int kSampleNodes = 32;
   static constexpr int kInertiaNodes = 8;  // per piece and coordinate
 
-  bool needs_inertia() const { return demand_.dci || demand_.inertia_condition; }
-
   template <class S>
-  void run(std::span<const S> parameters, Survey<S>& survey) const {
-    thread_local ColumnScratch<S> scratch;
+  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
     survey.clear();
     const auto s = sweeping(design(geometry(platform_, parameters), limits_, box_), held_);
     find_outer_pieces(s, still<double>(parameters), still<Dual<1>>(parameters), scratch);
@@ -87,9 +83,9 @@ class ColumnSurveyor final : public Surveyor {
           const S area = fixed_ ? area_of_columns(s, outer, inner_rule_, scratch, columns) : area_at(s, outer, scratch);
           const S weight = area * jacobian * outer_rule_.weight[i];
           if (fixed_) survey.volume += weight;
-          if (demand_.conditioning && s.cuts.outer_is_phi) add_conditioning(g, demand_, outer, weight, survey);
+          if (demand_.conditioning && s.cuts.outer_is_phi) add_conditioning(g, outer, weight, survey);
         }
-    if (demand_.conditioning && !s.cuts.outer_is_phi) add_conditioning(g, demand_, s.held, survey.volume, survey);
+    if (demand_.conditioning && !s.cuts.outer_is_phi) add_conditioning(g, s.held, survey.volume, survey);
     survey.columns = columns;
   }
 
@@ -104,7 +100,7 @@ class ColumnSurveyor final : public Surveyor {
     const auto set_phi = [&](const S& phi) {
       angle = phi;
       frame = inertia_frame(g, b, phi);
-      if (demand_.conditioning) index = conditioning_at(g, demand_, phi);
+      if (demand_.conditioning) index = conditioning_at(g, phi);
     };
     if (!s.cuts.outer_is_phi) set_phi(s.held);
     for (const Piece<S>& piece : scratch.pieces)
@@ -131,23 +127,18 @@ class ColumnSurveyor final : public Surveyor {
     return sweeping(design(geometry(platform_, std::span<const To>(values)), limits_, box_), held_);
   }
 
-  Platform platform_;
-  MassModel mass_model_;
-  WorkingMode mode_;
-  Held held_;
   PoseBox box_;
-  Limits limits_;
   double tolerance_;
   bool fixed_;  ///< numbers of nodes are given
-  Demand demand_;
   GaussRule outer_rule_, inner_rule_;
 };
 
 }  // namespace
 
 std::unique_ptr<const Surveyor> make_column_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                     int held, const SurveyPlan& plan, const Demand& demand) {
-  return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, demand);
+                                                     int held, const SurveyPlan& plan, const ColumnOptions& columns,
+                                                     const Demand& demand) {
+  return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, columns, demand);
 }
 
 }  // namespace pkm::crr_cru

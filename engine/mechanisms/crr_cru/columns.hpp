@@ -16,15 +16,11 @@ template <class S>
 struct ColumnScratch {
   std::vector<Break<S>> breaks;
   std::vector<Piece<S>> pieces;
-  std::vector<Integral<S>> integrals;
+  std::vector<QuadraturePart<S>> integrals;
   Structure structure;
 };
 
-/// A break of the structure with its derivatives. There a column, or a gap beside one, closes: the places a and b of
-/// its two ends meet, and a(p, t(p)) = b(p, t(p)) gives t' = -(d(a - b)/dp) / (d(a - b)/dt). Which column it is shows a
-/// little beside the break, where the quotient is the same even if the ends meet like a square root. Where nothing is
-/// about to close, an end passes from one formula to another; the break then does not move, which is right to first
-/// order, because the area is continuous there and the changes of the two pieces cancel.
+/// A break of the structure with its derivatives: where two ends meet, that of an implicit function (README.md).
 /// @param still  the same design without derivatives, for those by t
 template <class S>
 S moving_break(const Sweeping<S>& s, const Sweeping<double>& plain, const Sweeping<Dual<1>>& still, double at,
@@ -48,7 +44,7 @@ S moving_break(const Sweeping<S>& s, const Sweeping<double>& plain, const Sweepi
       compare(column.lower, column.upper);
       if (i > 0) compare(structure.columns[i - 1].upper, column.lower);
       for (std::size_t end = 0; end < 2 * cross.u.size; ++end) {
-        const BreakCode edge{BreakCode::Kind::end_of_u, static_cast<std::uint8_t>(end), 0, 1};
+        const BreakCode edge = BreakCode::end_of_u(end);
         compare(edge, column.lower);
         compare(column.upper, edge);
       }
@@ -117,7 +113,7 @@ template <class S>
 bool ends_like_a_root(const Section<S>& cross, const Column& column, double u) {
   constexpr double kRoundoff = 1e-9;
   for (std::size_t k = 0; k < column.ends; ++k) {
-    if (column.end[k] < 16) continue;
+    if (!column.end[k].on_circle()) continue;
     const Arc<S> arc = arc_of(cross, column.end[k]);
     const double w = u - value_of(arc.ring->u), radius2 = value_of(*arc.radius2);
     if (std::fabs(radius2 - w * w) < kRoundoff * radius2) return true;

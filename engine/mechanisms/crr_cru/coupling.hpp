@@ -1,17 +1,5 @@
-// (3CRR/R)&CRU and Quadrupteron: joint-space inertia at many poses of one phi.
-//
-// M_q = J^-T M_X J^-1 needs no matrix algebra at a pose. With j_i the entries of J's last column and w = 1/(j_4 - j_2),
-// slide 4 alone turns the platform by w and shifts it by (-j_1 w, -j_2 w, 0); slide 2 alone moves it by e_y less that;
-// slides 1 and 3 move it along x and z. So with s_i the velocity of C_i per rho_4 rate, A the sum of the limbs'
-// inertias at their joints, v that of A_i s_i and k that of s_i^T A_i s_i, platforms included,
-//
-//          | A_xx  A_xy - v_x             A_xz          v_x     |
-//    M_q = |       A_yy - 2 v_y + k       A_yz - v_z    v_y - k |
-//          |                              A_zz          v_z     |
-//          |  symmetric                                 k       |
-//
-// A limb's share A_i depends on its two plane coordinates and is the same for all poses that share them: a voxel survey
-// keeps it in tables, so that a pose costs sums.
+// (3CRR/R)&CRU and Quadrupteron: joint-space inertia at many poses of one phi, without matrix algebra at a pose.
+// Derivation: README.md.
 #pragma once
 
 #include "engine/dynamics/coupling.hpp"
@@ -57,14 +45,6 @@ InertiaFrame<S> inertia_frame(const Geometry<S>& g, const Masses<S>& b, const S&
   return f;
 }
 
-/// A limb's inertia at its joint in world axes: its plane's lower axis, both, the higher one [kg].
-template <class S>
-PlaneInertia<S> limb_share(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
-  PlaneInertia<S> share = plane_inertia(g, b, i, limb);
-  share.pq = share.pq * (kLimbs[i].p_sign * kLimbs[i].q_sign);
-  return share;
-}
-
 /// M_q at a feasible position [kg].
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const InertiaFrame<S>& f, const Vector3<S>& at,
@@ -72,7 +52,7 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const In
   std::array<PlaneInertia<S>, 4> share;
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector3<S> C = {at[0] + f.arm[i][0], at[1] + f.arm[i][1], at[2] + f.arm[i][2]};
-    share[i] = limb_share(g, b, i, limb_at(g, i, C, mode[i]));
+    share[i] = plane_inertia(g, b, i, limb_at(g, i, C, mode[i]));
   }
   return matrix_of(joint_inertia(f, share[0], share[1], share[2], share[3]));
 }

@@ -1,11 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: equations of motion, limb by limb.
-//
-// A limb's two rods have no actuated turning, so a limb acts on its platform joint C_i with a force that depends on
-// that limb alone: in its plane M_d ddot + .., along its rail the mass of what slides. With j1 = u2^T/(l1 sin theta_2)
-// and j2 = -u1^T/(l2 sin theta_2), the rods' turning rates per velocity of C_i in the plane,
-//
-//   M_d = (m1/4 l1^2 + I1 + m2 l1^2) j1^T j1 + m2 l1 l2 cos(theta_2)/2 (j1^T j2 + j2^T j1) + (m2/4 l2^2 + I2) j2^T j2
-//   M_X = sum of J_C^T (P^T M_d P + (m_i1 + m_i2) e e^T) J_C + platforms,   J_C = [1 | z x arm_i]
+// (3CRR/R)&CRU and Quadrupteron: equations of motion, limb by limb (README.md).
 //
 // Source: as model.hpp, sections 2.2 to 3.1 with their errata; the limb-wise form follows from virtual work.
 #pragma once
@@ -17,17 +10,26 @@
 
 namespace pkm::crr_cru {
 
+/// A limb's share of the inertia at its joint, in world axes: its plane's lower axis, both, the higher one [kg]. None
+/// where rounding has put a sample just outside the reach.
+template <class S>
+using MotionState = pkm::MotionState<S, 4>;
+template <class S>
+using PoseDynamics = pkm::PoseDynamics<S, 4>;
+
 template <class S>
 PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
+  if (!limb.reaches) return {};
   const S &l1 = g.l_1[i], &l2 = g.l_2[i];
   const S sin2 = limb.sin_2 * limb.sin_2;
   const S A = (b.m_1[i] * 0.25 + b.m_2[i] + b.I_1[i] / (l1 * l1)) / sin2;
   const S B = b.m_2[i] * 0.5 * limb.cos_2 / sin2;
   const S C = (b.m_2[i] * 0.25 + b.I_2[i] / (l2 * l2)) / sin2;
+  const double sign = kLimbs[i].p_sign * kLimbs[i].q_sign;
   const auto& u = limb.u1;
   const auto& v = limb.u2;
   return {A * v[0] * v[0] - B * 2.0 * (u[0] * v[0]) + C * u[0] * u[0],
-          A * v[0] * v[1] - B * (u[0] * v[1] + u[1] * v[0]) + C * u[0] * u[1],
+          (A * v[0] * v[1] - B * (u[0] * v[1] + u[1] * v[0]) + C * u[0] * u[1]) * sign,
           A * v[1] * v[1] - B * 2.0 * (u[1] * v[1]) + C * u[1] * u[1]};
 }
 
@@ -44,16 +46,9 @@ Matrix<S, 3, 3> inertia_at_joint(const PlaneInertia<S>& d, const S& along, std::
   Matrix<S, 3, 3> at;
   at(f.p, f.p) = d.pp;
   at(f.q, f.q) = d.qq;
-  at(f.p, f.q) = at(f.q, f.p) = d.pq * (f.p_sign * f.q_sign);
+  at(f.p, f.q) = at(f.q, f.p) = d.pq;
   at(f.e, f.e) = along;
   return at;
-}
-
-/// z x arm where the arm turns, else 0: velocity of C_i per phidot.
-template <class S>
-Vector<S, 3> turning(const Arm<S>& arm) {
-  if (!arm.turns) return {};
-  return {{arm.to_joint[1] * -1.0, arm.to_joint[0], S(0.0)}};
 }
 
 /// Adds J_C^T at J_C, J_C = [1 | turning], to M_X.
@@ -108,7 +103,7 @@ PoseDynamics<S> pose_dynamics(const Geometry<S>& g, const Masses<S>& b, const Mo
   for (std::size_t i = 0; i < 4; ++i) {
     const LimbFrame& f = kLimbs[i];
     const Limb<S>& limb = limbs.limb[i];
-    const Vector<S, 3> t = turning(limbs.arm[i]);
+    const Vector<S, 3> t = turning(limbs.arm[i]), swing = swinging(limbs.arm[i]);
     d.q[i] = limb.rho;
     d.J(i, f.e) = S(1.0);
     d.J(i, 3) = t[f.e];
@@ -116,36 +111,26 @@ PoseDynamics<S> pose_dynamics(const Geometry<S>& g, const Masses<S>& b, const Mo
     Vector<S, 3> v, a;
     for (std::size_t k = 0; k < 3; ++k) {
       v[k] = X[k] + t[k] * X[3];
-      a[k] = limbs.arm[i].turns && k < 2 ? S(limbs.arm[i].to_joint[k] * turn2 * -1.0) : S(0.0);
+      a[k] = swing[k] * turn2;
     }
     d.J_rate_X[i] = a[f.e];
     const S along = rail_mass(b, i);
     add_at_joint(inertia_at_joint(plane_inertia(g, b, i, limb), along, i), t, d.M_X);
 
     // forces that the rods need in the plane at C_i: by rates alone, and by weight alone
-    const RodRates<S> rate = rod_rates(g, i, limb, {v[0], v[1], v[2]}, {a[0], a[1], a[2]});
+    const RodRates<S> rate = rod_rates(g, i, limb, v.m, a.m);
     const S &l1 = g.l_1[i], &l2 = g.l_2[i], &m1 = b.m_1[i], &m2 = b.m_2[i];
-    const std::array<S, 2> n1 = {limb.u1[1] * -1.0, limb.u1[0]}, n2 = {limb.u2[1] * -1.0, limb.u2[0]};
+    const Vector<S, 2> n1 = across(limb.u1), n2 = across(limb.u2),
+                       weight = in_plane<S>(f, {S(0.0), S(0.0), S(kGravity)});
     const S square1 = rate.velocity[0] * rate.velocity[0], square2 = rate.velocity[1] * rate.velocity[1];
-    std::array<S, 2> a2, gravity;  // of the outer rod's centre
-    const std::array<double, 3> g_world = {0, 0, -kGravity};
-    gravity = {S(g_world[f.p] * f.p_sign), S(g_world[f.q] * f.q_sign)};
-    for (std::size_t k = 0; k < 2; ++k)
-      a2[k] = l1 * (n1[k] * rate.acceleration[0] - limb.u1[k] * square1) +
-              l2 * 0.5 * (n2[k] * rate.acceleration[1] - limb.u2[k] * square2);
-    const auto across = [](const std::array<S, 2>& n, const std::array<S, 2>& w) {
-      return S(n[0] * w[0] + n[1] * w[1]);
-    };
-    const S Q1 = (m1 * 0.25 * l1 * l1 + b.I_1[i]) * rate.acceleration[0] + m2 * l1 * across(n1, a2);
-    const S Q2 = b.I_2[i] * rate.acceleration[1] + m2 * 0.5 * l2 * across(n2, a2);
-    const S W1 = (m1 * 0.5 + m2) * l1 * across(n1, gravity) * -1.0, W2 = m2 * 0.5 * l2 * across(n2, gravity) * -1.0;
+    const Vector<S, 2> a2 = (n1 * rate.acceleration[0] - limb.u1 * square1) * l1 +  // of the outer rod's centre
+                            (n2 * rate.acceleration[1] - limb.u2 * square2) * (l2 * 0.5);
+    const S Q1 = (m1 * 0.25 * l1 * l1 + b.I_1[i]) * rate.acceleration[0] + m2 * l1 * dot(n1, a2);
+    const S Q2 = b.I_2[i] * rate.acceleration[1] + m2 * 0.5 * l2 * dot(n2, a2);
+    const S W1 = (m1 * 0.5 + m2) * l1 * dot(n1, weight), W2 = m2 * 0.5 * l2 * dot(n2, weight);
     const auto at_C = [&](const S& turn1, const S& turn2_, const S& rail) {  // j1^T turn1 + j2^T turn2, in space
       const S x = turn1 / (l1 * limb.sin_2), y = turn2_ / (l2 * limb.sin_2) * -1.0;
-      Vector<S, 3> force;
-      force[f.p] = (limb.u2[0] * x + limb.u1[0] * y) * f.p_sign;
-      force[f.q] = (limb.u2[1] * x + limb.u1[1] * y) * f.q_sign;
-      force[f.e] = rail;
-      return force;
+      return in_space(f, Vector<S, 2>(limb.u2 * x + limb.u1 * y), rail);
     };
     const auto add = [&](Vector<S, 4>& sum, const Vector<S, 3>& force) {
       for (std::size_t k = 0; k < 3; ++k) sum[k] += force[k];

@@ -1,15 +1,8 @@
-// (3CRR/R)&CRU and Quadrupteron: the feasible positions at given phi, as the tests that they are made of.
-//
-// At given phi every platform joint is the position (x, y, z) shifted by a constant. So each slide's range is a range
-// of one coordinate, and the reach of limb i, |sin theta_i2| >= s_min included, is a ring in the coordinates a, b of
-// the limb's plane:
-//
-//   rho_i = (coordinate e_i) + shift in [rho_min, rho_max]
-//   in2 <= (a - center_a)^2 + (b - center_b)^2 <= out2,   in2, out2 = l_1^2 + l_2^2 -/+ 2 l_1 l_2 sqrt(1 - s_min^2)
-//
-// Neither depends on the working mode.
+// (3CRR/R)&CRU and Quadrupteron: the feasible positions at given phi, as the ranges of slides and the rings of reaches
+// that they are made of, in closed form (README.md). Neither depends on the working mode.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 #include "engine/mechanisms/crr_cru/yaw.hpp"
@@ -28,39 +21,77 @@ struct Design {
   Geometry<S> g;
   Yaw<S> yaw;
   double c_min;
-  std::array<S, 4> in2, out2;  ///< squared radii of the reaches [m^2]
+  std::array<S, 4> in, out;    ///< ends of |C_i - A_i| where |sin theta_i2| >= s_min [m]
+  std::array<S, 4> in2, out2;  ///< their squares
   PoseBox box = kEverywhere;   ///< poses outside do not count
 };
 
 template <class S>
 Design<S> design(const Geometry<S>& g, const Limits& l, const PoseBox& box = kEverywhere) {
-  Design<S> d{g, yaw(g), l.c_min, {}, {}, box};
+  Design<S> d{.g = g, .yaw = yaw(g), .c_min = l.c_min, .in = {}, .out = {}, .in2 = {}, .out2 = {}, .box = box};
   const double lost = l.s_min * l.s_min / (1 + std::sqrt((1 - l.s_min) * (1 + l.s_min)));  // 1 - sqrt(1 - s_min^2)
   for (std::size_t i = 0; i < 4; ++i) {
     const S difference = g.l_1[i] - g.l_2[i], sum = g.l_1[i] + g.l_2[i], cut = g.l_1[i] * g.l_2[i] * (2 * lost);
     d.in2[i] = difference * difference + cut;
     d.out2[i] = sum * sum - cut;
+    d.in[i] = root_or_zero(d.in2[i]);
+    d.out[i] = root_or_zero(d.out2[i]);
   }
   return d;
 }
 
-/// Which of the coordinates x, y, z a limb's rods move in, the lower first.
-inline constexpr std::array<std::array<std::size_t, 2>, 4> kPlane = {{{1, 2}, {0, 2}, {0, 1}, {0, 2}}};
+/// Which formula an end of an interval follows.
+class EndCode {
+ public:
+  constexpr EndCode() = default;
+  /// The end of a limb's slide.
+  static constexpr EndCode slide(std::size_t limb, bool upper) { return EndCode(4u * upper + limb); }
+  /// The end of the box.
+  static constexpr EndCode box(bool upper) { return EndCode(8u + upper); }
+  /// The end of a section's v: 2 interval + (0 lower, 1 upper).
+  static constexpr EndCode of_v(std::size_t end) { return EndCode(end); }
+  /// Below or above the centre of a circle of the limb's ring.
+  static constexpr EndCode circle(std::size_t limb, bool outer, bool upper) {
+    return EndCode(kCircles + 4 * limb + 2u * outer + upper);
+  }
 
-/// A range of a coordinate, and the limbs whose slides end it; kBoxLower, kBoxUpper where the box does.
-template <class S>
-struct SlideRange {
-  S lower, upper;
-  std::size_t lower_limb, upper_limb;
+  constexpr bool on_circle() const { return number_ >= kCircles; }
+  constexpr std::size_t limb() const { return (number_ - kCircles) / 4; }
+  constexpr bool outer() const { return number_ & 2; }
+  constexpr bool upper() const { return number_ & 1; }  ///< not of slides
+  constexpr std::size_t number() const { return number_; }
+  friend constexpr bool operator==(EndCode, EndCode) = default;
+
+ private:
+  static constexpr std::size_t kCircles = 16;
+  explicit constexpr EndCode(std::size_t number) : number_(static_cast<std::uint8_t>(number)) {}
+  std::uint8_t number_ = 0;
 };
 
-inline constexpr std::size_t kBoxLower = 8, kBoxUpper = 5;  // 4 + upper_limb is a number of its own, too
+template <class S>
+struct Interval {
+  S lower, upper;
+  EndCode lower_code, upper_code;
+};
+
+/// Leaves what is in another range, too.
+template <class S>
+void narrow(Interval<S>& range, const S& lower, const S& upper, EndCode lower_code, EndCode upper_code) {
+  if (value_of(lower) > value_of(range.lower)) {
+    range.lower = lower;
+    range.lower_code = lower_code;
+  }
+  if (value_of(upper) < value_of(range.upper)) {
+    range.upper = upper;
+    range.upper_code = upper_code;
+  }
+}
 
 template <class S>
 struct Frame {
-  std::array<SlideRange<S>, 3> range;  ///< of x, y, z
-  std::array<Vector3<S>, 4> center;    ///< of the limbs' rings; the coordinate along e_i has no meaning
-  bool singular;                       ///< kappa_p < c_min: no position is feasible
+  std::array<Interval<S>, 3> range;  ///< of x, y, z
+  std::array<Vector3<S>, 4> center;  ///< of the limbs' rings; the coordinate along e_i has no meaning
+  bool singular;                     ///< kappa_p < c_min: no position is feasible
 };
 
 template <class S>
@@ -74,33 +105,14 @@ Frame<S> frame(const Design<S>& d, const S& phi) {
     for (std::size_t k = 0; k < 3; ++k) f.center[i][k] = g.L * kLimbs[i].rail[k] - arm[i].to_joint[k];
     const std::size_t e = kLimbs[i].e;
     const S lower = g.rho_min - arm[i].to_joint[e], upper = g.rho_max - arm[i].to_joint[e];
-    if (i < 3) {  // limbs 1, 2, 3 slide along x, y, z
-      f.range[e] = {lower, upper, i, i};
-      continue;
-    }
-    SlideRange<S>& range = f.range[e];
-    if (value_of(lower) > value_of(range.lower)) range = {lower, range.upper, i, range.upper_limb};
-    if (value_of(upper) < value_of(range.upper)) range = {range.lower, upper, range.lower_limb, i};
+    if (i < 3)  // limbs 1, 2, 3 slide along x, y, z
+      f.range[e] = {lower, upper, EndCode::slide(i, false), EndCode::slide(i, true)};
+    else
+      narrow(f.range[e], lower, upper, EndCode::slide(i, false), EndCode::slide(i, true));
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    SlideRange<S>& range = f.range[k];
-    if (d.box[k][0] > value_of(range.lower)) range = {S(d.box[k][0]), range.upper, kBoxLower, range.upper_limb};
-    if (d.box[k][1] < value_of(range.upper)) range = {range.lower, S(d.box[k][1]), range.lower_limb, kBoxUpper};
-  }
-  return f;
-}
-
-/// Whether a position is feasible: the plain test of one voxel.
-inline bool feasible(const Design<double>& d, const Frame<double>& f, const Vector3<double>& at) {
-  if (f.singular) return false;
   for (std::size_t k = 0; k < 3; ++k)
-    if (at[k] < f.range[k].lower || at[k] > f.range[k].upper) return false;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double a = at[kPlane[i][0]] - f.center[i][kPlane[i][0]], b = at[kPlane[i][1]] - f.center[i][kPlane[i][1]];
-    const double distance2 = a * a + b * b;
-    if (distance2 < d.in2[i] || distance2 > d.out2[i]) return false;
-  }
-  return true;
+    narrow(f.range[k], S(d.box[k][0]), S(d.box[k][1]), EndCode::box(false), EndCode::box(true));
+  return f;
 }
 
 /// What a survey holds: one coordinate at a value, or at the design's own middle: phi = 0, and the position at which
@@ -128,7 +140,7 @@ struct Cuts {
 
 inline Cuts cuts(const Held& held) {
   const std::size_t n = held.coordinate == 3 ? 0 : held.coordinate;
-  return {n, n == 0 ? 1u : 0u, n == 2 ? 1u : 2u, held.coordinate != 3};
+  return {.normal = n, .u = n == 0 ? 1u : 0u, .v = n == 2 ? 1u : 2u, .outer_is_phi = held.coordinate != 3};
 }
 
 }  // namespace pkm::crr_cru

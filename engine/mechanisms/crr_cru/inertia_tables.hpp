@@ -18,7 +18,7 @@ class InertiaTables {
   /// @param along       the axis of rows
   /// @param held        where a position is held: its value
   void fill(const Geometry<double>& g, const Masses<double>& b, const WorkingMode& mode, double phi,
-            const VoxelGrid& grid, const std::array<int, 3>& coordinate, std::size_t along, double held) {
+            const VoxelGrid& grid, const std::array<std::size_t, 3>& coordinate, std::size_t along, double held) {
     frame_ = inertia_frame(g, b, phi);
     const auto cells = [&](std::size_t axis) { return axis == kNone ? 1 : grid.cells[axis]; };
     const auto at = [&](std::size_t axis, std::int64_t cell) { return axis == kNone ? held : grid.centre(axis, cell); };
@@ -26,7 +26,7 @@ class InertiaTables {
       std::array<std::size_t, 2> plane = {kLimbs[i].p, kLimbs[i].q}, axis = {kNone, kNone};
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t k = 0; k < 2; ++k)
-          if (coordinate[a] == static_cast<int>(plane[k])) axis[k] = a;
+          if (coordinate[a] == plane[k]) axis[k] = a;
       if (axis[0] == along) {
         std::swap(axis[0], axis[1]);
         std::swap(plane[0], plane[1]);
@@ -44,8 +44,7 @@ class InertiaTables {
         for (std::int64_t n = 0; n < cells(axis[1]); ++n, ++place) {
           C[plane[0]] = at(axis[0], m) + frame_.arm[i][plane[0]];
           C[plane[1]] = at(axis[1], n) + frame_.arm[i][plane[1]];
-          const Limb<double> limb = limb_at(g, i, C, mode[i]);
-          const auto share = limb.reach >= 0 ? limb_share(g, b, i, limb) : PlaneInertia<double>{};
+          const auto share = plane_inertia(g, b, i, limb_at(g, i, C, mode[i]));
           table.pp[place] = share.pp;
           table.pq[place] = share.pq;
           table.qq[place] = share.qq;

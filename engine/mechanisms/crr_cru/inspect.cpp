@@ -1,8 +1,10 @@
 #include "engine/mechanisms/crr_cru/inspect.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "engine/mechanisms/crr_cru/yaw.hpp"
+#include "engine/mechanisms/crr_cru/margins.hpp"
 
 namespace pkm::crr_cru {
 namespace {
@@ -11,7 +13,7 @@ std::string numbered(const std::string& name, std::size_t limb) { return name + 
 
 std::string out_of_reach(const Geometry<double>& g, const Limbs<double>& limbs) {
   for (std::size_t i = 0; i < 4; ++i) {
-    if (limbs.limb[i].reach >= 0) continue;
+    if (limbs.limb[i].reaches) continue;
     const auto& d = limbs.limb[i].d;
     const bool far = std::hypot(d[0], d[1]) > g.l_1[i] + g.l_2[i];
     const std::string rods = numbered("l", i) + "1", other = numbered("l", i) + "2";
@@ -32,19 +34,19 @@ PoseReport inspect(const Geometry<double>& g, const LinkRadii<double>& radii, co
   const double kappa = parallel_index(y, s, c);
   report.assembles = limbs.assembles;
   report.indices = {{"det_J", kappa * y.R}, {"kappa_p", kappa}};
-  for (std::size_t i = 0; i < 4; ++i) report.margins.emplace_back(numbered("reach", i), limbs.limb[i].reach);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double rho = limbs.limb[i].rho;
-    report.margins.emplace_back(numbered("stroke", i), std::fmin(rho - g.rho_min, g.rho_max - rho));
-  }
-  report.margins.emplace_back("c_min", kappa - l.c_min);
+  std::array<double, kSine> least;  // of the two ends, where there are two
+  least.fill(std::numeric_limits<double>::quiet_NaN());
+  state_margins(design(g, {.c_min = l.c_min}), pose,  // s_min has a margin of its own here
+                [&least](std::size_t which, double margin) { least[which] = std::fmin(least[which], margin); });
+  for (std::size_t which = 0; which < least.size(); ++which)
+    report.margins.emplace_back(kMarginNames[which], least[which]);
   if (!limbs.assembles) {
     report.reason = out_of_reach(g, limbs);
     return report;
   }
   report.J = jacobian(limbs.arm);
   report.conditioning = conditioning(limbs.arm, characteristic_length(g));
-  report.joints.emplace();
+  report.joints.emplace(std::size_t{4});
   double least_sine = 1;
   for (std::size_t i = 0; i < 4; ++i) {
     const Limb<double>& limb = limbs.limb[i];
@@ -54,20 +56,17 @@ PoseReport inspect(const Geometry<double>& g, const LinkRadii<double>& radii, co
     report.indices.emplace_back(numbered("sin_theta", i) + "2", limb.sin_2);
     least_sine = std::fmin(least_sine, std::fabs(limb.sin_2));
   }
-  report.margins.emplace_back("s_min", least_sine - l.s_min);
+  report.margins.emplace_back(kMarginNames[kSine], least_sine - l.s_min);
   const Nearest<double> nearest = nearest_links(links(g, radii, limbs));
   report.angles.emplace_back("clearance", nearest.clearance);
-  if (l.clearance_min) report.margins.emplace_back("clearance_min", nearest.clearance - *l.clearance_min);
-  report.feasible = true;
-  for (const auto& [name, margin] : report.margins) {
-    if (report.feasible && !(margin >= 0)) {
-      report.reason = "limit " + name + " is broken";
-      if (name == "clearance_min")
-        report.reason += ": " + link_name(nearest.first, g.platform) + " and " + link_name(nearest.second, g.platform) +
-                         (nearest.clearance < 0 ? " overlap" : " are too near");
-    }
-    report.feasible = report.feasible && margin >= 0;
-  }
+  if (l.clearance_min) report.margins.emplace_back(kMarginNames[kClear], nearest.clearance - *l.clearance_min);
+  const auto broken = std::ranges::find_if(report.margins, [](const auto& margin) { return !(margin.second >= 0); });
+  report.feasible = broken == report.margins.end();
+  if (report.feasible) return report;
+  report.reason = "limit " + broken->first + " is broken";
+  if (broken->first == kMarginNames[kClear])
+    report.reason += ": " + link_name(nearest.first, g.platform) + " and " + link_name(nearest.second, g.platform) +
+                     (nearest.clearance < 0 ? " overlap" : " are too near");
   return report;
 }
 

@@ -1,5 +1,5 @@
 // (3CRR/R)&CRU and Quadrupteron: M_q from the limbs' shares, and coupling indices along a row of voxels, kLanes at a
-// time. Derivation: coupling.hpp.
+// time. Derivation: README.md.
 #pragma once
 
 #include <array>

@@ -1,13 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: links as capsules, and which pairs of them must keep clear of each other.
-//
-//   rods       A_i B_i and B_i C_i of every limb, radius R_r
-//   rails      along e_i from rho_min to rho_max through a_i, with the slides on them, radius R_s
-//   platforms  arms N C_1, N C_2, N C_3, the post N D and the arm D C_4, radius R_p
-//
-// Pairs: rods of different limbs; every rod and every arm or the post, but not the rod B_i C_i and the arm that it is
-// jointed to in C_i; every rail and the rods of the other limbs, the arms and the post. Arms and post are not tested
-// with each other: they are one body, or two that are jointed in D one above the other. Nor are rails: they do not
-// move.
+// (3CRR/R)&CRU and Quadrupteron: links as capsules, and which pairs of them must keep clear of each other (README.md).
 #pragma once
 
 #include <array>

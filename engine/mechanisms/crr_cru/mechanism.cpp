@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "engine/core/options.hpp"
+#include "engine/mechanism/both_scalars.hpp"
 #include "engine/mechanisms/crr_cru/bodies.hpp"
 #include "engine/mechanisms/crr_cru/dynamics.hpp"
 #include "engine/mechanisms/crr_cru/forward.hpp"
@@ -67,22 +68,13 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
        {"rho_min", "m", 0, -100, 100, "where the slides' range begins"},
        {"rho_max", "m", 0.400, -100, 100, "where the slides' range ends"}});
   for (Parameter& parameter : mass_parameters(mass_model)) i.parameters.push_back(std::move(parameter));
-  i.margin_unit = "m";
-  i.columns_take_box = true;
-  i.has_influence = true;
-  i.has_dynamics = true;
-  i.has_reactions = true;
-  i.has_links = true;
-  i.mass_models = kMassModels;
-  i.mass_model = kMassModels[static_cast<std::size_t>(mass_model)];
-  i.coordinates = {"x", "y", "z", "phi"};
-  i.joints = {"rho1", "rho2", "rho3", "rho4"};
+  i.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"phi", "rad"}};
+  i.joints = {{"rho1", "m"}, {"rho2", "m"}, {"rho3", "m"}, {"rho4", "m"}};
   for (const WorkingMode& mode : all_modes()) i.modes.push_back(name_of(mode));
-  i.swept = {0, 1, 2};
-  i.held = 3;
-  i.column = 2;
-  i.volume_unit = "m^3";
-  i.more_sweeps = {{{1, 2, 3}, 0, 2, "m^2 rad"}, {{0, 2, 3}, 1, 2, "m^2 rad"}, {{0, 1, 3}, 2, 1, "m^2 rad"}};
+  i.sweeps = {{.swept = {0, 1, 2}, .held = {3}, .column = 2},
+              {.swept = {1, 2, 3}, .held = {0}, .column = 2},
+              {.swept = {0, 2, 3}, .held = {1}, .column = 2},
+              {.swept = {0, 1, 3}, .held = {2}, .column = 1}};
   i.limits = {
       {"s_min", "1", 0, 0, 1, "singularity-margin", "", "least |sin(theta_i2)|: distance from limbs' singularities"},
       {"c_min", "1", 0, 0, 1, "singularity-margin", "", "least kappa_p: distance from the parallel singularity"},
@@ -93,57 +85,41 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
   return i;
 }
 
-class CrrCru final : public Mechanism {
+class CrrCru final : public Mechanism,
+                     Voxels,
+                     Columns,
+                     Derivatives,
+                     PoseMarginsOf<CrrCru>,
+                     Velocities,
+                     ForwardKinematics,
+                     pkm::Links,
+                     DynamicsOf<CrrCru>,
+                     JointReactions {
  public:
   explicit CrrCru(Platform platform, MassModel mass_model = MassModel::table)
       : platform_(platform), mass_model_(mass_model), info_(make_info(platform, mass_model)) {}
 
   const MechanismInfo& info() const override { return info_; }
+  const Voxels* voxels() const override { return this; }
+  const Columns* columns() const override { return this; }
+  const Derivatives* derivatives() const override { return this; }
+  const PoseMargins* pose_margins() const override { return this; }
+  const Velocities* velocities() const override { return this; }
+  const ForwardKinematics* forward() const override { return this; }
+  const pkm::Links* links() const override { return this; }
+  const Dynamics* dynamics() const override { return this; }
+  const JointReactions* reactions() const override { return this; }
 
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
-    const WorkingMode& mode = demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
-    const int held = sweep_of(info_, plan).held;
-    if (plan.limits.given[kClearanceMin].value_or(kNoClearance) > kNoClearance) {
-      if (plan.method == Method::columns)
-        throw std::invalid_argument("mechanism " + info_.name +
-                                    " has no column surveys under a clearance (clearance_min), because rods that meet "
-                                    "end columns where no formula says; take workspace.method = \"voxels\"");
-      if (mode != modes_.front())
-        throw std::invalid_argument("mechanism " + info_.name + " surveys a clearance (clearance_min) in the mode " +
-                                    name_of(modes_.front()) + " only, so inertia is not surveyed in the mode " +
-                                    demand.mode + " beside it");
-    }
-    const auto make = plan.method == Method::columns ? make_column_surveyor : make_voxel_surveyor;
-    return make(platform_, mass_model_, mode, held, plan, demand);
-  }
-  VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
-    return crr_cru::voxel_map(platform_, modes_.front(), sweep_of(info_, plan).held, p, plan);
-  }
-  double middle(std::span<const double> p, int coordinate) const override {
-    return held_value(geometry(platform_, p), Held{static_cast<std::size_t>(coordinate)});
-  }
-  void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
-  void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const override {}
-  double size(std::span<const double>) const override { return 1; }
-  Dual4 size(std::span<const Dual4>) const override { return 1; }
   using Mechanism::thresholds;
-  void thresholds(std::span<const Dual4>, const LimitSpec& spec, std::span<Dual4> values) const override {
-    const Limits l = limits(spec);
-    values[kSMin] = l.s_min;
-    values[kCMin] = l.c_min;
-    values[kClearanceMin] = l.clearance_min.value_or(kNoClearance);
+  std::optional<double> middle(std::span<const double> p, int coordinate) const override {
+    return held_value(geometry(platform_, p), Held{static_cast<std::size_t>(coordinate)});
   }
   NamedValues facts(std::span<const double> p, const LimitSpec&) const override {
     const auto y = yaw(geometry(platform_, p));
     return {{"R", y.R}, {"delta", offset(y)}};
   }
-  std::string refuse(std::span<const double> p) const override {
-    for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
-      const Parameter& parameter = info_.parameters[i];
-      if (!(p[i] >= parameter.lower && p[i] <= parameter.upper))
-        return parameter.name + " = " + shortest(p[i]) + " is outside the model's range " + shortest(parameter.lower) +
-               " to " + shortest(parameter.upper) + " " + parameter.unit;
-    }
+  Refusal refuse(std::span<const double> p) const override {
+    if (Refusal outside = Mechanism::refuse(p)) return outside;
     if (!(p[kRhoMin] < p[kRhoMax]))
       return "rho_min = " + shortest(p[kRhoMin]) +
              " m leaves the slides no range below rho_max = " + shortest(p[kRhoMax]) + " m";
@@ -151,60 +127,88 @@ class CrrCru final : public Mechanism {
     if (!(yaw(g).R > 1e-9 * g.l)) return "with r = l and beta_2 = 0 no slide controls the yaw";
     return {};
   }
-  PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
+  PoseReport inspect(std::span<const double> p, const pkm::Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
-    return crr_cru::inspect(geometry(platform_, p), link_radii(p), limits(spec), pose, mode_called(mode));
-  }
-  std::optional<Influence<double>> influence(std::span<const double> p, const Pose<double>& pose,
-                                             const std::string& mode) const override {
-    const Limbs<double> limbs = inverse(geometry(platform_, p), pose, mode_called(mode));
-    if (!limbs.assembles) return std::nullopt;
-    return crr_cru::influence(limbs.arm);
-  }
-  std::vector<PlacedLink> links(std::span<const double> p, const Pose<double>& pose,
-                                const std::string& mode) const override {
-    return placed_links(geometry(platform_, p), link_radii(p), pose, mode_called(mode));
-  }
-  std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& rho) const override {
-    return crr_cru::forward(geometry(platform_, p), rho);
+    return crr_cru::inspect(geometry(platform_, p), link_radii(p), limits(spec), schoenflies(pose), mode_called(mode));
   }
 
-  void pose_margins(std::span<const double> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
-                    std::vector<double>& margins) const override {
-    find_margins(p, spec, poses, margins);
+ private:
+  friend PoseMarginsOf<CrrCru>;
+  friend DynamicsOf<CrrCru>;
+
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                          const Demand& demand) const override {
+    const WorkingMode& mode = surveyed_mode(demand);
+    if (is_clear(plan) && mode != modes_.front())
+      throw std::invalid_argument("mechanism " + info_.name + " surveys a clearance (clearance_min) in the mode " +
+                                  name_of(modes_.front()) + " only, so inertia is not surveyed in the mode " +
+                                  demand.mode + " beside it");
+    return make_voxel_surveyor(platform_, mass_model_, mode, held_by(plan), plan, voxels, demand);
   }
-  void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+                                          const Demand& demand) const override {
+    if (is_clear(plan))
+      throw std::invalid_argument("mechanism " + info_.name +
+                                  " has no column surveys under a clearance (clearance_min), because rods that meet "
+                                  "end columns where no formula says; take workspace.method = \"voxels\"");
+    return make_column_surveyor(platform_, mass_model_, surveyed_mode(demand), held_by(plan), plan, columns, demand);
+  }
+  bool take_box() const override { return true; }
+  VoxelMap map(std::span<const double> p, const SurveyPlan& plan, const VoxelOptions& voxels) const override {
+    return voxel_map(platform_, modes_.front(), held_by(plan), p, plan, voxels);
+  }
+
+  void thresholds(std::span<const Dual4>, const LimitSpec& spec, std::span<Dual4> values) const override {
+    const Limits l = limits(spec);
+    values[kSMin] = l.s_min;
+    values[kCMin] = l.c_min;
+    values[kClearanceMin] = l.clearance_min.value_or(kNoClearance);
+  }
+  void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
                     std::vector<Dual4>& margins) const override {
     find_margins(p, spec, poses, margins);
   }
 
-  void dynamics(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
-                std::span<PoseDynamics<double>> out) const override {
-    find_dynamics(p, mode, states, out);
+  std::optional<pkm::Influence<double>> influence(std::span<const double> p, const pkm::Pose<double>& pose,
+                                                  const std::string& mode) const override {
+    const Limbs<double> limbs = inverse(geometry(platform_, p), schoenflies(pose), mode_called(mode));
+    if (!limbs.assembles) return std::nullopt;
+    return crr_cru::influence(limbs.arm);
   }
-  void dynamics(std::span<const Dual4> p, const std::string& mode, std::span<const MotionState<Dual4>> states,
-                std::span<PoseDynamics<Dual4>> out) const override {
-    find_dynamics(p, mode, states, out);
+  std::vector<PlacedLink> place(std::span<const double> p, const pkm::Pose<double>& pose,
+                                const std::string& mode) const override {
+    return placed_links(geometry(platform_, p), link_radii(p), schoenflies(pose), mode_called(mode));
   }
-  Reactions reactions(std::span<const double> p, const std::string& mode, const MotionState<double>& state,
-                      const Vector<double, 4>& acceleration, const Wrench<double>& wrench) const override {
-    return crr_cru::reactions(geometry(platform_, p), masses(mass_model_, p), mode_called(mode), state, acceleration,
-                              wrench);
+  std::vector<AssemblyMode> assemblies(std::span<const double> p, const AxisVector<double>& rho) const override {
+    return crr_cru::forward(geometry(platform_, p), rho);
   }
+  Reactions find(std::span<const double> p, const std::string& mode, const pkm::MotionState<double>& state,
+                 const AxisVector<double>& acceleration, const Wrench<double>& wrench) const override {
+    return crr_cru::reactions(geometry(platform_, p), masses(mass_model_, p), mode_called(mode), state,
+                              fixed<4>(acceleration), wrench);
+  }
+  const std::vector<std::string>& mass_models() const override { return kMassModels; }
+  const std::string& mass_model() const override { return kMassModels[static_cast<std::size_t>(mass_model_)]; }
   std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
     for (std::size_t k = 0; k < kMassModels.size(); ++k)
       if (kMassModels[k] == model) return std::make_shared<CrrCru>(platform_, static_cast<MassModel>(k));
     return nullptr;
   }
 
- private:
+  int held_by(const SurveyPlan& plan) const { return sweep_of(info_, plan).held.front(); }
+  const WorkingMode& surveyed_mode(const Demand& demand) const {
+    return demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
+  }
+  static bool is_clear(const SurveyPlan& plan) {
+    return plan.limits.given[kClearanceMin].value_or(kNoClearance) > kNoClearance;
+  }
   const WorkingMode& mode_called(const std::string& name) const {
     for (const WorkingMode& known : modes_)
       if (name == name_of(known)) return known;
     throw std::invalid_argument("unknown working mode " + name);
   }
   template <class S>
-  void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
+  void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
                     std::vector<S>& margins) const {
     const auto g = geometry(platform_, p);
     const Limits l = limits(spec);
@@ -212,12 +216,12 @@ class CrrCru final : public Mechanism {
     if (l.clearance_min) add_clearances(g, link_radii(p), *l.clearance_min, modes_.front(), poses, margins);
   }
   template <class S>
-  void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const MotionState<S>> states,
-                     std::span<PoseDynamics<S>> out) const {
+  void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const pkm::MotionState<S>> states,
+                     std::span<pkm::PoseDynamics<S>> out) const {
     const WorkingMode& signs = mode_called(mode);
     const auto g = geometry(platform_, p);
     const auto b = masses(mass_model_, p);
-    for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics(g, b, states[i], signs);
+    for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics<S>(g, b, states[i], signs);
   }
 
   Platform platform_;

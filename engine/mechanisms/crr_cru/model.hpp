@@ -1,24 +1,6 @@
-// (3CRR/R)&CRU and Quadrupteron: geometry and inverse kinematics of one pose.
+// (3CRR/R)&CRU and Quadrupteron: geometry and inverse kinematics of one pose. Frames: README.md.
 //
-// Source: Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, with its errata; the
-// Quadrupteron is the mechanism that the other one is obtained from by decoupling. Both are one model: four limbs of
-// two rods that move in the plane normal to the limb's rail, and a platform that turns about the vertical.
-//
-//   slide    A_i = a_i + rho_i e_i
-//   elbow    B_i = A_i + l_i1 (p cos psi_i1 + q sin psi_i1),   psi_i1 = theta_i1
-//   joint    C_i = B_i + l_i2 (p cos psi_i2 + q sin psi_i2),   psi_i2 = theta_i1 + theta_i2
-//
-//   limb   e   p   q   s    a          rods move in
-//    1     x  -y   z   -1   (0, L, 0)  y-z
-//    2     y   x  -z   +1   (0, 0, L)  x-z
-//    3     z   x   y   +1   (0, 0, 0)  x-y
-//    4     y  -x  -z   -1   (L, 0, L)  x-z
-//
-// The platform's point D is the pose, N = D - (0, 0, h) the centre of the circle of radius r that C_1..C_3 sit on at
-// the angles beta_i, and C_4 = D + l (cos phi, sin phi, 0). In (3CRR/R)&CRU the circle belongs to a middle platform
-// that does not turn; in the Quadrupteron it turns with the platform, so that beta_i + phi takes the place of beta_i.
-//
-// A turn by psi about p x q is one by s psi about e: s = e . (p x q).
+// Source: Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, with its errata.
 #pragma once
 
 #include <array>
@@ -27,10 +9,14 @@
 #include <span>
 
 #include "engine/math/scalar.hpp"
+#include "engine/math/small_matrix.hpp"
 #include "engine/mechanism/plan.hpp"
 #include "engine/model/pose.hpp"
 
 namespace pkm::crr_cru {
+
+template <class S>
+using Pose = SchoenfliesPose<S>;
 
 /// Whether the circle of C_1..C_3 is a platform of its own, jointed to the moving one at D, or part of it.
 enum class Platform { jointed, rigid };  // (3CRR/R)&CRU, Quadrupteron
@@ -75,17 +61,17 @@ struct Geometry {
 
 template <class S>
 Geometry<S> geometry(Platform platform, std::span<const S> p) {
-  Geometry<S> g{platform,
-                {p[kL11], p[kL21], p[kL31], p[kL41]},
-                {p[kL12], p[kL22], p[kL32], p[kL42]},
-                p[kR],
-                p[kH],
-                p[kL],
-                p[kRails],
-                {},
-                {},
-                p[kRhoMin],
-                p[kRhoMax]};
+  Geometry<S> g{.platform = platform,
+                .l_1 = {p[kL11], p[kL21], p[kL31], p[kL41]},
+                .l_2 = {p[kL12], p[kL22], p[kL32], p[kL42]},
+                .r = p[kR],
+                .h = p[kH],
+                .l = p[kL],
+                .L = p[kRails],
+                .cos_beta = {},
+                .sin_beta = {},
+                .rho_min = p[kRhoMin],
+                .rho_max = p[kRhoMax]};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto [s, c] = sincos(p[kBeta1 + i]);
     g.cos_beta[i] = c;
@@ -112,10 +98,26 @@ struct LimbFrame {
   double sense;          ///< s
   Vector3<double> rail;  ///< a / L
 };
-inline constexpr std::array<LimbFrame, 4> kLimbs = {{{0, 1, 2, -1, 1, -1, {0, 1, 0}},
-                                                     {1, 0, 2, 1, -1, 1, {0, 0, 1}},
-                                                     {2, 0, 1, 1, 1, 1, {0, 0, 0}},
-                                                     {1, 0, 2, -1, -1, -1, {1, 0, 1}}}};
+inline constexpr std::array<LimbFrame, 4> kLimbs = {{
+    {.e = 0, .p = 1, .q = 2, .p_sign = -1, .q_sign = 1, .sense = -1, .rail = {0, 1, 0}},
+    {.e = 1, .p = 0, .q = 2, .p_sign = 1, .q_sign = -1, .sense = 1, .rail = {0, 0, 1}},
+    {.e = 2, .p = 0, .q = 1, .p_sign = 1, .q_sign = 1, .sense = 1, .rail = {0, 0, 0}},
+    {.e = 1, .p = 0, .q = 2, .p_sign = -1, .q_sign = -1, .sense = -1, .rail = {1, 0, 1}},
+}};
+
+/// Components along p and q, and back.
+template <class S>
+Vector<S, 2> in_plane(const LimbFrame& f, const Vector3<S>& v) {
+  return {{v[f.p] * f.p_sign, v[f.q] * f.q_sign}};
+}
+template <class S>
+Vector<S, 3> in_space(const LimbFrame& f, const Vector<S, 2>& v, const S& along_e = S(0.0)) {
+  Vector<S, 3> space;
+  space[f.e] = along_e;
+  space[f.p] = v[0] * f.p_sign;
+  space[f.q] = v[1] * f.q_sign;
+  return space;
+}
 
 /// C_i - D, and whether it turns with phi.
 template <class S>
@@ -123,6 +125,20 @@ struct Arm {
   Vector3<S> to_joint;
   bool turns;
 };
+
+/// Velocity of C_i per phidot: z x arm where the arm turns, else 0.
+template <class S>
+Vector<S, 3> turning(const Arm<S>& arm) {
+  if (!arm.turns) return {};
+  return {{arm.to_joint[1] * -1.0, arm.to_joint[0], S(0.0)}};
+}
+
+/// Acceleration of C_i per phidot^2 at a steady phidot: z x (z x arm).
+template <class S>
+Vector<S, 3> swinging(const Arm<S>& arm) {
+  if (!arm.turns) return {};
+  return {{arm.to_joint[0] * -1.0, arm.to_joint[1] * -1.0, S(0.0)}};
+}
 
 template <class S>
 std::array<Arm<S>, 4> arms(const Geometry<S>& g, const S& sin_phi, const S& cos_phi) {
@@ -140,15 +156,15 @@ std::array<Arm<S>, 4> arms(const Geometry<S>& g, const S& sin_phi, const S& cos_
 /// Elbow signs sigma_i = sign(sin theta_i2), +1 or -1.
 using WorkingMode = std::array<int, 4>;
 
-/// One limb at a pose. Where it does not reach, only rho, A, C, d and reach are set.
+/// One limb at a pose. Where it does not reach, only rho, A, C and d are set.
 template <class S>
 struct Limb {
-  S rho;                    ///< slide position [m]
-  Vector3<S> A, B, C;       ///< the limb's joints [m]
-  std::array<S, 2> d;       ///< C - A in the limb's plane, along p and q [m]
-  std::array<S, 2> u1, u2;  ///< unit vectors along the rods, along p and q
-  S sin_2, cos_2;           ///< of theta_i2
-  double reach = 0;         ///< margin [m], >= 0 where the limb assembles
+  S rho;                 ///< slide position [m]
+  Vector3<S> A, B, C;    ///< the limb's joints [m]
+  Vector<S, 2> d;        ///< C - A in the limb's plane, along p and q [m]
+  Vector<S, 2> u1, u2;   ///< unit vectors along the rods, along p and q
+  S sin_2, cos_2;        ///< of theta_i2
+  bool reaches = false;  ///< the limb assembles: |d| is in [|l_i1 - l_i2|, l_i1 + l_i2]
 };
 
 /// A limb whose platform joint is at C.
@@ -161,23 +177,23 @@ Limb<S> limb_at(const Geometry<S>& g, std::size_t i, const Vector3<S>& C, int el
   limb.rho = C[f.e];
   for (std::size_t k = 0; k < 3; ++k) limb.A[k] = g.L * f.rail[k];
   limb.A[f.e] += limb.rho;
-  limb.d = {(C[f.p] - limb.A[f.p]) * f.p_sign, (C[f.q] - limb.A[f.q]) * f.q_sign};
-  const S d2 = limb.d[0] * limb.d[0] + limb.d[1] * limb.d[1];
+  limb.d = in_plane(f, C) - in_plane(f, limb.A);
+  const S d2 = dot(limb.d, limb.d);
   const double length = std::sqrt(value_of(d2)), sum = value_of(l1 + l2), difference = value_of(l1 - l2);
-  limb.reach = std::fmin(sum - length, length - std::fabs(difference));
-  if (!(limb.reach >= 0)) return limb;
+  limb.reaches = length <= sum && length >= std::fabs(difference);
+  if (!limb.reaches) return limb;
   // 1 - cos theta_2 and 1 + cos theta_2, without cancellation at the ends of the reach
   const S twice = l1 * l2 * 2.0, less = ((l1 + l2) * (l1 + l2) - d2) / twice,
           more = (d2 - (l1 - l2) * (l1 - l2)) / twice;
   limb.cos_2 = value_of(less) < 1 ? S(1.0 - less) : S(more - 1.0);
   limb.sin_2 = root_or_zero(S(less * more)) * static_cast<double>(elbow);
   if (!(value_of(d2) > 0)) {  // the rods fold back on themselves: any direction will do
-    limb.u1 = {S(1.0), S(0.0)};
-    limb.u2 = {S(-1.0), S(0.0)};
+    limb.u1 = {{S(1.0), S(0.0)}};
+    limb.u2 = {{S(-1.0), S(0.0)}};
   } else {
     const S k = l1 + l2 * limb.cos_2, w = l2 * limb.sin_2;  // components of d along and across u1
-    limb.u1 = {(k * limb.d[0] + w * limb.d[1]) / d2, (k * limb.d[1] - w * limb.d[0]) / d2};
-    limb.u2 = {(limb.d[0] - l1 * limb.u1[0]) / l2, (limb.d[1] - l1 * limb.u1[1]) / l2};
+    limb.u1 = {{(k * limb.d[0] + w * limb.d[1]) / d2, (k * limb.d[1] - w * limb.d[0]) / d2}};
+    limb.u2 = {{(limb.d[0] - l1 * limb.u1[0]) / l2, (limb.d[1] - l1 * limb.u1[1]) / l2}};
   }
   limb.B = limb.A;
   limb.B[f.p] += l1 * limb.u1[0] * f.p_sign;
@@ -203,9 +219,15 @@ Limbs<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& m
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector3<S>& arm = limbs.arm[i].to_joint;
     limbs.limb[i] = limb_at(g, i, {pose.x + arm[0], pose.y + arm[1], pose.z + arm[2]}, mode[i]);
-    limbs.assembles = limbs.assembles && limbs.limb[i].reach >= 0;
+    limbs.assembles = limbs.assembles && limbs.limb[i].reaches;
   }
   return limbs;
+}
+
+/// A quarter turn ahead, from p towards q.
+template <class S>
+Vector<S, 2> across(const Vector<S, 2>& u) {
+  return {{u[1] * -1.0, u[0]}};
 }
 
 /// Rates of a limb's plane angles psi_i1, psi_i2 (section "rod kinematics" of the source's second part): the turning
@@ -221,15 +243,13 @@ RodRates<S> rod_rates(const Geometry<S>& g, std::size_t i, const Limb<S>& limb, 
                       const Vector3<S>& a) {
   const LimbFrame& f = kLimbs[i];
   const S across_1 = g.l_1[i] * limb.sin_2, across_2 = g.l_2[i] * limb.sin_2;
-  const auto solve = [&](const S& x, const S& y) {
-    return std::array<S, 2>{(limb.u2[0] * x + limb.u2[1] * y) / across_1,
-                            -(limb.u1[0] * x + limb.u1[1] * y) / across_2};
+  const auto solve = [&](const Vector<S, 2>& x) {
+    return std::array<S, 2>{dot(limb.u2, x) / across_1, -dot(limb.u1, x) / across_2};
   };
   RodRates<S> rates;
-  rates.velocity = solve(v[f.p] * f.p_sign, v[f.q] * f.q_sign);
+  rates.velocity = solve(in_plane(f, v));
   const S c1 = g.l_1[i] * rates.velocity[0] * rates.velocity[0], c2 = g.l_2[i] * rates.velocity[1] * rates.velocity[1];
-  rates.acceleration = solve(a[f.p] * f.p_sign + c1 * limb.u1[0] + c2 * limb.u2[0],
-                             a[f.q] * f.q_sign + c1 * limb.u1[1] + c2 * limb.u2[1]);
+  rates.acceleration = solve(in_plane(f, a) + limb.u1 * c1 + limb.u2 * c2);
   return rates;
 }
 

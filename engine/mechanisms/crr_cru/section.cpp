@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/math/hash.hpp"
+
 namespace pkm::crr_cru {
 namespace {
 
@@ -11,8 +13,10 @@ void list_candidates(const Section<double>& s, std::vector<Structure::Candidate>
   list.clear();
   const double first = s.u.interval[0].lower, last = s.u.interval[s.u.size - 1].upper;
   const auto add = [&](Kind kind, std::size_t a, std::size_t b, int sign) {
-    const BreakCode code{kind, static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b),
-                         static_cast<std::int8_t>(sign)};
+    const BreakCode code{.kind = kind,
+                         .first = static_cast<std::uint8_t>(a),
+                         .second = static_cast<std::uint8_t>(b),
+                         .sign = static_cast<std::int8_t>(sign)};
     bool exists = false;
     const double u = break_at(s, code, &exists);
     if (exists && u > first && u < last) list.push_back({u, code});
@@ -27,39 +31,29 @@ void list_candidates(const Section<double>& s, std::vector<Structure::Candidate>
   std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.u < b.u; });
 }
 
-/// Intervals of v over u; codes below 16 number the ends of the section's v.
+/// Intervals of v over u.
 IntervalSet<double> column_at(const Section<double>& s, double u) {
   IntervalSet<double> column = s.v;
   for (std::size_t i = 0; i < column.size; ++i) {
-    column.interval[i].lower_code = static_cast<EndCode>(2 * i);
-    column.interval[i].upper_code = static_cast<EndCode>(2 * i + 1);
+    column.interval[i].lower_code = EndCode::of_v(2 * i);
+    column.interval[i].upper_code = EndCode::of_v(2 * i + 1);
   }
   for (std::size_t i = 0; i < s.rings; ++i) {
     const Ring<double>& ring = s.ring[i];
     const double w2 = (u - ring.u) * (u - ring.u);
-    cut(column, ring.v, ring.out2 - w2, ring.in2 - w2, ring_code(ring.limb));
+    cut(column, ring.v, ring.out2 - w2, ring.in2 - w2, ring.limb);
   }
   return column;
 }
 
-/// FNV-1a over bytes.
-class Hash {
- public:
-  void add(std::size_t byte) { value_ = (value_ ^ (byte & 0xff)) * 1099511628211u; }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037u;
-};
-
 std::uint64_t signature_of(const Section<double>& s, const std::vector<Column>& columns) {
   if (columns.empty()) return 0;
-  Hash hash;
+  Fnv1a hash;
   for (const auto* set : {&s.u, &s.v}) {
     hash.add(set->size);
     for (std::size_t i = 0; i < set->size; ++i) {
-      hash.add(set->interval[i].lower_code);
-      hash.add(set->interval[i].upper_code);
+      hash.add(set->interval[i].lower_code.number());
+      hash.add(set->interval[i].upper_code.number());
     }
   }
   for (const Column& column : columns) {
@@ -70,7 +64,7 @@ std::uint64_t signature_of(const Section<double>& s, const std::vector<Column>& 
       hash.add(code.sign > 0);
     }
     hash.add(column.ends);
-    for (std::size_t k = 0; k < column.ends; ++k) hash.add(column.end[k]);
+    for (std::size_t k = 0; k < column.ends; ++k) hash.add(column.end[k].number());
   }
   return hash.value();
 }
@@ -87,17 +81,16 @@ void find_structure(const Section<double>& s, Structure& structure) {
   for (std::size_t i = 0; i < s.u.size; ++i) {
     const Interval<double>& part = s.u.interval[i];
     while (next != end && next->u <= part.lower) ++next;
-    BreakCode from{BreakCode::Kind::end_of_u, static_cast<std::uint8_t>(2 * i), 0, 1};
+    BreakCode from = BreakCode::end_of_u(2 * i);
     double low = part.lower;
     bool joins = false;  // the column before reaches up to `from`
     while (true) {
       const bool last = next == end || next->u >= part.upper;
       const double high = last ? part.upper : next->u;
-      const BreakCode to =
-          last ? BreakCode{BreakCode::Kind::end_of_u, static_cast<std::uint8_t>(2 * i + 1), 0, 1} : next->code;
+      const BreakCode to = last ? BreakCode::end_of_u(2 * i + 1) : next->code;
       if (high > low) {
         const IntervalSet<double> found = column_at(s, 0.5 * (low + high));
-        Column column{from, to, {}, 2 * found.size};
+        Column column{.lower = from, .upper = to, .end = {}, .ends = 2 * found.size};
         for (std::size_t k = 0; k < found.size; ++k) {
           column.end[2 * k] = found.interval[k].lower_code;
           column.end[2 * k + 1] = found.interval[k].upper_code;

@@ -1,12 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: plane sections of the feasible positions at given phi, in closed form.
-//
-// On a plane normal to the coordinate n, with u and v the other two, a ring of limb i either cuts u alone (its plane
-// holds n and u), or v alone, or is a ring in (u, v). So the section is a product of two sets of intervals, U x V,
-// cut by one or two rings. Between breaks - ends of U, extremes of circles, circles crossing ends of V or each other -
-// the column of feasible v at u is a list of intervals whose ends are constant or run along circles, and the
-// section's area is a sum of ends' primitives:
-//
-//   integral of sqrt(R^2 - w^2) dw = (w sqrt(R^2 - w^2) + R^2 atan2(w, sqrt(R^2 - w^2))) / 2
+// (3CRR/R)&CRU and Quadrupteron: plane sections of the feasible positions at given phi, in closed form (README.md).
 //
 // What the section is made of (`Structure`) is found with doubles; values and derivatives follow from its formulas.
 #pragma once
@@ -18,18 +10,6 @@
 #include "engine/mechanisms/crr_cru/frame.hpp"
 
 namespace pkm::crr_cru {
-
-/// A number that tells which formula an end of an interval follows.
-using EndCode = std::uint8_t;
-
-/// Ends of the circles of a limb's ring: inner lower, inner upper, outer lower, outer upper.
-constexpr EndCode ring_code(std::size_t limb) { return static_cast<EndCode>(16 + 4 * limb); }
-
-template <class S>
-struct Interval {
-  S lower, upper;
-  EndCode lower_code, upper_code;
-};
 
 /// Intervals in ascending order. Two rings leave three of one interval, and five of three.
 template <class S>
@@ -43,10 +23,10 @@ struct IntervalSet {
   }
 };
 
-/// Leaves what lies in a ring around `center`.
+/// Leaves what lies in the ring of a limb around `center`.
 /// @param outer2, inner2  squared half lengths of the ring's chords, R^2 - (distance of the line)^2
 template <class S>
-void cut(IntervalSet<S>& set, const S& center, const S& outer2, const S& inner2, EndCode code) {
+void cut(IntervalSet<S>& set, const S& center, const S& outer2, const S& inner2, std::size_t limb) {
   const IntervalSet<S> before = set;
   set.size = 0;
   if (!(value_of(outer2) > 0)) return;
@@ -55,20 +35,13 @@ void cut(IntervalSet<S>& set, const S& center, const S& outer2, const S& inner2,
   const S inner = root_or_zero(inner2), hole_from = center - inner, hole_to = center + inner;
   for (std::size_t i = 0; i < before.size; ++i) {
     Interval<S> part = before.interval[i];
-    if (value_of(from) > value_of(part.lower)) {
-      part.lower = from;
-      part.lower_code = static_cast<EndCode>(code + 2);
-    }
-    if (value_of(to) < value_of(part.upper)) {
-      part.upper = to;
-      part.upper_code = static_cast<EndCode>(code + 3);
-    }
+    narrow(part, from, to, EndCode::circle(limb, true, false), EndCode::circle(limb, true, true));
     if (!hollow || value_of(hole_from) >= value_of(part.upper) || value_of(hole_to) <= value_of(part.lower)) {
       set.add(part);
       continue;
     }
-    set.add({part.lower, hole_from, part.lower_code, code});
-    set.add({hole_to, part.upper, static_cast<EndCode>(code + 1), part.upper_code});
+    set.add({part.lower, hole_from, part.lower_code, EndCode::circle(limb, false, false)});
+    set.add({hole_to, part.upper, EndCode::circle(limb, false, true), part.upper_code});
   }
 }
 
@@ -93,21 +66,16 @@ Section<S> section(const Design<S>& d, const Frame<S>& f, const Cuts& c, const S
   Section<S> s;
   const auto& across = f.range[c.normal];
   if (f.singular || value_of(at) < value_of(across.lower) || value_of(at) > value_of(across.upper)) return s;
-  const auto whole = [&f](std::size_t axis) {
-    const auto& range = f.range[axis];
-    return Interval<S>{range.lower, range.upper, static_cast<EndCode>(range.lower_limb),
-                       static_cast<EndCode>(4 + range.upper_limb)};
-  };
-  s.u.add(whole(c.u));
-  s.v.add(whole(c.v));
+  s.u.add(f.range[c.u]);
+  s.v.add(f.range[c.v]);
   for (std::size_t i = 0; i < 4; ++i) {
-    const bool has_u = kPlane[i][0] == c.u || kPlane[i][1] == c.u, has_v = kPlane[i][0] == c.v || kPlane[i][1] == c.v;
+    const bool has_u = kLimbs[i].e != c.u, has_v = kLimbs[i].e != c.v;  // the rods' plane
     if (has_u && has_v) {
-      s.ring[s.rings++] = {f.center[i][c.u], f.center[i][c.v], d.in2[i], d.out2[i], i};
+      s.ring[s.rings++] = {.u = f.center[i][c.u], .v = f.center[i][c.v], .in2 = d.in2[i], .out2 = d.out2[i], .limb = i};
       continue;
     }
     const S away = at - f.center[i][c.normal], away2 = away * away;
-    cut(has_u ? s.u : s.v, f.center[i][has_u ? c.u : c.v], S(d.out2[i] - away2), S(d.in2[i] - away2), ring_code(i));
+    cut(has_u ? s.u : s.v, f.center[i][has_u ? c.u : c.v], S(d.out2[i] - away2), S(d.in2[i] - away2), i);
   }
   return s;
 }
@@ -119,12 +87,13 @@ struct BreakCode {
   std::uint8_t first = 0;   ///< end of u, or circle: 2 ring + (0 inner, 1 outer)
   std::uint8_t second = 0;  ///< end of v, or the other ring's circle
   std::int8_t sign = 1;     ///< side
+
+  static BreakCode end_of_u(std::size_t end) { return {.first = static_cast<std::uint8_t>(end)}; }
 };
 
-/// Ends of the column's intervals, two per interval: below 10, the ends of v in order; circles from 16 on.
 struct Column {
-  BreakCode lower, upper;  ///< in u
-  std::array<EndCode, 2 * IntervalSet<double>::kMost> end;
+  BreakCode lower, upper;                                   ///< in u
+  std::array<EndCode, 2 * IntervalSet<double>::kMost> end;  ///< of the column's intervals: of v or on circles
   std::size_t ends = 0;
 };
 
@@ -209,15 +178,14 @@ struct Arc {
 
 template <class S>
 Arc<S> arc_of(const Section<S>& s, EndCode code) {
-  const std::size_t limb = (code - 16u) / 4;
-  const Ring<S>& ring = s.rings > 1 && s.ring[1].limb == limb ? s.ring[1] : s.ring[0];
-  return {&ring, code % 4 < 2 ? &ring.in2 : &ring.out2, code % 2 == 0 ? -1.0 : 1.0};
+  const Ring<S>& ring = s.rings > 1 && s.ring[1].limb == code.limb() ? s.ring[1] : s.ring[0];
+  return {&ring, code.outer() ? &ring.out2 : &ring.in2, code.upper() ? 1.0 : -1.0};
 }
 
 /// v of an end of the column over u.
 template <class S>
 S end_at(const Section<S>& s, EndCode code, const S& u) {
-  if (code < 16) return end_of(s.v, code);
+  if (!code.on_circle()) return end_of(s.v, code.number());
   const Arc<S> arc = arc_of(s, code);
   const S w = u - arc.ring->u;
   return arc.ring->v + root_or_zero(S(*arc.radius2 - w * w)) * arc.side;
@@ -241,8 +209,8 @@ S area(const Section<S>& s, const Structure& structure) {
     for (std::size_t k = 0; k < column.ends; ++k) {
       const EndCode code = column.end[k];
       S under = S(0.0);
-      if (code < 16) {
-        under = end_of(s.v, code) * length;
+      if (!code.on_circle()) {
+        under = end_of(s.v, code.number()) * length;
       } else {
         const Arc<S> arc = arc_of(s, code);
         under = arc.ring->v * length + (arc_primitive(S(upper - arc.ring->u), *arc.radius2) -

@@ -10,17 +10,18 @@ namespace pkm::crr_cru {
 
 /// @param held  number of the coordinate that the plan holds
 /// @param mode  of the coupling that is demanded
-/// @param plan  by columns, without a clearance
+/// @param plan  without a clearance
 std::unique_ptr<const Surveyor> make_column_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                     int held, const SurveyPlan& plan, const Demand& demand);
+                                                     int held, const SurveyPlan& plan, const ColumnOptions& columns,
+                                                     const Demand& demand);
 
 /// @param held  number of the coordinate that the plan holds
 /// @param mode  of the coupling that is demanded and of a clearance; else feasibility does not depend on it
-/// @param plan  by voxels
 std::unique_ptr<const Surveyor> make_voxel_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                    int held, const SurveyPlan& plan, const Demand& demand);
+                                                    int held, const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                    const Demand& demand);
 
 VoxelMap voxel_map(Platform platform, const WorkingMode& mode, int held, std::span<const double> parameters,
-                   const SurveyPlan& plan);
+                   const SurveyPlan& plan, const VoxelOptions& voxels);
 
 }  // namespace pkm::crr_cru

@@ -1,216 +1,246 @@
-#include <utility>
+#include <algorithm>
 
-#include "engine/mechanisms/crr_cru/clear_cells.hpp"
 #include "engine/mechanisms/crr_cru/inertia_tables.hpp"
-#include "engine/mechanisms/crr_cru/samples.hpp"
+#include "engine/mechanisms/crr_cru/links.hpp"
 #include "engine/mechanisms/crr_cru/survey.hpp"
+#include "engine/mechanisms/crr_cru/surveyor.hpp"
 #include "engine/mechanisms/crr_cru/voxels.hpp"
+#include "engine/survey/share_samples.hpp"
 
 namespace pkm::crr_cru {
 namespace {
 
-class VoxelSurveyor final : public Surveyor {
+using Cell = std::array<std::int64_t, 3>;
+using Row = std::vector<std::uint64_t>;
+
+/// Storage of one worker.
+struct VoxelWorker {
+  SectionCells cells;
+  InertiaTables tables;
+  Row row;
+  std::array<std::vector<double>, 4> dci;
+};
+
+/// Storage that surveys reuse. Where one phi is held, all workers read the first one's cells and tables.
+struct VoxelScratch {
+  std::vector<VoxelWorker> workers;
+};
+
+/// A clearance limit on one design. Where the elbows are, and so which links meet, depends on the working mode.
+struct ClearanceTest {
+  LinkRadii<double> radii;
+  WorkingMode mode;
+  double least;  ///< [m]
+};
+
+/// A design on its grid.
+struct Gridded {
+  Design<double> d;
+  VoxelGrid grid;
+  GridAxes axes;
+  bool over_phi;                     ///< sections are of one phi each
+  std::array<std::size_t, 3> swept;  ///< the coordinate of each axis of the grid, ascending
+  std::size_t held;                  ///< the other one
+  double held_at;
+  std::optional<ClearanceTest> test;
+
+  Pose<double> pose_of(const Cell& cell) const {
+    std::array<double, 4> x{};
+    x[held] = held_at;
+    for (std::size_t k = 0; k < 3; ++k) x[swept[k]] = grid.centre(k, cell[k]);
+    return {x[0], x[1], x[2], x[3]};
+  }
+  /// Takes out of a column the cells that do not keep clear, one by one. @return  whether any are left
+  /// @param cell  any of it
+  bool clear(Cell cell, Row& row) const {
+    for_each_bit(row, [&](std::size_t v) {
+      cell[axes.v] = static_cast<std::int64_t>(v);
+      const Limbs<double> limbs = inverse(d.g, pose_of(cell), test->mode);
+      if (!keep_clear(links(d.g, test->radii, limbs), test->least)) row[v / 64] &= ~(std::uint64_t{1} << v % 64);
+    });
+    return std::ranges::any_of(row, [](std::uint64_t word) { return word != 0; });
+  }
+  /// Whether a column, or one of its cells, is at an end of the grid.
+  /// @param cell  any of it
+  bool touches(const Cell& cell, const Row& row) const {
+    const auto at_end = [&](std::size_t axis) { return cell[axis] == 0 || cell[axis] == grid.cells[axis] - 1; };
+    return at_end(axes.outer) || at_end(axes.u) || (row.front() & 1) ||
+           (row.back() >> static_cast<std::size_t>((grid.cells[axes.v] - 1) % 64) & 1);
+  }
+};
+
+/// An outer cell's section, as a worker sees it.
+struct Slice {
+  std::int64_t k;  ///< the outer cell
+  const SectionCells& cells;
+  std::size_t n;  ///< plane of `cells`
+  VoxelWorker& worker;
+  Survey<double>& part;  ///< of the survey: what is found here goes there
+};
+
+class VoxelSurveyor final : public SurveyorOfPlan {
  public:
   VoxelSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
-                const Demand& demand)
-      : platform_(platform),
-        mass_model_(mass_model),
-        mode_(mode),
-        held_(held_of(held, plan)),
-        plan_(plan),
-        limits_(limits(plan.limits)),
-        demand_(demand) {}
+                const VoxelOptions& voxels, const Demand& demand)
+      : SurveyorOfPlan(platform, mass_model, mode, held, plan, demand), voxels_(voxels) {}
 
-  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
-    survey.clear();
-    const Design<double> d = design(geometry(platform_, parameters), limits_);
-    const VoxelGrid grid = grid_of(d);
-    survey.cells = grid.count();
-    survey.cell_volume = grid.cell_volume();
-    if (demand_.dci || demand_.inertia_condition)
-      sample(parameters, d, grid, survey);
-    else
-      count(parameters, d, grid, survey);
-    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
-    if (demand_.conditioning && survey.weight.empty())  // one phi for all
-      add_conditioning(d.g, demand_, held_value(d.g, held_), survey.volume, survey);
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<VoxelScratch>(), survey);
   }
 
   VoxelMap map(std::span<const double> parameters) const {
-    const Design<double> d = design(geometry(platform_, parameters), limits_);
-    const VoxelGrid grid = grid_of(d);
-    const GridAxes axes = grid_axes(held_);
-    VoxelMap m = grid.map();
-    const auto test = clearance_test(parameters, d);
+    VoxelScratch scratch;
+    const Gridded s = gridded(parameters);
+    VoxelMap m = s.grid.map();
     Survey<double> none;
-    share_sections(d, held_, grid, none, [&](std::int64_t k, const SectionCells& cells, std::size_t n, auto&) {
-      visit_clear_columns(d, grid, test, k, cells, n, [&](std::array<std::int64_t, 3> cell, const auto& row) {
-        for (std::int64_t v = 0; v < grid.cells[axes.v]; ++v) {
-          if (!(row[static_cast<std::size_t>(v / 64)] >> static_cast<std::size_t>(v % 64) & 1)) continue;
-          cell[axes.v] = v;
-          m.feasible[static_cast<std::size_t>((cell[0] * grid.cells[1] + cell[1]) * grid.cells[2] + cell[2])] = 1;
-        }
+    share_sections(s, scratch, none, [&](const Slice& slice) {
+      visit_columns(s, slice, [&](Cell cell, const Row& row) {
+        for_each_bit(row, [&](std::size_t v) {
+          cell[s.axes.v] = static_cast<std::int64_t>(v);
+          m.feasible[static_cast<std::size_t>((cell[0] * m.cells[1] + cell[1]) * m.cells[2] + cell[2])] = 1;
+        });
       });
     });
     return m;
   }
 
  private:
-  VoxelGrid grid_of(const Design<double>& d) const {
-    return {plan_.cells, plan_.box ? *plan_.box : default_box(d, held_)};
+  Gridded gridded(std::span<const double> parameters) const {
+    const Design<double> d = design(geometry(platform_, parameters), limits_);
+    Gridded s{.d = d,
+              .grid = {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, held_)},
+              .axes = grid_axes(held_),
+              .over_phi = cuts(held_).outer_is_phi,
+              .swept = {},
+              .held = held_.coordinate,
+              .held_at = held_value(d.g, held_),
+              .test = {}};
+    for (std::size_t k = 0, axis = 0; k < 4; ++k)
+      if (k != s.held) s.swept[axis++] = k;
+    if (limits_.clearance_min) s.test = {link_radii(parameters), mode_, *limits_.clearance_min};
+    return s;
   }
-  /// Which coordinate each axis of the grid is: its axes are the swept coordinates in ascending order.
-  std::array<int, 3> swept_coordinates() const {
-    std::array<int, 3> swept{};
-    for (int k = 0, axis = 0; k < 4; ++k)
-      if (static_cast<std::size_t>(k) != held_.coordinate) swept[static_cast<std::size_t>(axis++)] = k;
-    return swept;
+
+  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
+    survey.clear();
+    const Gridded s = gridded(parameters);
+    survey.cells = s.grid.count();
+    survey.cell_volume = s.grid.cell_volume();
+    if (needs_inertia())
+      sample(s, masses(mass_model_, parameters), scratch, survey);
+    else
+      count(s, scratch, survey);
+    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+    if (demand_.conditioning && survey.weight.empty())  // one phi for all
+      add_conditioning(s.d.g, s.held_at, survey.volume, survey);
   }
-  Pose<double> pose_of(const std::array<std::int64_t, 3>& cell, const VoxelGrid& grid, double held_at) const {
-    std::array<double, 4> x{};
-    const std::array<int, 3> swept = swept_coordinates();
-    x[held_.coordinate] = held_at;
-    for (std::size_t k = 0; k < 3; ++k) x[static_cast<std::size_t>(swept[k])] = grid.centre(k, cell[k]);
-    return {x[0], x[1], x[2], x[3]};
-  }
+
   /// Cells alone, section by section. Where sections are of one phi each, its conditioning is a sample.
-  void count(std::span<const double> parameters, const Design<double>& d, const VoxelGrid& grid,
-             Survey<double>& survey) const {
-    const GridAxes axes = grid_axes(held_);
-    const bool over_phi = cuts(held_).outer_is_phi;
-    const auto test = clearance_test(parameters, d);
-    share_sections(d, held_, grid, survey,
-                   [&, cell_volume = survey.cell_volume](std::int64_t k, const SectionCells& cells, std::size_t n,
-                                                         Survey<double>& part) {
-                     PlaneTally plane{};
-                     if (!test)
-                       plane = cells.count(n);
-                     else
-                       visit_clear_columns(d, grid, test, k, cells, n, [&](const auto& cell, const auto& row) {
-                         for (const std::uint64_t word : row) plane.cells += std::popcount(word);
-                         plane.touches = plane.touches || touches(cell, row, grid);
-                       });
-                     if (plane.cells == 0) return;
-                     part.feasible_cells += plane.cells;
-                     part.touches_box = part.touches_box || plane.touches || k == 0 || k == grid.cells[axes.outer] - 1;
-                     if (demand_.conditioning && over_phi)
-                       add_conditioning(d.g, demand_, grid.centre(axes.outer, k),
-                                        static_cast<double>(plane.cells) * cell_volume, part);
-                   });
-  }
-
-  /// Every cell, with its inertia.
-  void sample(std::span<const double> parameters, const Design<double>& d, const VoxelGrid& grid,
-              Survey<double>& survey) const {
-    const GridAxes axes = grid_axes(held_);
-    const bool over_phi = cuts(held_).outer_is_phi;
-    const Masses<double> b = masses(mass_model_, parameters);
-    const std::array<int, 3> coordinates = swept_coordinates();
-    const double held_at = held_value(d.g, held_);
-    const auto test = clearance_test(parameters, d);
-    const auto fill = [&](InertiaTables& tables, double phi) {
-      tables.fill(d.g, b, mode_, phi, grid, coordinates, axes.v, held_at);
-      return demand_.conditioning ? conditioning_at(d.g, demand_, phi) : 0.0;
-    };
-    const auto own = []() -> InertiaTables& {  // each thread's
-      thread_local InertiaTables tables;
-      return tables;
-    };
-    const InertiaTables& common = own();
-    const double index_of_all = over_phi ? 0.0 : fill(own(), held_at);
-    share_sections(d, held_, grid, survey,
-                   [&, cell_volume = survey.cell_volume](std::int64_t k, const SectionCells& cells, std::size_t n,
-                                                         Survey<double>& part) {
-                     const double index = over_phi ? fill(own(), grid.centre(axes.outer, k)) : index_of_all;
-                     const InertiaTables& tables = over_phi ? own() : common;
-                     visit_clear_columns(d, grid, test, k, cells, n, [&](const auto& cell, const auto& row) {
-                       add_column(tables, cell, row, index, cell_volume, grid, held_at, part);
-                       part.touches_box =
-                           part.touches_box || k == 0 || k == grid.cells[axes.outer] - 1 || touches(cell, row, grid);
-                     });
-                   });
-  }
-
-  /// Adds the samples of a column, whose cells are the bits of a row.
-  /// @param index  conditioning
-  void add_column(const InertiaTables& tables, std::array<std::int64_t, 3> cell, const std::vector<std::uint64_t>& row,
-                  double index, double cell_volume, const VoxelGrid& grid, double held_at, Survey<double>& part) const {
-    const std::size_t along = grid_axes(held_).v;
-    thread_local std::array<std::vector<double>, 4> dci;
-    if (demand_.dci) {
-      std::size_t first = 64 * row.size(), end = 0;
-      for (std::size_t w = row.size(); w-- > 0;)
-        if (row[w] != 0) {
-          first = 64 * w + static_cast<std::size_t>(std::countr_zero(row[w]));
-          end = std::max(end, 64 * (w + 1) - static_cast<std::size_t>(std::countl_zero(row[w])));
-        }
-      tables.coupling(cell, first, end, dci);
-    }
-    for (std::size_t w = 0; w < row.size(); ++w)
-      for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
-        const std::size_t v = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
-        cell[along] = static_cast<std::int64_t>(v);
-        ++part.feasible_cells;
-        part.weight.push_back(cell_volume);
-        if (demand_.poses) part.pose.push_back(pose_of(cell, grid, held_at));
-        if (demand_.conditioning) part.conditioning.push_back(index);
-        for (std::size_t i = 0; demand_.dci && i < 4; ++i) part.dci[i].push_back(dci[i][v]);
-        if (demand_.inertia_condition) part.inertia_condition.push_back(inertia_condition(tables.at(cell)));
+  void count(const Gridded& s, VoxelScratch& scratch, Survey<double>& survey) const {
+    share_sections(s, scratch, survey, [&, cell_volume = survey.cell_volume](const Slice& slice) {
+      PlaneTally plane{};
+      if (!s.test) {
+        plane = slice.cells.count(slice.n);
+        plane.touches = plane.touches || slice.k == 0 || slice.k == s.grid.cells[s.axes.outer] - 1;
+      } else {
+        visit_columns(s, slice, [&](const Cell& cell, const Row& row) {
+          for (const std::uint64_t word : row) plane.cells += std::popcount(word);
+          plane.touches = plane.touches || s.touches(cell, row);
+        });
       }
-  }
-
-  /// Whether a column is at an end of u or has a cell at an end of v.
-  /// @param cell  any of it
-  bool touches(const std::array<std::int64_t, 3>& cell, const std::vector<std::uint64_t>& row,
-               const VoxelGrid& grid) const {
-    const GridAxes axes = grid_axes(held_);
-    const std::int64_t u = cell[axes.u], last = grid.cells[axes.v] - 1;
-    return u == 0 || u == grid.cells[axes.u] - 1 || (row.front() & 1) ||
-           (row.back() >> static_cast<std::size_t>(last % 64) & 1);
-  }
-
-  std::optional<ClearanceTest> clearance_test(std::span<const double> parameters, const Design<double>& d) const {
-    if (!limits_.clearance_min) return {};
-    return ClearanceTest{d.g, link_radii(parameters), mode_, *limits_.clearance_min};
-  }
-
-  /// Calls visit(cell, row) for the columns of section k that have cells which pass; cell is the column's first.
-  template <class Visit>
-  void visit_clear_columns(const Design<double>& d, const VoxelGrid& grid, const std::optional<ClearanceTest>& test,
-                           std::int64_t k, const SectionCells& cells, std::size_t n, const Visit& visit) const {
-    const GridAxes axes = grid_axes(held_);
-    const double held_at = held_value(d.g, held_);
-    thread_local std::vector<std::uint64_t> storage;
-    cells.visit_columns(n, storage, [&](std::int64_t u, std::vector<std::uint64_t>& row) {
-      std::array<std::int64_t, 3> cell{};
-      cell[axes.outer] = k;
-      cell[axes.u] = u;
-      const auto pose = [&](const auto& at) { return pose_of(at, grid, held_at); };
-      if (!test || clear_cells(*test, cell, axes.v, pose, row)) visit(cell, row);
+      if (plane.cells == 0) return;
+      slice.part.feasible_cells += plane.cells;
+      slice.part.touches_box = slice.part.touches_box || plane.touches;
+      if (demand_.conditioning && s.over_phi)
+        add_conditioning(s.d.g, s.grid.centre(s.axes.outer, slice.k), static_cast<double>(plane.cells) * cell_volume,
+                         slice.part);
     });
   }
 
-  Platform platform_;
-  MassModel mass_model_;
-  WorkingMode mode_;
-  Held held_;
-  SurveyPlan plan_;
-  Limits limits_;
-  Demand demand_;
+  /// Every cell, with its inertia.
+  void sample(const Gridded& s, const Masses<double>& b, VoxelScratch& scratch, Survey<double>& survey) const {
+    const auto fill = [&](InertiaTables& tables, double phi) {
+      tables.fill(s.d.g, b, mode_, phi, s.grid, s.swept, s.axes.v, s.held_at);
+      return demand_.conditioning ? conditioning_at(s.d.g, phi) : 0.0;
+    };
+    InertiaTables& common = first_of(scratch).tables;
+    const double index_of_all = s.over_phi ? 0.0 : fill(common, s.held_at);
+    share_sections(s, scratch, survey, [&, cell_volume = survey.cell_volume](const Slice& slice) {
+      InertiaTables& tables = s.over_phi ? slice.worker.tables : common;
+      const double index = s.over_phi ? fill(tables, s.grid.centre(s.axes.outer, slice.k)) : index_of_all;
+      Survey<double>& part = slice.part;
+      auto& dci = slice.worker.dci;
+      visit_columns(s, slice, [&](Cell cell, const Row& row) {
+        part.touches_box = part.touches_box || s.touches(cell, row);
+        if (demand_.dci) {
+          const auto has = [&row](std::size_t v) { return (row[v / 64] >> v % 64 & 1) != 0; };
+          std::size_t first = 0, end = 64 * row.size();
+          while (!has(first)) ++first;
+          while (!has(end - 1)) --end;
+          tables.coupling(cell, first, end, dci);
+        }
+        for_each_bit(row, [&](std::size_t v) {
+          cell[s.axes.v] = static_cast<std::int64_t>(v);
+          ++part.feasible_cells;
+          part.weight.push_back(cell_volume);
+          if (demand_.poses) part.pose.push_back(s.pose_of(cell));
+          if (demand_.conditioning) part.conditioning.push_back(index);
+          for (std::size_t i = 0; demand_.dci && i < 4; ++i) part.dci[i].push_back(dci[i][v]);
+          if (demand_.inertia_condition) part.inertia_condition.push_back(inertia_condition(tables.at(cell)));
+        });
+      });
+    });
+  }
+
+  /// The worker whose storage all may read, with one for each that may work.
+  static VoxelWorker& first_of(VoxelScratch& scratch) {
+    scratch.workers.resize(std::max(scratch.workers.size(), workers()));
+    return scratch.workers.front();
+  }
+
+  /// Calls visit(slice) for every outer cell whose section may have cells, as share_samples() does.
+  template <class Visit>
+  void share_sections(const Gridded& s, VoxelScratch& scratch, Survey<double>& survey, const Visit& visit) const {
+    SectionCells& common = first_of(scratch).cells;
+    if (!s.over_phi && !common.fill(s.d, held_, s.grid, s.held_at)) return;
+    share_samples(static_cast<std::size_t>(s.grid.cells[s.axes.outer]), survey,
+                  [&](std::size_t piece, Survey<double>& part, std::size_t number) {
+                    const auto k = static_cast<std::int64_t>(piece);
+                    VoxelWorker& worker = scratch.workers[number];
+                    if (!s.over_phi)
+                      visit(Slice{k, common, piece, worker, part});
+                    else if (worker.cells.fill(s.d, held_, s.grid, s.grid.centre(s.axes.outer, k)))
+                      visit(Slice{k, worker.cells, 0, worker, part});
+                  });
+  }
+
+  /// Calls visit(cell, row) for the columns of a slice that have cells which pass; cell is the column's first.
+  template <class Visit>
+  void visit_columns(const Gridded& s, const Slice& slice, const Visit& visit) const {
+    slice.cells.visit_columns(slice.n, slice.worker.row, [&](std::int64_t u, Row& row) {
+      Cell cell{};
+      cell[s.axes.outer] = slice.k;
+      cell[s.axes.u] = u;
+      if (!s.test || s.clear(cell, row)) visit(cell, row);
+    });
+  }
+
+  VoxelOptions voxels_;
 };
 
 }  // namespace
 
 std::unique_ptr<const Surveyor> make_voxel_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                    int held, const SurveyPlan& plan, const Demand& demand) {
-  return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, demand);
+                                                    int held, const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                    const Demand& demand) {
+  return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, voxels, demand);
 }
 
 VoxelMap voxel_map(Platform platform, const WorkingMode& mode, int held, std::span<const double> parameters,
-                   const SurveyPlan& plan) {
-  return VoxelSurveyor(platform, MassModel::table, mode, held, plan, {}).map(parameters);
+                   const SurveyPlan& plan, const VoxelOptions& voxels) {
+  return VoxelSurveyor(platform, MassModel::table, mode, held, plan, voxels, {}).map(parameters);
 }
 
 }  // namespace pkm::crr_cru

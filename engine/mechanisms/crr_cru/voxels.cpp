@@ -65,15 +65,19 @@ bool SectionCells::fill(const Design<double>& d, const Held& held, const VoxelGr
 }
 
 PlaneTally SectionCells::count(std::size_t n) const {
-  const PlaneRows rows{u_at_n_.row(n).data(), v_at_n_.row(n).data(), v_at_u_.bits.data(), u_.cells, v_.cells,
-                       v_at_u_.words};
+  const PlaneRows rows{.of_u = u_at_n_.row(n).data(),
+                       .of_v = v_at_n_.row(n).data(),
+                       .at_u = v_at_u_.bits.data(),
+                       .u_cells = u_.cells,
+                       .v_cells = v_.cells,
+                       .words = v_at_u_.words};
   return with_instruction_set([&]<InstructionSet set>() { return tally<set>(rows); });
 }
 
 bool SectionCells::fill(const Design<double>& d, const Frame<double>& f, std::size_t a, const Axis& across,
                         std::size_t b, const Axis& along, BitTable& table) {
   const std::size_t words = (along.cells + 63) / 64;
-  const auto inside = [](const Axis& axis, const SlideRange<double>& range) {
+  const auto inside = [](const Axis& axis, const Interval<double>& range) {
     const auto begin = axis.center.begin(), end = begin + static_cast<std::ptrdiff_t>(axis.cells);
     return std::array{std::lower_bound(begin, end, range.lower) - begin,
                       std::upper_bound(begin, end, range.upper) - begin};
@@ -88,16 +92,16 @@ bool SectionCells::fill(const Design<double>& d, const Frame<double>& f, std::si
     for (std::size_t row = rows_begin; row < rows_end; ++row) table.bits[row * words + w] = word;
   }
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!(kPlane[i][0] == a && kPlane[i][1] == b) && !(kPlane[i][0] == b && kPlane[i][1] == a)) continue;
-    const RingLines lines{along.lower,
-                          along.step,
-                          static_cast<double>(along.cells),
-                          across.center.data(),
-                          across.center.size(),
-                          f.center[i][b],
-                          f.center[i][a],
-                          d.in2[i],
-                          d.out2[i]};
+    if (kLimbs[i].e == a || kLimbs[i].e == b) continue;  // the rods move in another plane
+    const RingLines lines{.lower = along.lower,
+                          .step = along.step,
+                          .cells = static_cast<double>(along.cells),
+                          .place = across.center.data(),
+                          .lines = across.center.size(),
+                          .center = f.center[i][b],
+                          .across = f.center[i][a],
+                          .in2 = d.in2[i],
+                          .out2 = d.out2[i]};
     with_instruction_set([&]<InstructionSet set>() { keep_ring<set>(lines, words, table.bits.data()); });
   }
   return std::ranges::any_of(table.bits, [](std::uint64_t word) { return word != 0; });

@@ -1,10 +1,5 @@
-// (3CRR/R)&CRU and Quadrupteron: voxel surveys from rows of bits. Same cells as the plain loop over poses.
-//
-// At given phi a limb's ring and a slide's range couple two coordinates at most. So what is feasible of a section's
-// plane n, its coordinates u and v are three tables of bits: of u at each n, of v at each n, and of v at each u; the
-// feasible cells of a column along v are the bits that its two rows share. Rows come from the ends of chords
-// (rings.hpp); the plain test of a cell decides the cells next to an end, so that rounding cannot tell the two
-// ways apart.
+// (3CRR/R)&CRU and Quadrupteron: voxel surveys from rows of bits (README.md). Same cells as the plain loop over poses:
+// rows come from the ends of chords (rings.hpp), and the plain test of a cell decides the cells next to an end.
 #pragma once
 
 #include <bit>
@@ -15,7 +10,6 @@
 #include "engine/mechanism/survey.hpp"
 #include "engine/mechanisms/crr_cru/frame.hpp"
 #include "engine/mechanisms/crr_cru/rings.hpp"
-#include "engine/survey/share_samples.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
 namespace pkm::crr_cru {
@@ -29,6 +23,14 @@ inline GridAxes grid_axes(const Held& held) { return held.coordinate == 3 ? Grid
 /// Holds every feasible pose: positions by the slides' ranges, phi by kappa_p >= 0. Order of axes as the sweep's.
 Box default_box(const Design<double>& d, const Held& held);
 
+/// Calls visit(cell) for every bit of a row, from the first on.
+template <class Visit>
+void for_each_bit(std::span<const std::uint64_t> row, const Visit& visit) {
+  for (std::size_t w = 0; w < row.size(); ++w)
+    for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1)
+      visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
 /// Of every cell along one coordinate, the feasible cells along another: a row of bits in whole words. Behind the last
 /// row, empty ones up to whole lanes.
 struct BitTable {
@@ -38,7 +40,7 @@ struct BitTable {
   std::span<const std::uint64_t> row(std::size_t i) const { return {bits.data() + i * words, words}; }
 };
 
-/// The cells of every section at one phi. Filled, threads may share it.
+/// The cells of every section at one phi. Filled, workers may share it.
 class SectionCells {
  public:
   /// Fills the tables. @return  whether they leave anything
@@ -51,14 +53,12 @@ class SectionCells {
   void visit_columns(std::size_t n, std::vector<std::uint64_t>& row, const Visit& visit) const {
     const auto of_u = u_at_n_.row(n), of_v = v_at_n_.row(n);
     row.resize(of_v.size());
-    for (std::size_t w = 0; w < of_u.size(); ++w)
-      for (std::uint64_t bits = of_u[w]; bits != 0; bits &= bits - 1) {
-        const std::size_t u = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
-        const auto at_u = v_at_u_.row(u);
-        std::uint64_t any = 0;
-        for (std::size_t i = 0; i < of_v.size(); ++i) any |= row[i] = of_v[i] & at_u[i];
-        if (any) visit(static_cast<std::int64_t>(u), row);
-      }
+    for_each_bit(of_u, [&](std::size_t u) {
+      const auto at_u = v_at_u_.row(u);
+      std::uint64_t any = 0;
+      for (std::size_t i = 0; i < of_v.size(); ++i) any |= row[i] = of_v[i] & at_u[i];
+      if (any) visit(static_cast<std::int64_t>(u), row);
+    });
   }
   PlaneTally count(std::size_t n) const;
 
@@ -78,29 +78,5 @@ class SectionCells {
   Axis n_, u_, v_;
   BitTable u_at_n_, v_at_n_, v_at_u_;
 };
-
-/// Calls visit(k, cells, n, survey) for every outer cell k whose section may have cells, among the team lent to this
-/// thread if there is one, as share_samples() does; n: the plane of `cells`.
-template <class Visit>
-void share_sections(const Design<double>& d, const Held& held, const VoxelGrid& grid, Survey<double>& survey,
-                    const Visit& visit) {
-  // By a function, because a variable of this one would begin to exist on the calling thread only.
-  const auto own = []() -> SectionCells& {
-    thread_local SectionCells cells;
-    return cells;
-  };
-  SectionCells& common = own();
-  const std::size_t outer = grid_axes(held).outer;
-  const bool over_phi = cuts(held).outer_is_phi;
-  if (!over_phi && !common.fill(d, held, grid, held_value(d.g, held))) return;
-  share_samples(static_cast<std::size_t>(grid.cells[outer]), survey,
-                [&](std::size_t piece, Survey<double>& part, std::size_t) {
-                  const auto k = static_cast<std::int64_t>(piece);
-                  if (!over_phi)
-                    visit(k, common, piece, part);
-                  else if (SectionCells& cells = own(); cells.fill(d, held, grid, grid.centre(outer, k)))
-                    visit(k, cells, std::size_t{0}, part);
-                });
-}
 
 }  // namespace pkm::crr_cru

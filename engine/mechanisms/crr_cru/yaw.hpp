@@ -1,10 +1,4 @@
-// (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. The Jacobian does, because the three translations
-// move the slides along fixed directions; so do the forward kinematics of the yaw and the parallel singularity.
-//
-//   rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0 = R sin(phi + delta) + a_0,   det J = R cos(phi + delta)
-//
-// with a_s = l, a_c = 0, a_0 = -r sin beta_2 where the platforms are jointed, and a_s = l - r cos beta_2,
-// a_c = -r sin beta_2, a_0 = 0 where they are one.
+// (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. Why: README.md, "The yaw".
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +8,9 @@
 #include "engine/model/influence.hpp"
 
 namespace pkm::crr_cru {
+
+template <class S>
+using Influence = pkm::Influence<S, 4>;
 
 template <class S>
 struct Yaw {
@@ -45,35 +42,24 @@ S parallel_index(const Yaw<S>& y, const S& sin_phi, const S& cos_phi) {
 template <class S>
 Eigen::Matrix<S, 4, 4> jacobian(const std::array<Arm<S>, 4>& arm) {
   Eigen::Matrix<S, 4, 4> J = Eigen::Matrix<S, 4, 4>::Constant(S(0.0));
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
+  for (Eigen::Index i = 0; i < 4; ++i) {
     const std::size_t e = kLimbs[i].e;
-    J(row, static_cast<Eigen::Index>(e)) = S(1.0);
-    if (arm[i].turns && e < 2) J(row, 3) = e == 0 ? S(-arm[i].to_joint[1]) : arm[i].to_joint[0];
+    J(i, static_cast<Eigen::Index>(e)) = S(1.0);
+    J(i, 3) = turning(arm[i])[e];
   }
   return J;
 }
 
-/// dJ/dt: a turning arm's e_i . (z x (z x arm_i)) phidot in the last column, 0 elsewhere.
-template <class S>
-Eigen::Matrix<S, 4, 4> jacobian_rate(const std::array<Arm<S>, 4>& arm, const S& phi_rate) {
-  Eigen::Matrix<S, 4, 4> rate = Eigen::Matrix<S, 4, 4>::Constant(S(0.0));
-  for (std::size_t i = 0; i < 4; ++i)
-    if (arm[i].turns && kLimbs[i].e < 2)
-      rate(static_cast<Eigen::Index>(i), 3) = -arm[i].to_joint[kLimbs[i].e] * phi_rate;
-  return rate;
-}
-
 /// Influence coefficients of the slides: their speeds follow from J, and their accelerations at a steady yaw rate from
-/// dJ/dt, which is proportional to it.
+/// dJ/dt, whose last column holds e_i . (z x (z x arm_i)) phidot.
 template <class S>
 Influence<S> influence(const std::array<Arm<S>, 4>& arm) {
-  const Eigen::Matrix<S, 4, 4> J = jacobian(arm), rate = jacobian_rate(arm, S(1.0));
   Influence<S> q;
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    for (std::size_t c = 0; c < 4; ++c) q.G(i, c) = J(row, static_cast<Eigen::Index>(c));
-    q.H[i](3, 3) = rate(row, 3);
+    const std::size_t e = kLimbs[i].e;
+    q.G(i, e) = S(1.0);
+    q.G(i, 3) = turning(arm[i])[e];
+    q.H[i](3, 3) = swinging(arm[i])[e];
   }
   return q;
 }
@@ -89,8 +75,7 @@ S characteristic_length(const Geometry<S>& g) {
 template <class S>
 S conditioning(const std::array<Arm<S>, 4>& arm, const S& length) {
   const S one(1.0), zero(0.0);
-  const S turn_1 = arm[0].turns ? S(-arm[0].to_joint[1] / length) : zero;
-  const S turn_2 = arm[1].turns ? S(arm[1].to_joint[0] / length) : zero;
+  const S turn_1 = turning(arm[0])[0] / length, turn_2 = turning(arm[1])[1] / length;
   return inverse_condition(
       Rows3<S>{{{one, zero, turn_1}, {zero, one, turn_2}, {zero, one, arm[3].to_joint[0] / length}}}, one);
 }

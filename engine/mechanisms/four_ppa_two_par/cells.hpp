@@ -12,8 +12,9 @@ namespace pkm::four_ppa_two_par {
 /// The columns (along z) of the first x of a grid at kLanes neighbouring thetas. Nothing but numbers, so that kernels
 /// share no code with files that are compiled for another instruction set.
 struct ColumnsAtThetas {
-  double a, b, l_u, l_d, d, L0;                                                         ///< as in Geometry
-  double sin_alpha_min, sin_beta_min, sin_beta_max, sin_par_min, cos_theta_min, h_min;  ///< as in Limits
+  double a, b, l_u, l_d, d, L0;        ///< as in Geometry
+  double sin_par_min, cos_theta_min;   ///< as in Limits
+  double x_min, x_max, z_low, z_high;  ///< as in Ranges
   double y;
   double x_lower, x_step, z_lower, z_step;  ///< of the grid
   double z_cells;

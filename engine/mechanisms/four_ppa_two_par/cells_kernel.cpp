@@ -7,10 +7,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The columns of kLanes thetas; L is their scalar.
+/// The columns of kLanes thetas; L is their scalar. The one other form of visit_margins: solved for z, so that a whole
+/// column takes one test.
 template <class L>
 struct Slab {
-  double l_d2, x_min, x_max, parallel, bottom;  ///< bottom: greatest -z_c
+  double l_d2, x_min, x_max, parallel, bottom;  ///< bottom: greatest -z_c; parallel: l_d^2 sin_par_min
   double x_step, cells, per_cell, offset;       ///< of z; offset: z = -d in units of cells from the first centre
   L x_0, w;                                     ///< x_1 of the first column; x_1 + x_2
   L top_1, top_2;                               ///< least -z_c of each limb; infinite where the theta has no poses
@@ -18,11 +19,10 @@ struct Slab {
 
   explicit Slab(const ColumnsAtThetas& at) {
     l_d2 = at.l_d * at.l_d;
-    x_min = at.l_d * at.sin_beta_min;
-    x_max = at.l_d * at.sin_beta_max;
+    x_min = at.x_min;
+    x_max = at.x_max;
     parallel = at.sin_par_min * at.l_d * at.l_d;
-    const double u = (at.l_u - at.h_min) * (at.l_u + at.h_min);
-    bottom = std::sqrt(u > 0 ? u : 0);
+    bottom = at.z_low;
     x_step = at.x_step;
     cells = at.z_cells;
     per_cell = 1 / at.z_step;
@@ -31,11 +31,11 @@ struct Slab {
     const L sine = L::load(at.sines), cosine = L::load(at.cosines);
     const L shift = at.a * sine * 0.5, half = at.a * cosine * 0.5;
     const L y_1 = at.y - shift, y_2 = at.y + shift, H_1 = lesser(y_1, at.L0 - y_1), H_2 = lesser(y_2, at.L0 - y_2);
-    const double thetas = at.l_u >= at.h_min ? static_cast<double>(at.thetas) : 0;
-    const auto some = (L::load(kIndex) < thetas) & (cosine >= at.cos_theta_min) & (H_1 >= 0.0) & (H_2 >= 0.0);
+    const auto some =
+        (L::load(kIndex) < static_cast<double>(at.thetas)) & (cosine >= at.cos_theta_min) & (H_1 >= 0.0) & (H_2 >= 0.0);
     const auto top = [&](const L& H) {
       const L depth = root_or_zero((at.l_u - H) * (at.l_u + H));
-      return select(some, greater(L(at.l_u * at.sin_alpha_min), depth), L(kInfinity));
+      return select(some, greater(L(at.z_high), depth), L(kInfinity));
     };
     top_1 = top(H_1);
     top_2 = top(H_2);

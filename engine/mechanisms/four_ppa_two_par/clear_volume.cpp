@@ -42,10 +42,10 @@ double integral_of_stroke(const Frame<double>& f, const Section<double>& t, cons
 
 /// What one column adds to a section: the length of its clear parts, or that times the length of y.
 double measure(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
-               const ClearanceTest& test, bool over_y, std::vector<Interval>& parts) {
-  test.clear_parts(f, t, column, parts);
+               const ClearanceTest& test, bool over_y, ClearanceScratch& scratch) {
   double sum = 0;
-  for (const Interval& part : parts) sum += over_y ? integral_of_stroke(f, t, column, part) : part.upper - part.lower;
+  for (const Interval& part : test.clear_parts(f, t, column, scratch))
+    sum += over_y ? integral_of_stroke(f, t, column, part) : part.upper - part.lower;
   return sum;
 }
 
@@ -87,7 +87,7 @@ Integral<double> by_rule(const Frame<double>& f, const ClearanceTest& test, bool
             const auto [delta, delta_jacobian] = map_node(range, inner_rule.node[k]);
             const Column<double> c = column(f, t, h, leaning, delta);
             result.value += weight * outer * inner_rule.weight[k] * delta_jacobian * c.slope *
-                            measure(f, t, c, test, over_y, scratch.clear);
+                            measure(f, t, c, test, over_y, scratch.clearance);
             ++result.evaluations;
           }
       });
@@ -100,7 +100,7 @@ Integral<double> by_rule(const Frame<double>& f, const ClearanceTest& test, bool
 Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch) {
   constexpr double kInner = 0.02;  // so that the outer rule does not take the inner one's error for kinks
-  constexpr int kDepth = 12;       // of halvings
+  const Quadrature outer{.between = Between::kinks}, inner{.between = Between::kinks, .depth = 12};
   static const GaussRule coarse = gauss_legendre(5);
   find_pieces(f, scratch.breaks, scratch.pieces);
   double range = 0;
@@ -118,11 +118,10 @@ Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test,
     visit_halves(f, t, test, scratch, [&](const Half<double>& h, std::size_t leaning, double weight) {
       const auto strip = [&](double delta) {
         const Column<double> c = column(f, t, h, leaning, delta);
-        return c.slope * measure(f, t, c, test, over_y, scratch.clear);
+        return c.slope * measure(f, t, c, test, over_y, scratch.clearance);
       };
       for (const Piece<double>& piece : scratch.ranges) {
-        Integral<double> found = integrate_piece<double>(strip, piece, Between::kinks);
-        refine(strip, piece, inner_error, kDepth, found, Between::kinks);
+        const Integral<double> found = integrate_piece(strip, piece, inner_error, inner);
         area += weight * found.value;
         error += weight * found.error;
         columns += found.evaluations;
@@ -131,8 +130,7 @@ Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test,
     worst = std::fmax(worst, error);
     return area;
   };
-  Integral<double> result =
-      integrate<double>(area_at, scratch.pieces, aim, trifle * range, scratch.integrals, Between::kinks);
+  Integral<double> result = integrate<double>(area_at, scratch.pieces, aim, trifle * range, scratch.integrals, outer);
   result.value *= 2;  // even in theta
   result.error = 2 * (result.error + worst * range);
   result.evaluations = columns;

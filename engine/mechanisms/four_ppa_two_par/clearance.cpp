@@ -106,7 +106,7 @@ double ClearanceTest::excess(const Placement<double>& p, const std::vector<Group
 
 Placement<double> ClearanceTest::place(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
                                        double rise) const {
-  Placement<double> p{t.sin_theta, column.x, column.sigma, {}, {}};
+  Placement<double> p{.sin_theta = t.sin_theta, .x = column.x, .drop = column.sigma, .z_c = {}, .h = {}};
   for (std::size_t j = 0; j < 2; ++j) {
     p.z_c[j] = column.z_c(f, rise, j);
     p.h[j] = root_or_zero((g_.l_u - p.z_c[j]) * (g_.l_u + p.z_c[j]));
@@ -114,12 +114,13 @@ Placement<double> ClearanceTest::place(const Frame<double>& f, const Section<dou
   return p;
 }
 
-void ClearanceTest::clear_ranges(const Frame<double>& f, const Section<double>& t, const Half<double>& h,
-                                 std::size_t leaning, double low, double high, std::vector<Interval>& ranges) const {
-  ranges.clear();
+const std::vector<Interval>& ClearanceTest::clear_ranges(const Frame<double>& f, const Section<double>& t,
+                                                         const Half<double>& h, std::size_t leaning, double low,
+                                                         double high, ClearanceScratch& scratch) const {
+  scratch.clear.clear();
   if (hanging_.empty()) {
-    if (low < high) ranges.push_back({low, high});
-    return;
+    if (low < high) scratch.clear.push_back({low, high});
+    return scratch.clear;
   }
   const auto excess_at = [&](double delta) {
     return excess(place(f, t, column(f, t, h, leaning, delta), 0), hanging_);
@@ -128,16 +129,16 @@ void ClearanceTest::clear_ranges(const Frame<double>& f, const Section<double>& 
   // d(beta_leaning) = cos(beta_other) / (l_d sin 2p), d(beta_other) = -cos(beta_leaning) / (l_d sin 2p). So nothing
   // that hangs changes its place to anything else by more than (cos(beta_1) + cos(beta_2)) / sin 2p <= 1 / sin p.
   const auto steepness = [&](double from, double) { return 1 / chord(f, t, from).sin_p; };
-  thread_local NonNegativeParts finder;
-  finder.find(excess_at, steepness, low, high, ranges);
+  scratch.finder.find(excess_at, steepness, low, high, scratch.clear);
+  return scratch.clear;
 }
 
-void ClearanceTest::clear_parts(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
-                                std::vector<Interval>& parts) const {
-  parts.clear();
+const std::vector<Interval>& ClearanceTest::clear_parts(const Frame<double>& f, const Section<double>& t,
+                                                        const Column<double>& column, ClearanceScratch& scratch) const {
+  scratch.clear.clear();
   if (moving_.empty()) {
-    if (column.length > 0) parts.push_back({0, column.length});
-    return;
+    if (column.length > 0) scratch.clear.push_back({0, column.length});
+    return scratch.clear;
   }
   const auto excess_at = [&](double rise) { return excess(place(f, t, column, rise), moving_); };
   // When z rises by 1, C_j rises by 1 and the sliders part by -z_cj/h_j: no two points of a pair of links change their
@@ -146,8 +147,8 @@ void ClearanceTest::clear_parts(const Frame<double>& f, const Section<double>& t
     const Placement<double> p = place(f, t, column, from);
     return g_.l_u / p.h[0] + g_.l_u / p.h[1];
   };
-  thread_local NonNegativeParts finder;
-  finder.find(excess_at, steepness, 0, column.length, parts);
+  scratch.finder.find(excess_at, steepness, 0, column.length, scratch.clear);
+  return scratch.clear;
 }
 
 std::optional<ClearanceTest> take_clearance(const Geometry<double>& g, Limits<double>& l) {
@@ -161,19 +162,6 @@ std::optional<ClearanceTest> take_clearance(const Geometry<double>& g, Limits<do
   }
   if (test.complete()) return {};
   return test;
-}
-
-Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta) {
-  const double half = g.a * cos_theta / 2;
-  Placement<double> p;
-  p.sin_theta = sin_theta;
-  p.x = {x - half, g.b - x - half};
-  for (std::size_t j = 0; j < 2; ++j) {
-    p.drop[j] = root_or_zero((g.l_d - p.x[j]) * (g.l_d + p.x[j]));
-    p.z_c[j] = z + g.d + p.drop[j];
-    p.h[j] = root_or_zero((g.l_u - p.z_c[j]) * (g.l_u + p.z_c[j]));
-  }
-  return p;
 }
 
 }  // namespace pkm::four_ppa_two_par

@@ -17,9 +17,9 @@ template <class S>
 struct ColumnScratch {
   std::vector<Break<S>> breaks;
   std::vector<Piece<S>> pieces;
-  std::vector<Integral<S>> integrals;
+  std::vector<QuadraturePart<S>> integrals;
   std::vector<Piece<S>> ranges, parts;
-  std::vector<Interval> clear;
+  ClearanceScratch clearance;
   ColumnConditioning<S> poses;
 };
 
@@ -129,8 +129,8 @@ void feasible_ranges(const Frame<S>& f, const Section<S>& t, const Half<S>& h, s
     if (!(value_of(high) > value_of(low))) continue;
     if constexpr (std::is_same_v<S, double>) {
       if (test) {
-        test->clear_ranges(f, t, h, leaning, low, high, scratch.clear);
-        for (const Interval& range : scratch.clear) scratch.ranges.push_back({range.lower, range.upper});
+        for (const Interval& range : test->clear_ranges(f, t, h, leaning, low, high, scratch.clearance))
+          scratch.ranges.push_back({range.lower, range.upper});
         continue;
       }
     }
@@ -145,8 +145,8 @@ void feasible_parts(const Frame<S>& f, const Section<S>& t, const Column<S>& col
   scratch.parts.clear();
   if constexpr (std::is_same_v<S, double>) {
     if (test) {
-      test->clear_parts(f, t, column, scratch.clear);
-      for (const Interval& part : scratch.clear) scratch.parts.push_back({part.lower, part.upper, true, true});
+      for (const Interval& part : test->clear_parts(f, t, column, scratch.clearance))
+        scratch.parts.push_back({part.lower, part.upper, true, true});
       return;
     }
   }

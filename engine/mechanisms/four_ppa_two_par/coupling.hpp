@@ -1,16 +1,5 @@
-// 4PPa-2PaR: the inertia that the sliders feel at a pose of the lower mode, without J and M_X.
-//
-// Sliders' speeds give y_j' = (q_2j' + q_2j-1')/2 and h_j' = (q_2j' - q_2j-1')/2, these give z_cj' = -(h_j / z_cj)
-// h_j', and with t_j = x_j / sigma_j the loop closure of dynamics.hpp solves to
-//
-//   theta' = (y_2' - y_1') / (a c),  y' = (y_1' + y_2')/2
-//   x' = (z_c2' - z_c1' - (t_1 - t_2)(a s/2) theta') / (t_1 + t_2),   z' = z_c1' + t_1 x_1'
-//
-// Kinetic energy is a sum of squares of such speeds, so M_q is the sum of their coefficients' outer products. Of a limb
-// (m_u, I_u, m_d, I_d one bar each; m_C, m_D connectors; m_s a slider):
-//
-//   (2 m_s + 4 m_u + m_C + 2 m_d + m_D) y_j'^2 + (2 m_s + m_u) h_j'^2 + (m_C + m_u + 4 I_u / h_j^2) z_cj'^2
-//   + (m_d / 2 + m_D + 2 I_d / sigma_j^2) x_j'^2 + m_d (z_cj' + z')^2 / 2 + m_D z'^2
+// 4PPa-2PaR: the inertia that the sliders feel at a pose of the lower mode, without J and M_X: a sum of squares of
+// speeds that the sliders' speeds give in closed form. README.md, Motion.
 #pragma once
 
 #include <cmath>

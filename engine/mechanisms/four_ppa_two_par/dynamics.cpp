@@ -23,7 +23,7 @@ std::optional<Influence<double>> influence(const Geometry<double>& g, const Pose
   const auto rows = sliders({});
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t c = 0; c < 4; ++c) found.G(i, c) = rows[i].row[c];
-  found.H = matrices_of([&](const Vector<double, 4>& velocity) {
+  found.H = matrices_of<4>([&](const Vector<double, 4>& velocity) {
     const auto q = sliders(velocity);
     return Vector<double, 4>{{q[0].bias, q[1].bias, q[2].bias, q[3].bias}};
   });

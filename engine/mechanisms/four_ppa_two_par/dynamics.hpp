@@ -1,15 +1,4 @@
-// 4PPa-2PaR: equations of motion.
-//
-// Everything moves with a few lengths per limb, each a function of X = (x, y, z, theta) alone (signs and names as in
-// model.hpp; sigma_j < 0 in the upper branch):
-//
-//   x_1' = x' + (a s/2) theta',  x_2' = -x' + (a s/2) theta',  y_1', y_2' = y' -/+ (a c/2) theta'
-//   sigma_j' = -(x_j / sigma_j) x_j',  z_cj' = z' + sigma_j',  h_j' = -(z_cj / h_j) z_cj'
-//   q' = (y_1' - h_1', y_1' + h_1', y_2' - h_2', y_2' + h_2')
-//
-// The two bars of a parallelogram move alike: those of a slider turn about x at -/+ z_cj'/h_j (- for the slider at y_j
-// + h_j), the lower ones about y at -/+ x_j'/sigma_j (- for limb 1). The platform turns about z. Connectors, carried by
-// parallelograms, translate only: C_j as (0, y_j', z_cj'), D_j as (+/- x_j', y_j', z').
+// 4PPa-2PaR: equations of motion, from the speeds of a few lengths per limb: README.md, Motion.
 #pragma once
 
 #include <optional>
@@ -19,6 +8,15 @@
 #include "engine/model/influence.hpp"
 
 namespace pkm::four_ppa_two_par {
+
+template <class S>
+using MotionState = pkm::MotionState<S, 4>;
+template <class S>
+using PoseDynamics = pkm::PoseDynamics<S, 4>;
+template <class S>
+using Body = pkm::Body<S, 4>;
+template <class S>
+using Influence = pkm::Influence<S, 4>;
 
 /// A length or an angle that X determines: its rate is row Xdot, its acceleration row Xddot + bias.
 template <class S>

@@ -2,6 +2,12 @@
 
 namespace pkm::four_ppa_two_par {
 
+Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta) {
+  Limbs<double> limbs;
+  for (std::size_t j = 0; j < 2; ++j) place_limb(g, x, 0.0, z, {sin_theta, cos_theta}, kLowerMode[j], j, limbs);
+  return placement(limbs, sin_theta, kLowerMode);
+}
+
 std::string link_name(std::size_t link) {
   for (int limb = 0; limb < 2; ++limb) {
     const std::string of_limb = " of limb " + std::to_string(limb + 1);
@@ -27,7 +33,7 @@ std::vector<PlacedLink> placed_links(const Geometry<double>& g, const Pose<doubl
     const double x = rail == 0 ? 0 : g.b;
     placed.push_back({"rail " + std::to_string(rail + 1), kFramePart, {{{x, 0, 0}, {x, g.L0, 0}}, g.R_s / 2}});
   }
-  const Links<double> all = links(g, placement(pose, limb, mode));
+  const Links<double> all = links(g, placement(limb, sincos(pose.angle).sin, mode));
   const std::size_t second = links_of(kGroupsPerLimb).first, platform = links_of(kPlatform).first;
   for (std::size_t i = 0; i < kLinks; ++i) {
     const char* const part = i >= platform ? kPlatformPart : i >= second ? "limb 2" : "limb 1";

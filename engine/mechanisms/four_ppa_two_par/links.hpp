@@ -1,34 +1,6 @@
-// 4PPa-2PaR: its links as capsules, and which pairs of them must keep clear of each other.
+// 4PPa-2PaR: its links as capsules, and which pairs of them must keep clear of each other. Drawn in README.md, Links.
 //
-// Where the links are follows from what the paper says of d_0 and from its eqs 17 and 19. The distance of an upper
-// parallelogram's bars is d_u sin(alpha), so their joints are d_u apart along the rail; that of a lower parallelogram's
-// bars is d_d sin(beta), so their joints are d_d apart along the vertical; the sliders of a rail touch at h = d_0 +
-// d_u/2, so a slider reaches d_0 beyond its outer joint. Seen along x, limb 1 is
-//
-//     [-d_0-o---B_1---o-d_0-]            [-d_0-o---B_2---o-d_0-]      sliders 1, 2; joints o at B -/+ d_u/2
-//              \       \                  /       /                   four upper bars, length l_u
-//               \       \                /       /
-//                  to C_1 -/+ d_u/2, ends of the upper connector's side along y
-//
-// and seen along y, in the plane y = y_1 (limb 2 is its mirror image in x = b/2)
-//
-//     C_1 o                                  upper connector: C_1 F_1 upright, of length d_d
-//         |\        lower bar 1: C_1 D_1
-//     F_1 o  \                               two lower bars, length l_d, parallel
-//           \  o D_1
-//             \|    lower bar 2: F_1 E_1
-//              o E_1                         lower connector: upright from D_1 past E_1 to the platform's joint P_1
-//              o P_1 ----- platform ----- P_2,  D_1 P_1 = d, P_1 P_2 = a
-//
-// These are all four bars of each parallelogram: the two long ones, and the two short ones on slider and connectors
-// (the short one on a slider lies inside its capsule). Both parallelograms that meet at C_j are drawn in the plane of
-// their rail. The paper does not say how far apart they are in x, so pairs of bars of one limb are not tested; nor
-// are links that share a joint. Radii: R_u upper bars and the connector's side along y, R_d lower bars and what is
-// upright, R_p platform, R_s sliders. A slider's capsule ends where the slider ends: its segment is 2 (d_0 + d_u/2 -
-// R_s) long, or a point where R_s is larger.
-//
-// Pairs: all links of different limbs; the platform with all links but the lower connectors, which carry it; the two
-// sliders of one rail. Their distances are measured in a frame at the platform's y: they do not depend on y.
+// Distances are measured in a frame at the platform's y: they do not depend on y.
 #pragma once
 
 #include <array>
@@ -48,12 +20,15 @@ struct Placement {
 };
 
 template <class S>
-Placement<S> placement(const Pose<S>& pose, const Limbs<S>& limb, WorkingMode mode) {
-  Placement<S> p{sincos(pose.angle).sin, limb.x, limb.sigma, limb.z_c, limb.h};
+Placement<S> placement(const Limbs<S>& limb, const S& sin_theta, WorkingMode mode) {
+  Placement<S> p = {.sin_theta = sin_theta, .x = limb.x, .drop = limb.sigma, .z_c = limb.z_c, .h = limb.h};
   for (std::size_t j = 0; j < 2; ++j)
     if (mode[j] == Branch::upper) p.drop[j] = -limb.sigma[j];
   return p;
 }
+
+/// The links' places in the lower mode, from the centre of a voxel.
+Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta);
 
 // Links in groups that keep together. Each limb has, in the plane of its rail, two sliders, four upper bars and the
 // upper connector's side along y; in the plane y = y_j the upper connector's upright side with two lower bars, and the

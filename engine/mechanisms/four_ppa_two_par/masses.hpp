@@ -1,19 +1,4 @@
-// 4PPa-2PaR: masses and inertias that follow the geometry.
-//
-// The paper gives none. Here every link's mass is its length times a mass per length; by default that of a solid
-// aluminium rod (2700 kg/m^3) of the link's own default radius: 0.848 kg/m for 10 mm, 3.393 kg/m for 20 mm. Links are
-// those of links.hpp:
-//
-//   slider            lambda_s (2 d_0 + d_u)
-//   upper bar         lambda_u l_u,                            I = kappa m l_u^2 / 12 about its middle (two per slider)
-//   upper connector   lambda_u d_u + lambda_d d_d + m_c        carries C_j
-//   lower bar         lambda_d l_d,                            I = kappa m l_d^2 / 12 (two per limb)
-//   lower connector   lambda_d max(d, d_d) + m_c               from D_j to P_j
-//   platform          lambda_p a,                              I_zz = kappa_p m a^2 / 12, centre (x, y, z)
-//   payload           m_p, a point on the line P_1 P_2, c_p from the platform's centre towards P_2
-//
-// Both parallelograms keep their connectors upright and along y: those translate only, so neither their inertias nor
-// the places of their centres of mass count.
+// 4PPa-2PaR: masses and inertias that follow the geometry. README.md, Masses, has the table.
 #pragma once
 
 #include <span>

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "engine/core/options.hpp"
+#include "engine/mechanism/both_scalars.hpp"
 #include "engine/mechanisms/four_ppa_two_par/dynamics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/links.hpp"
 #include "engine/mechanisms/four_ppa_two_par/survey.hpp"
@@ -18,7 +19,12 @@ constexpr double kNoClearance = -2;
 const char* const kModes[4] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
 
 /// The one mass model: every mass is a length times a mass per length.
-const char* const kMassModel = "geometry";
+const std::vector<std::string> kMassModels = {"geometry"};
+
+const std::vector<DesignMarginInfo> kDesignTests = {
+    {"workspace-shape", "m", "l_d - sqrt(l_u^2 + (b - a cos_theta_min)^2) / 2, eq 21 at the least cos(theta) allowed"},
+    {"rail-length", "m", "L0 - 2 l_u cos(alpha_min), eq 18"},
+};
 
 MechanismInfo make_info() {
   MechanismInfo i;
@@ -41,17 +47,10 @@ MechanismInfo make_info() {
       {"R_s", "m", 0.020, 0, 1, "radius of the sliders as capsules"},
   };
   for (Parameter& parameter : mass_parameters()) i.parameters.push_back(std::move(parameter));
-  i.has_influence = true;
-  i.has_dynamics = true;
-  i.has_links = true;
-  i.mass_models = {kMassModel};
-  i.mass_model = kMassModel;
-  i.coordinates = {"x", "y", "z", "theta"};
-  i.joints = {"q1", "q2", "q3", "q4"};
+  i.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"theta", "rad"}};
+  i.joints = {{"q1", "m"}, {"q2", "m"}, {"q3", "m"}, {"q4", "m"}};
   i.modes.assign(std::begin(kModes), std::end(kModes));
-  i.swept = {0, 2, 3};
-  i.held = 1;
-  i.held_can_integrate = true;
+  i.sweeps = {{.swept = {0, 2, 3}, .held = {1}, .column = 2, .integrates = true}};
   constexpr double quarter = kPi / 2;
   i.limits = {
       {"alpha_min", "rad", 0, 0, quarter, "interference", "asin(2 R_u / d_u), eq 17",
@@ -66,15 +65,6 @@ MechanismInfo make_info() {
       {"clearance_min", "m", kNoClearance, kNoClearance, 100, "clearance", "",
        "least distance of links of different limbs, platform and sliders; < 0: they may overlap that far"},
   };
-  i.design_margins = {
-      {"workspace-shape", "m",
-       "l_d - sqrt(l_u^2 + (b - a cos_theta_min)^2) / 2, eq 21 at the least cos(theta) allowed"},
-      {"rail-length", "m", "L0 - 2 l_u cos(alpha_min), eq 18"},
-  };
-  i.volume_unit = "m^2 rad";
-  i.integrated_unit = "m^3 rad";
-  i.size_unit = "m^2";
-  i.size_meaning = "pi b (l_u + l_d)";
   i.characteristic_length = "a / 2";
   return i;
 }
@@ -108,30 +98,30 @@ void thresholds_of(std::span<const S> p, const LimitSpec& spec, std::span<S> val
   values[kClearanceMin] = S(l.clearance_min.value_or(kNoClearance));
 }
 
-class FourPpaTwoPar final : public Mechanism {
+class FourPpaTwoPar final : public Mechanism,
+                            Voxels,
+                            Columns,
+                            Derivatives,
+                            Size,
+                            DesignTests,
+                            Velocities,
+                            ForwardKinematics,
+                            pkm::Links,
+                            DynamicsOf<FourPpaTwoPar> {
  public:
   const MechanismInfo& info() const override { return info_; }
+  const Voxels* voxels() const override { return this; }
+  const Columns* columns() const override { return this; }
+  const Derivatives* derivatives() const override { return this; }
+  const Size* size() const override { return this; }
+  const DesignTests* design_tests() const override { return this; }
+  const Velocities* velocities() const override { return this; }
+  const ForwardKinematics* forward() const override { return this; }
+  const pkm::Links* links() const override { return this; }
+  const Dynamics* dynamics() const override { return this; }
 
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
-    sweep_of(info_, plan);  // refuses a plan that holds another coordinate than y
-    return make_surveyor(plan, demand);
-  }
-  VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
-    return four_ppa_two_par::voxel_map(geometry(p), plan);
-  }
-  double middle(std::span<const double> p, int) const override { return middle_plane(geometry(p)); }
-  void design_margins(std::span<const double> p, const LimitSpec& spec, std::span<double> margins) const override {
-    margins_of(p, spec, margins);
-  }
-  void design_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> margins) const override {
-    margins_of(p, spec, margins);
-  }
-  double size(std::span<const double> p) const override { return size_of(p); }
-  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
+  std::optional<double> middle(std::span<const double> p, int) const override { return middle_plane(geometry(p)); }
   void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
-    thresholds_of(p, spec, values);
-  }
-  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
     thresholds_of(p, spec, values);
   }
   NamedValues facts(std::span<const double> p, const LimitSpec& spec) const override {
@@ -139,57 +129,71 @@ class FourPpaTwoPar final : public Mechanism {
     return {{"shape_type_at_theta_0", section_type(g, 1)},
             {"shape_type_at_greatest_theta", section_type(g, limits(g, spec).cos_theta_min)}};
   }
-  std::string refuse(std::span<const double> p) const override {
-    for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
-      const Parameter& parameter = info_.parameters[i];
-      if (!(p[i] >= parameter.lower && p[i] <= parameter.upper))
-        return parameter.name + " = " + shortest(p[i]) + " is outside the model's range " + shortest(parameter.lower) +
-               " to " + shortest(parameter.upper) + " " + parameter.unit;
-    }
-    return {};
-  }
-  PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
+  PoseReport inspect(std::span<const double> p, const pkm::Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
     const auto g = geometry(p);
-    return four_ppa_two_par::inspect(g, limits(g, spec), pose, mode_called(mode));
-  }
-  std::optional<Influence<double>> influence(std::span<const double> p, const Pose<double>& pose,
-                                             const std::string& mode) const override {
-    return four_ppa_two_par::influence(geometry(p), pose, mode_called(mode));
-  }
-  std::vector<PlacedLink> links(std::span<const double> p, const Pose<double>& pose,
-                                const std::string& mode) const override {
-    return placed_links(geometry(p), pose, mode_called(mode));
-  }
-  std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& q) const override {
-    return four_ppa_two_par::forward(geometry(p), q);
-  }
-
-  void dynamics(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
-                std::span<PoseDynamics<double>> out) const override {
-    find_dynamics(p, mode, states, out);
-  }
-  void dynamics(std::span<const Dual4> p, const std::string& mode, std::span<const MotionState<Dual4>> states,
-                std::span<PoseDynamics<Dual4>> out) const override {
-    find_dynamics(p, mode, states, out);
-  }
-  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
-    return model == kMassModel ? std::make_shared<FourPpaTwoPar>() : nullptr;
+    return four_ppa_two_par::inspect(g, limits(g, spec), schoenflies(pose), mode_called(mode));
   }
 
  private:
+  friend DynamicsOf<FourPpaTwoPar>;
+
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                          const Demand& demand) const override {
+    return make_voxel_surveyor(plan, voxels, demand);
+  }
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+                                          const Demand& demand) const override {
+    return make_column_surveyor(plan, columns, demand);
+  }
+  VoxelMap map(std::span<const double> p, const SurveyPlan& plan, const VoxelOptions& voxels) const override {
+    return voxel_map(geometry(p), plan, voxels);
+  }
+
+  std::string unit() const override { return "m^2"; }
+  std::string meaning() const override { return "pi b (l_u + l_d)"; }
+  double of(std::span<const double> p) const override { return size_of(p); }
+  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
+  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
+    thresholds_of(p, spec, values);
+  }
+  const std::vector<DesignMarginInfo>& list() const override { return kDesignTests; }
+  void test(std::span<const double> p, const LimitSpec& spec, std::span<double> margins) const override {
+    margins_of(p, spec, margins);
+  }
+  void design_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> margins) const override {
+    margins_of(p, spec, margins);
+  }
+
+  std::optional<pkm::Influence<double>> influence(std::span<const double> p, const pkm::Pose<double>& pose,
+                                                  const std::string& mode) const override {
+    return four_ppa_two_par::influence(geometry(p), schoenflies(pose), mode_called(mode));
+  }
+  std::vector<PlacedLink> place(std::span<const double> p, const pkm::Pose<double>& pose,
+                                const std::string& mode) const override {
+    return placed_links(geometry(p), schoenflies(pose), mode_called(mode));
+  }
+  std::vector<AssemblyMode> assemblies(std::span<const double> p, const AxisVector<double>& q) const override {
+    return four_ppa_two_par::forward(geometry(p), q);
+  }
+  const std::vector<std::string>& mass_models() const override { return kMassModels; }
+  const std::string& mass_model() const override { return kMassModels.front(); }
+  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
+    return model == kMassModels.front() ? std::make_shared<FourPpaTwoPar>() : nullptr;
+  }
+
   static WorkingMode mode_called(const std::string& name) {
     for (int i = 0; i < 4; ++i)
       if (name == kModes[i]) return {i & 2 ? Branch::upper : Branch::lower, i & 1 ? Branch::upper : Branch::lower};
     throw std::invalid_argument("unknown working mode " + name);
   }
   template <class S>
-  static void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const MotionState<S>> states,
-                            std::span<PoseDynamics<S>> out) {
+  static void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const pkm::MotionState<S>> states,
+                            std::span<pkm::PoseDynamics<S>> out) {
     const WorkingMode branches = mode_called(mode);
     const auto g = geometry(p);
     const auto b = masses(p);
-    for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics(g, b, states[i], branches);
+    for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics<S>(g, b, states[i], branches);
   }
 
   MechanismInfo info_ = make_info();

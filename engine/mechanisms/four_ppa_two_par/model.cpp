@@ -4,7 +4,7 @@
 
 namespace pkm::four_ppa_two_par {
 
-std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<double, 4>& q) {
+std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& q) {
   std::vector<AssemblyMode> modes;
   const double y = (q[0] + q[1] + q[2] + q[3]) / 4;
   const double h[2] = {(q[1] - q[0]) / 2, (q[3] - q[2]) / 2};

@@ -1,16 +1,6 @@
-// 4PPa-2PaR: geometry, limits and kinematics of one pose.
+// 4PPa-2PaR: geometry, limits and kinematics of one pose. Frames and names: README.md.
 //
 // Source: "Kinematics analysis and optimal design of a 3T1R parallel mechanism", equation numbers are that paper's.
-//
-// Two rails along y at x = 0 and x = b in the plane z = 0, z up. Sliders 1, 2 run on rail 1 and 3, 4 on rail 2; q_i is
-// the slider's y. Limb j = 1, 2: its two upper bars (length l_u) meet at C_j below the rail, a lower parallelogram
-// (length l_d) hangs D_j from C_j in the x-z plane, and the platform's joint P_j lies d below D_j.
-//
-//   P_1, P_2 = (x, y, z) -/+ (a/2)(cos theta, sin theta, 0)
-//   x_1 = x - a c/2 = l_d sin(beta_1),   x_2 = b - x - a c/2 = l_d sin(beta_2)
-//   y_1 = y - a s/2,                     y_2 = y + a s/2
-//   sigma_j = l_d |cos(beta_j)|,         h_j = l_u cos(alpha_j) = half the slider spacing
-//   lower branch: z_cj = z + d + sigma_j; upper branch: z_cj = z + d - sigma_j
 #pragma once
 
 #include <array>
@@ -26,21 +16,30 @@
 
 namespace pkm::four_ppa_two_par {
 
+template <class S>
+using Pose = SchoenfliesPose<S>;
+
 /// Order of the parameters.
 enum ParameterIndex { kA, kB, kLu, kLd, kD, kL0, kRu, kRd, kDu, kDd, kD0, kRp, kRs, kParameters };
 
 /// Order of the pose-level limits.
 enum LimitIndex { kAlphaMin, kBetaMin, kBetaMax, kHMin, kSinParMin, kCosThetaMin, kClearanceMin, kLimits };
 
-/// Lengths [m], names as in the paper.
+/// Lengths [m], names as in the paper; kAll has them in the order of the parameters.
 template <class S>
 struct Geometry {
   S a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s;
+
+  using G = Geometry;
+  static constexpr std::array<S G::*, kParameters> kAll = {&G::a,   &G::b,   &G::l_u, &G::l_d, &G::d,   &G::L0, &G::R_u,
+                                                           &G::R_d, &G::d_u, &G::d_d, &G::d_0, &G::R_p, &G::R_s};
 };
 
 template <class S>
 Geometry<S> geometry(std::span<const S> p) {
-  return {p[kA], p[kB], p[kLu], p[kLd], p[kD], p[kL0], p[kRu], p[kRd], p[kDu], p[kDd], p[kD0], p[kRp], p[kRs]};
+  Geometry<S> g;
+  for (std::size_t i = 0; i < g.kAll.size(); ++i) g.*g.kAll[i] = p[i];
+  return g;
 }
 
 /// The plane y that surveys are on where their plan names no other [m].
@@ -60,7 +59,20 @@ struct Limits {
   S sin_half, cos_half;  ///< of phi/2
   S cos_theta_min;
   std::optional<double> clearance_min;  ///< [m]; none: no capsule is looked at
+
+  using L = Limits;
+  static constexpr std::array<S L::*, 11> kAll = {
+      &L::sin_alpha_min, &L::cos_alpha_min, &L::sin_beta_min, &L::cos_beta_min, &L::sin_beta_max, &L::cos_beta_max,
+      &L::h_min,         &L::sin_par_min,   &L::sin_half,     &L::cos_half,     &L::cos_theta_min};
 };
+
+/// A Geometry or Limits for another scalar, in which they do not move with the design.
+template <class To, template <class> class Values, class From>
+Values<To> constant(const Values<From>& from) {
+  Values<To> to{};
+  for (std::size_t i = 0; i < to.kAll.size(); ++i) to.*to.kAll[i] = To(value_of(from.*from.kAll[i]));
+  return to;
+}
 
 /// Thresholds given by the study, or derived from the bars' and sliders' sizes (eqs 17 and 19).
 template <class S>
@@ -96,34 +108,47 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
 /// Branch of a limb: lower when the platform hangs below C_j.
 enum class Branch { lower, upper };
 using WorkingMode = std::array<Branch, 2>;
+inline constexpr WorkingMode kLowerMode = {Branch::lower, Branch::lower};
 
 /// Position of the limbs at a pose. Exists (`assembles`) where x_j is in [0, l_d] and |z_cj| <= l_u. The paper takes
 /// z_cj <= 0, C_j below its rail, but lists q for both (table 2), since q depends on z_cj^2 only.
 template <class S>
 struct Limbs {
-  std::array<S, 2> x, y, sigma, z_c, h;    ///< [m]
-  std::array<S, 4> q;                      ///< slider positions [m], eq 13
-  std::array<double, 2> reach_x, reach_z;  ///< margins [m], >= 0 where the limb assembles
+  std::array<S, 2> x, y, sigma, z_c, h;  ///< [m]
+  std::array<S, 4> q;                    ///< slider positions [m], eq 13
   bool assembles = false;
 };
 
+/// x_j at a pose's x.
+template <class S>
+[[gnu::always_inline]] inline S limb_x(const Geometry<S>& g, const S& x, const S& cos_theta, std::size_t j) {
+  const S half = g.a * cos_theta * 0.5;
+  return j == 0 ? S(x - half) : S(g.b - x - half);
+}
+
+/// Puts limb j where it is at a pose; where it does not reach, roots are 0. S may be lanes.
+template <class S>
+[[gnu::always_inline]] inline void place_limb(const Geometry<S>& g, const S& x, const S& y, const S& z,
+                                              const SinCosOf<S>& theta, Branch branch, std::size_t j, Limbs<S>& limb) {
+  const S shift = g.a * theta.sin * 0.5;
+  limb.x[j] = limb_x(g, x, theta.cos, j);
+  limb.y[j] = j == 0 ? S(y - shift) : S(y + shift);
+  limb.sigma[j] = root_or_zero(S((g.l_d - limb.x[j]) * (g.l_d + limb.x[j])));
+  limb.z_c[j] = branch == Branch::lower ? S(z + g.d + limb.sigma[j]) : S(z + g.d - limb.sigma[j]);
+  limb.h[j] = root_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
+  limb.q[2 * j] = limb.y[j] - limb.h[j];
+  limb.q[2 * j + 1] = limb.y[j] + limb.h[j];
+}
+
 template <class S>
 Limbs<S> inverse(const Geometry<S>& g, const Pose<S>& pose, WorkingMode mode) {
-  const auto [s, c] = sincos(pose.angle);
   Limbs<S> limb;
-  limb.x = {pose.x - g.a * c * 0.5, g.b - pose.x - g.a * c * 0.5};
-  limb.y = {pose.y - g.a * s * 0.5, pose.y + g.a * s * 0.5};
   limb.assembles = true;
   for (std::size_t j = 0; j < 2; ++j) {
-    const S under = (g.l_d - limb.x[j]) * (g.l_d + limb.x[j]);
-    limb.sigma[j] = root_or_zero(under);
-    limb.z_c[j] = mode[j] == Branch::lower ? S(pose.z + g.d + limb.sigma[j]) : S(pose.z + g.d - limb.sigma[j]);
-    limb.h[j] = root_or_zero(S((g.l_u - limb.z_c[j]) * (g.l_u + limb.z_c[j])));
-    limb.reach_x[j] = std::fmin(value_of(limb.x[j]), value_of(g.l_d - limb.x[j]));
-    limb.reach_z[j] = value_of(g.l_u) - std::fabs(value_of(limb.z_c[j]));
-    limb.assembles = limb.assembles && limb.reach_x[j] >= 0 && limb.reach_z[j] >= 0;
+    place_limb(g, pose.x, pose.y, pose.z, sincos(pose.angle), mode[j], j, limb);
+    limb.assembles = limb.assembles && value_of(limb.x[j]) >= 0 && value_of(limb.x[j]) <= value_of(g.l_d) &&
+                     std::fabs(value_of(limb.z_c[j])) <= value_of(g.l_u);
   }
-  limb.q = {limb.y[0] - limb.h[0], limb.y[0] + limb.h[0], limb.y[1] - limb.h[1], limb.y[1] + limb.h[1]};
   return limb;
 }
 
@@ -161,7 +186,7 @@ Velocity<S> velocity(const Geometry<S>& g, const Pose<S>& pose, const Limbs<S>& 
 
 /// Every assembly mode (eq 12): theta in [-pi/2, pi/2] and pi - theta, each C_j below or above its rail, both circle
 /// intersections. Up to 16; those with both C_j below the rails come first.
-std::vector<AssemblyMode> forward(const Geometry<double>& g, const std::array<double, 4>& q);
+std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& q);
 
 /// Shape of the x-z section at given theta, 1 to 5 (figure 6): 1 empty, 2 one piece, 3 notched, 4 upper and lower part
 /// separate with beta = pi/2 inside, 5 separate without.

@@ -1,29 +1,20 @@
 #include "engine/mechanisms/four_ppa_two_par/pieces.hpp"
 
+#include "engine/math/intervals.hpp"
+
 namespace pkm::four_ppa_two_par {
 namespace {
 
-/// Zero of one gap between two theta at which it has different signs: false position, Illinois variant.
+/// Zero of one gap between two theta at which it has different signs, to the last bits.
+/// Not bracketed_root(): it stops elsewhere by some last bits, which studies would be resumed with.
 double zero_of_gap(const Frame<double>& f, std::size_t index, double low, double at_low, double high, double at_high) {
-  int side = 0;
-  for (int step = 0; step < 60 && high - low > 1e-15 * (1 + high); ++step) {
-    double middle = high - at_high * (high - low) / (at_high - at_low);
-    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
-    const double value = gap(f, index, middle);
-    if (std::fabs(value) < 1e-16) return middle;
-    if ((value > 0) == (at_low > 0)) {
-      low = middle;
-      at_low = value;
-      if (side == -1) at_high *= 0.5;
-      side = -1;
-    } else {
-      high = middle;
-      at_high = value;
-      if (side == 1) at_low *= 0.5;
-      side = 1;
-    }
+  Bracket bracket{.a = low, .at_a = -at_low, .b = high, .at_b = -at_high};  // a gap of 0 counts as negative
+  for (int step = 0; step < 60 && bracket.width() > 1e-15 * (1 + bracket.b); ++step) {
+    const double theta = bracket.guess(), value = gap(f, index, theta);
+    if (std::fabs(value) < 1e-16) return theta;
+    bracket.take(theta, -value);
   }
-  return high;
+  return bracket.b;
 }
 
 }  // namespace
@@ -31,14 +22,15 @@ double zero_of_gap(const Frame<double>& f, std::size_t index, double low, double
 Signature signature(const Frame<double>& f, double theta) {
   const auto [s, c] = sincos(theta);
   const Section<double> t = section(f, s, c);
-  Signature result;
-  if (t.empty || !(t.depth[0] > 0)) return result;
+  if (t.empty || !(t.depth[0] > 0)) return {};
   const auto [H1, H2] = strokes(f, f.y, s);
-  const bool far_end = f.y + f.g.a * s * 0.5 > f.g.L0 * 0.5;
-  result.formula = 16 * static_cast<int>(t.end) + 8 * (t.delta_low > 0) + 4 * (H1 < f.stroke_free) +
-                   2 * (H2 < f.stroke_free) + (H2 < f.stroke_free && far_end);
-  result.gap = gaps(t);
-  return result;
+  const bool cuts_2 = H2<f.stroke_free, far_end = f.y + f.g.a * s * 0.5> f.g.L0 * 0.5;
+  return {.formula = Formula{.end = t.end,
+                             .low = t.delta_low > 0,
+                             .cuts_1 = H1 < f.stroke_free,
+                             .cuts_2 = cuts_2,
+                             .cuts_2_at_far_end = cuts_2 && far_end},
+          .gap = gaps(t)};
 }
 
 bool stroke_cuts(const Frame<double>& f, double theta) {

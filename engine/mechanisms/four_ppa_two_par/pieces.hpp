@@ -8,20 +8,14 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <type_traits>
 
 #include "engine/math/dual.hpp"
+#include "engine/math/pieces.hpp"
 #include "engine/mechanisms/four_ppa_two_par/section.hpp"
 
 namespace pkm::four_ppa_two_par {
-
-/// A break: where, and on which sides the area behaves like a square root.
-template <class S>
-struct Break {
-  S theta;
-  bool root_below = false;
-  bool root_above = false;
-};
 
 /// Continuous functions of theta whose signs are part of the area's formula: where the depths lie beside the ends of
 /// delta. Delta_1 <= Delta_2 here, because y <= L0/2 and theta >= 0.
@@ -39,13 +33,21 @@ S gap(const Frame<S>& f, std::size_t index, const S& theta) {
 }
 
 /// Everything that tells one formula of the area from another at one theta.
+struct Formula {
+  EndKind end;
+  bool low;                ///< delta_low > 0
+  bool cuts_1, cuts_2;     ///< the stroke cuts the limb's depth
+  bool cuts_2_at_far_end;  ///< and it is that to the rail's far end
+  bool operator==(const Formula&) const = default;
+};
 struct Signature {
-  int formula = -1;  ///< -1: empty
+  std::optional<Formula> formula;  ///< none: empty
   std::array<double, kGaps> gap{};
+
+  explicit operator bool() const { return formula.has_value(); }
   bool operator==(const Signature& other) const {
     if (formula != other.formula) return false;
-    if (formula < 0) return true;
-    for (std::size_t i = 0; i < kGaps; ++i)
+    for (std::size_t i = 0; formula && i < kGaps; ++i)
       if ((gap[i] > 0) != (other.gap[i] > 0)) return false;
     return true;
   }
@@ -66,23 +68,10 @@ struct Crossing {
 Crossing find_crossing(const Frame<double>& f, double low, const Signature& at_low, double high,
                        const Signature& at_high);
 
-/// A frame that does not move with the design, for another scalar.
+/// The frame of the same section for another scalar, which does not move with the design.
 template <class To, class From>
 Frame<To> constant_frame(const Frame<From>& f) {
-  const auto& g = f.g;
-  const auto& l = f.l;
-  const auto v = [](const From& x) { return To(value_of(x)); };
-  return {{v(g.a), v(g.b), v(g.l_u), v(g.l_d), v(g.d), v(g.L0), v(g.R_u), v(g.R_d), v(g.d_u), v(g.d_d), v(g.d_0),
-           v(g.R_p), v(g.R_s)},
-          {v(l.sin_alpha_min), v(l.cos_alpha_min), v(l.sin_beta_min), v(l.cos_beta_min), v(l.sin_beta_max),
-           v(l.cos_beta_max), v(l.h_min), v(l.sin_par_min), v(l.sin_half), v(l.cos_half), v(l.cos_theta_min)},
-          v(f.x_min),
-          v(f.x_max),
-          v(f.z_low),
-          v(f.z_high),
-          v(f.stroke_free),
-          v(f.y),
-          f.empty};
+  return frame(constant<To>(f.g), constant<To>(f.l), To(value_of(f.y)));
 }
 
 /// The theta of a crossing with its derivatives: gap(p, theta(p)) = 0 gives theta' = -(d gap/d p) / (d gap/d theta).
@@ -114,7 +103,7 @@ void closed_form_breaks(const Frame<S>& f, std::vector<Break<S>>& breaks) {
   // ends of the range of w
   at_w(f.x_min * 2.0, false, false);
   at_w(f.x_max * 2.0, true, false);
-  at_w(g.l_d * 2.0 * l.cos_half, true, false);
+  at_w(f.chord_max, true, false);
   // beta_max hands over to beta_min: a root where sigma of the limb that leans more gets to 0
   at_w(f.x_max + f.x_min, value_of(l.cos_beta_max) < 0.1, false);
   const bool parallel = value_of(l.sin_par_min) > 0;
@@ -124,7 +113,7 @@ void closed_form_breaks(const Frame<S>& f, std::vector<Break<S>>& breaks) {
     at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max + cos_phi * l.sin_beta_max), false, false);
     at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min + cos_phi * l.sin_beta_min), false, false);
     // beta_1 + beta_2 = phi begins to cut at x = b/2, and meets a limit
-    at_w(g.l_d * 2.0 * l.sin_half, true, false);
+    at_w(f.chord_min, true, false);
     at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min - cos_phi * l.sin_beta_min), false, false);
     at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max - cos_phi * l.sin_beta_max), false, false);
   }
@@ -137,9 +126,9 @@ void closed_form_breaks(const Frame<S>& f, std::vector<Break<S>>& breaks) {
     at_w(f.x_max - x, false, false);
   }
   if (value_of(other) > 0) at_w(f.x_min + root(S((g.l_d - other) * (g.l_d + other))), false, false);
-  const S upper = (g.l_d * 2.0 * l.cos_half - depth) * (g.l_d * 2.0 * l.cos_half + depth);
+  const S upper = (f.chord_max - depth) * (f.chord_max + depth);
   if (value_of(upper) > 0) at_w(root(upper), false, false);
-  const S lower = (g.l_d * 2.0 * l.sin_half - depth) * (g.l_d * 2.0 * l.sin_half + depth);
+  const S lower = (f.chord_min - depth) * (f.chord_min + depth);
   if (parallel && value_of(lower) > 0) at_w(root(lower), false, false);
   // the stroke begins to cut (a root on the side where it does), and empties a limb
   at_shift(f.y - f.stroke_free, false, true);
@@ -190,45 +179,19 @@ void find_pieces(const Frame<S>& f, std::vector<Break<S>>& breaks, std::vector<P
   breaks.push_back({S(0.0)});
   closed_form_breaks(f, breaks);
   const S last = acos(f.l.cos_theta_min);
-  std::erase_if(breaks, [&](const Break<S>& b) { return !(value_of(b.theta) < value_of(last)); });
+  std::erase_if(breaks, [&](const Break<S>& b) { return !(value_of(b.at) < value_of(last)); });
   breaks.push_back({last});
-  const auto by_theta = [](const Break<S>& a, const Break<S>& b) { return value_of(a.theta) < value_of(b.theta); };
+  const auto in_order = [](const Break<S>& a, const Break<S>& b) { return value_of(a.at) < value_of(b.at); };
   for (auto next = breaks.begin(); next != breaks.end(); ++next)  // std::stable_sort allocates
-    std::rotate(std::upper_bound(breaks.begin(), next, *next, by_theta), next, next + 1);
+    std::rotate(std::upper_bound(breaks.begin(), next, *next, in_order), next, next + 1);
 
-  constexpr double kNear = 1e-13;  // rad; breaks nearer than this are one
-  Signature before;                // of the piece before
-  Break<S> from = breaks.front();
-  for (std::size_t i = 1; i < breaks.size(); ++i) {
-    const Break<S>& to = breaks[i];
-    const double low = value_of(from.theta), high = value_of(to.theta);
-    if (high - low < kNear) {
-      from.root_above = from.root_above || to.root_above;
-      if (!pieces.empty() && value_of(pieces.back().upper) == low)
-        pieces.back().root_upper = pieces.back().root_upper || to.root_below;
-      continue;
-    }
-    const auto add = [&](const Break<S>& start, const Break<S>& stop, const Signature& now) {
-      const bool joins = !pieces.empty() && before == now && !start.root_above && !start.root_below &&
-                         value_of(pieces.back().upper) == value_of(start.theta);
-      if (now.formula >= 0 && joins) {
-        pieces.back().upper = stop.theta;
-        pieces.back().root_upper = stop.root_below;
-      } else if (now.formula >= 0) {
-        pieces.push_back({start.theta, stop.theta, start.root_above, stop.root_below});
-      }
-      before = now;
-    };
-    Signature now = signature(plain, 0.5 * (low + high));
-    if (now.formula >= 0 && stroke_cuts(plain, 0.5 * (low + high))) {
-      now = split_at_crossings(f, plain, low, high, now, [&](const Break<S>& crossing, const Signature& below) {
-        add(from, crossing, below);
-        from = crossing;
-      });
-    }
-    add(from, to, now);
-    from = to;
-  }
+  constexpr double kNear = 1e-13;  // rad
+  const auto changes = [&](double low, double high, const auto& split) {
+    const Signature middle = signature(plain, 0.5 * (low + high));
+    if (!middle || !stroke_cuts(plain, 0.5 * (low + high))) return middle;
+    return split_at_crossings(f, plain, low, high, middle, split);
+  };
+  pkm::find_pieces<Signature>(breaks, kNear, false, changes, pieces);
 }
 
 }  // namespace pkm::four_ppa_two_par

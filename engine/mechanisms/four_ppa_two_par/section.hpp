@@ -20,35 +20,23 @@
 #pragma once
 
 #include "engine/math/quadrature.hpp"
-#include "engine/mechanisms/four_ppa_two_par/model.hpp"
+#include "engine/mechanisms/four_ppa_two_par/margins.hpp"
 
 namespace pkm::four_ppa_two_par {
 
 /// What sections of one design have in common.
 template <class S>
-struct Frame {
+struct Frame : Ranges<S> {
   Geometry<S> g;
   Limits<S> l;
-  S x_min, x_max;   ///< l_d sin(beta_min), l_d sin(beta_max) [m]
-  S z_low, z_high;  ///< bounds of -z_c without the stroke: sqrt(l_u^2 - h_min^2), l_u sin(alpha_min) [m]
-  S stroke_free;    ///< l_u cos(alpha_min) [m]: a longer H_j does not cut
-  S y;              ///< the plane, mirrored to y <= L0/2 [m]
-  bool empty;       ///< no pose can be feasible
+  S y;         ///< the plane, mirrored to y <= L0/2 [m]
+  bool empty;  ///< no pose can be feasible
 };
 
 /// @param y  plane [m]; the workspace at L0 - y is the same (mirror y, theta -> -theta)
 template <class S>
 Frame<S> frame(const Geometry<S>& g, const Limits<S>& l, const S& y) {
-  Frame<S> f{g,
-             l,
-             g.l_d * l.sin_beta_min,
-             g.l_d * l.sin_beta_max,
-             S(0.0),
-             g.l_u * l.sin_alpha_min,
-             g.l_u * l.cos_alpha_min,
-             min(y, S(g.L0 - y)),
-             false};
-  f.z_low = root_or_zero(S((g.l_u - l.h_min) * (g.l_u + l.h_min)));
+  Frame<S> f{ranges(g, l), g, l, min(y, S(g.L0 - y)), false};
   f.empty = !(value_of(f.z_low) > value_of(f.z_high)) || !(value_of(f.x_max) > value_of(f.x_min)) ||
             !(value_of(f.y) > value_of(l.h_min)) || value_of(l.sin_alpha_min) > 1 || value_of(l.sin_beta_min) > 1;
   return f;
@@ -77,9 +65,8 @@ Section<S> section_range(const Frame<S>& f, const S& sin_theta, const S& cos_the
   t.w = g.b - g.a * cos_theta;
   t.depth = {S(0.0), S(0.0)};
   t.delta_low = S(0.0);
-  const S most = g.l_d * 2.0 * f.l.cos_half;
   if (!(value_of(t.w) > 2 * value_of(f.x_min) && value_of(t.w) < 2 * value_of(f.x_max) &&
-        value_of(t.w) < value_of(most)))
+        value_of(t.w) < value_of(f.chord_max)))
     return t;
   // upper end of delta: beta_max of the limb that leans more, beta_min of the other, or sin_par
   const S x_lean = t.w - f.x_min;
@@ -92,13 +79,12 @@ Section<S> section_range(const Frame<S>& f, const S& sin_theta, const S& cos_the
     t.delta_end = t.w * (t.w - f.x_min * 2.0) / sum;
     t.end = EndKind::beta_min;
   }
-  const S parallel = root_or_zero(S((most - t.w) * (most + t.w)));
+  const S parallel = root_or_zero(S((f.chord_max - t.w) * (f.chord_max + t.w)));
   if (value_of(parallel) < value_of(t.delta_end)) {
     t.delta_end = parallel;
     t.end = EndKind::parallel;
   }
-  const S least = g.l_d * 2.0 * f.l.sin_half;
-  if (value_of(t.w) < value_of(least)) t.delta_low = sqrt(S((least - t.w) * (least + t.w)));
+  if (value_of(t.w) < value_of(f.chord_min)) t.delta_low = sqrt(S((f.chord_min - t.w) * (f.chord_min + t.w)));
   t.empty = !(value_of(t.delta_end) > value_of(t.delta_low));
   return t;
 }

@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include <Eigen/LU>
-
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "engine/survey/share_samples.hpp"
@@ -21,13 +19,19 @@ S gamma(const Geometry<S>& g, const Demand& demand) {
   return demand.characteristic_length ? S(g.a / (2 * *demand.characteristic_length)) : S(1.0);  // default L_c = a/2
 }
 
+constexpr int kY = 1;  ///< the coordinate that surveys hold
+
 /// The only mode whose poses are surveyed.
 constexpr const char* kSurveyedMode = "lower,lower";
 
 template <class S>
 SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
-  SampleContents<S> c{
-      demand.conditioning, demand.poses, demand.dci, demand.inertia_condition, gamma(geometry(parameters), demand), {}};
+  SampleContents<S> c{.conditioning = demand.conditioning,
+                      .poses = demand.poses,
+                      .dci = demand.dci,
+                      .inertia_condition = demand.inertia_condition,
+                      .gamma = gamma(geometry(parameters), demand),
+                      .masses = {}};
   if (c.inertia()) c.masses = masses(parameters);
   return c;
 }
@@ -35,21 +39,24 @@ SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) 
 bool needs_inertia(const Demand& demand) { return demand.dci || demand.inertia_condition; }
 bool needs_samples(const Demand& demand) { return demand.conditioning || demand.poses || needs_inertia(demand); }
 
-class ColumnSurveyor final : public Surveyor {
+class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
  public:
-  ColumnSurveyor(const SurveyPlan& plan, const Demand& demand)
-      : plan_(plan),
+  ColumnSurveyor(const SurveyPlan& plan, const ColumnOptions& columns, const Demand& demand)
+      : limits_(plan.limits),
+        held_(how_held(plan, kY)),
+        columns_(columns),
         demand_(demand),
-        inner_rule_(gauss_legendre(plan.nodes[0] > 0 ? plan.nodes[0] : kSampleNodes)),
-        theta_rule_(gauss_legendre(plan.nodes[1] > 0 ? plan.nodes[1] : kSampleNodes)) {}
+        inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
+        theta_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {}
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override {
-    if (plan_.limits.given[kClearanceMin]) throw std::logic_error(no_derivatives());
-    run(parameters, survey);
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<double>>(), survey);
   }
-  std::string no_derivatives() const override {
-    if (!plan_.limits.given[kClearanceMin]) return {};
+  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<Dual4>>(), survey);
+  }
+  const SlopeSurveyor* slopes() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
+  std::string why_no_slopes() const override {
     return "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
            "such surveys have no derivatives; take an optimiser without gradients, or keep the sliders apart by h_min";
   }
@@ -58,17 +65,16 @@ class ColumnSurveyor final : public Surveyor {
   static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
-  void run(std::span<const S> parameters, Survey<S>& survey) const {
-    thread_local ColumnScratch<S> scratch;
+  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
     survey.clear();
     const Geometry<S> g = geometry(parameters);
-    Limits<S> l = limits(g, plan_.limits);
+    Limits<S> l = limits(g, limits_);
     std::optional<ClearanceTest> clearance;
     if constexpr (std::is_same_v<S, double>) clearance = take_clearance(g, l);
     const ClearanceTest* const test = clearance ? &*clearance : nullptr;
-    const S y = plane(g, plan_.held);
+    const S y = plane(g, held_);
     const Frame<S> f = frame(g, l, y);
-    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
+    const bool over_y = held_.kind == HeldCoordinate::Kind::integrated;
     const Integral<S> volume = volume_of(f, test, over_y, scratch);
     survey.volume = volume.value;
     survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
@@ -96,12 +102,12 @@ class ColumnSurveyor final : public Surveyor {
   Integral<S> volume_of(const Frame<S>& f, const ClearanceTest* test, bool over_y, ColumnScratch<S>& scratch) const {
     if constexpr (std::is_same_v<S, double>) {
       if (test)
-        return plan_.nodes[1] > 0 ? clear_volume_by_rule(f, *test, theta_rule_, inner_rule_, scratch)
-                                  : clear_volume(f, *test, over_y, plan_.tolerance, scratch);
+        return columns_.nodes[1] > 0 ? clear_volume_by_rule(f, *test, theta_rule_, inner_rule_, scratch)
+                                     : clear_volume(f, *test, over_y, columns_.tolerance, scratch);
     }
-    return over_y               ? volume_over_y(f.g, f.l, plan_.tolerance, scratch)
-           : plan_.nodes[1] > 0 ? fixed_rule(f, scratch)
-                                : plane_volume(f, plan_.tolerance, scratch);
+    return over_y                  ? volume_over_y(f.g, f.l, columns_.tolerance, scratch)
+           : columns_.nodes[1] > 0 ? fixed_rule(f, scratch)
+                                   : plane_volume(f, columns_.tolerance, scratch);
   }
 
   /// The volume by the study's own number of theta nodes per piece; no error is estimated.
@@ -119,47 +125,36 @@ class ColumnSurveyor final : public Surveyor {
     return result;
   }
 
-  SurveyPlan plan_;
+  LimitSpec limits_;
+  HeldCoordinate held_;
+  ColumnOptions columns_;
   Demand demand_;
   GaussRule inner_rule_, theta_rule_;
 };
 
 class VoxelSurveyor final : public Surveyor {
  public:
-  VoxelSurveyor(const SurveyPlan& plan, const Demand& demand)
-      : plan_(plan), demand_(demand), counter_(plan.cells, plan.box ? (*plan.box)[2] : kTheta) {}
+  VoxelSurveyor(const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
+      : limits_(plan.limits),
+        held_(how_held(plan, kY)),
+        voxels_(voxels),
+        demand_(demand),
+        counter_(voxels.cells, voxels.box ? (*voxels.box)[2] : kTheta) {}
 
-  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
-    survey.clear();
-    const Geometry<double> g = geometry(parameters);
-    Limits<double> l = limits(g, plan_.limits);
-    const auto clearance = take_clearance(g, l);
-    const ClearanceTest* const test = clearance ? &*clearance : nullptr;
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
-    const bool over_y = plan_.held.kind == HeldCoordinate::Kind::integrated;
-    const SampleContents<double> wanted = contents(parameters, demand_);
-    const std::int64_t planes = over_y ? plan_.held_cells : 1;
-    const double y_step = over_y ? g.L0 / static_cast<double>(planes) : 1;
-    survey.cells = grid.count() * planes;
-    survey.cell_volume = grid.cell_volume() * y_step;
-    for (std::int64_t p = 0; p < planes; ++p) {
-      const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, plan_.held);
-      bool touches = false;
-      survey.feasible_cells += counter_.count(g, l, test, y, grid, touches);
-      survey.touches_box = survey.touches_box || touches;
-      if (needs_samples(demand_)) sample(g, l, wanted, test, y, grid, survey);
-    }
-    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<VoxelScratch>(), survey);
   }
 
   VoxelMap map(const Geometry<double>& g) const {
-    Limits<double> l = limits(g, plan_.limits);
+    Limits<double> l = limits(g, limits_);
     const auto clearance = take_clearance(g, l);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(g));
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
     VoxelMap m = grid.map();
-    counter_.visit_columns(g, l, clearance ? &*clearance : nullptr, plane(g, plan_.held), grid,
+    ColumnBlock columns;
+    const double y = plane(g, held_);
+    counter_.visit_columns({.g = g, .l = l, .test = clearance ? &*clearance : nullptr, .y = y, .grid = grid}, columns,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              for (std::int64_t j = first; j < end; ++j)
                                m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
@@ -170,14 +165,40 @@ class VoxelSurveyor final : public Surveyor {
  private:
   static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
 
-  void sample(const Geometry<double>& g, const Limits<double>& l, const SampleContents<double>& wanted,
-              const ClearanceTest* test, double y, const VoxelGrid& grid, Survey<double>& survey) const {
+  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
+    survey.clear();
+    const Geometry<double> g = geometry(parameters);
+    Limits<double> l = limits(g, limits_);
+    const auto clearance = take_clearance(g, l);
+    const ClearanceTest* const test = clearance ? &*clearance : nullptr;
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
+    const bool over_y = held_.kind == HeldCoordinate::Kind::integrated;
+    const SampleContents<double> wanted = contents(parameters, demand_);
+    const std::int64_t planes = over_y ? held_.cells : 1;
+    const double y_step = over_y ? g.L0 / static_cast<double>(planes) : 1;
+    survey.cells = grid.count() * planes;
+    survey.cell_volume = grid.cell_volume() * y_step;
+    for (std::int64_t p = 0; p < planes; ++p) {
+      const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, held_);
+      const VoxelPlane at{.g = g, .l = l, .test = test, .y = y, .grid = grid};
+      bool touches = false;
+      survey.feasible_cells += counter_.count(at, scratch, touches);
+      survey.touches_box = survey.touches_box || touches;
+      if (needs_samples(demand_)) sample(at, wanted, scratch, survey);
+    }
+    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+  }
+
+  void sample(const VoxelPlane& at, const SampleContents<double>& wanted, VoxelScratch& scratch,
+              Survey<double>& survey) const {
+    const Geometry<double>& g = at.g;
+    const VoxelGrid& grid = at.grid;
     // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
-    const bool together = !wanted.inertia() && !wanted.poses && !test;
-    const Halves halves = together ? counter_.halves(g, y, grid) : Halves{grid.cells[0], grid.cells[2], false, false};
-    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t) {
-      thread_local ColumnConditioning<double> poses;
-      counter_.visit_block(g, l, test, y, grid, block, halves,
+    const bool together = !wanted.inertia() && !wanted.poses && !at.test;
+    const Halves halves = together ? counter_.halves(at) : counter_.whole();
+    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t worker) {
+      ColumnConditioning<double>& poses = scratch.workers[worker].poses;
+      counter_.visit_block(at, block, halves, scratch.workers[worker].columns,
                            [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
                              const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
                              const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
@@ -191,128 +212,59 @@ class VoxelSurveyor final : public Surveyor {
                              if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
                              const double weight = survey.cell_volume * halves.images(i, k);
                              for (std::int64_t j = first; j < end; ++j) {
-                               const auto at = static_cast<std::size_t>(j - first);
+                               const auto n = static_cast<std::size_t>(j - first);
                                Coupling<double> inertia{};
                                if (wanted.inertia())
                                  inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma,
-                                                                  {poses.z_c[0][at], poses.z_c[1][at]}),
+                                                                  {poses.z_c[0][n], poses.z_c[1][n]}),
                                                     wanted.inertia_condition);
-                               add_sample(wanted, weight, {x, y, grid.centre(1, j), grid.centre(2, k)},
-                                          wanted.conditioning ? poses.index[at] : 0, inertia, part);
+                               add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
+                                          wanted.conditioning ? poses.index[n] : 0, inertia, part);
                              }
                            });
     });
   }
 
-  SurveyPlan plan_;
+  LimitSpec limits_;
+  HeldCoordinate held_;
+  VoxelOptions voxels_;
   Demand demand_;
   VoxelCounter counter_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_surveyor(const SurveyPlan& plan, const Demand& demand) {
+namespace {
+
+void refuse_mode(const Demand& demand) {
   if (needs_inertia(demand) && !demand.mode.empty() && demand.mode != kSurveyedMode)
     throw std::invalid_argument("workspaces of mechanism 4ppa-2par are of the working mode " +
                                 std::string(kSurveyedMode) + ", so inertia is not surveyed in the mode " + demand.mode);
-  const bool over_y = plan.held.kind == HeldCoordinate::Kind::integrated;
-  if (plan.method == Method::columns && over_y && plan.nodes[0] > 0)
-    throw std::invalid_argument(
-        "nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance instead");
-  if (plan.method == Method::columns) return std::make_unique<ColumnSurveyor>(plan, demand);
-  if (over_y && plan.held_cells < 1)
-    throw std::invalid_argument("voxels integrated over y need a number of cells for y");
-  return std::make_unique<VoxelSurveyor>(plan, demand);
 }
 
-VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan) { return VoxelSurveyor(plan, {}).map(g); }
+bool is_over_y(const SurveyPlan& plan) { return how_held(plan, kY).kind == HeldCoordinate::Kind::integrated; }
 
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
-  PoseReport report;
-  const Limbs<double> limb = inverse(g, pose, mode);
-  report.assembles = limb.assembles;
-  const double c = sincos(pose.angle).cos;
-  report.angles.emplace_back("section_type", section_type(g, c));
-  if (!limb.assembles) {
-    for (std::size_t j = 0; j < 2 && report.reason.empty(); ++j) {
-      const std::string name = j == 0 ? "limb 1" : "limb 2";
-      if (limb.x[j] < 0)
-        report.reason =
-            name + ": x_" + std::to_string(j + 1) + " < 0, the platform is beyond the rail's vertical plane";
-      else if (limb.reach_x[j] < 0)
-        report.reason = name + ": out of reach of the lower bars (x_" + std::to_string(j + 1) + " > l_d)";
-      else if (limb.reach_z[j] < 0)
-        report.reason = name + ": out of reach of the upper bars (|z_c| > l_u)";
-    }
-    for (std::size_t j = 0; j < 2; ++j) {
-      report.margins.emplace_back("reach_x_" + std::to_string(j + 1), limb.reach_x[j]);
-      report.margins.emplace_back("reach_z_" + std::to_string(j + 1), limb.reach_z[j]);
-    }
-    return report;
-  }
-  report.joints = limb.q;
-  const Velocity<double> v = velocity(g, pose, limb, mode);
-  report.G = v.G;
-  report.det_G = v.G.determinant();
-  std::array<double, 2> alpha, beta, folded;
-  for (std::size_t j = 0; j < 2; ++j) {
-    alpha[j] = atan2(-limb.z_c[j], limb.h[j]);
-    folded[j] = atan2(limb.x[j], limb.sigma[j]);  // from the nearer vertical
-    beta[j] = mode[j] == Branch::lower ? folded[j] : kPi - folded[j];
-  }
-  if (v.finite) {
-    report.Jq = v.Jq;
-    report.det_Jq = v.k[0] * v.k[1] / 4;
-    if (*report.det_Jq != 0) {
-      const Eigen::Matrix4d J = v.Jq.inverse() * v.G;
-      report.J = J;
-      double columns[4][4];
-      for (int col = 0; col < 4; ++col)
-        for (int row = 0; row < 4; ++row) columns[col][row] = J(row, col) * (col == 3 ? 2 / g.a : 1);  // L_c = a/2
-      report.conditioning = inverse_condition(columns);
-    } else {
-      report.conditioning = 0;
-    }
-  } else {
-    report.conditioning = 0;
-  }
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha[j]);
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("beta_" + std::to_string(j + 1), beta[j]);
-  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
-  const Nearest<double> nearest = nearest_links(links(g, placement(pose, limb, mode)));
-  report.angles.emplace_back("clearance", nearest.clearance);
+}  // namespace
 
-  const auto least = [](const std::array<double, 2>& p) { return std::fmin(p[0], p[1]); };
-  double stroke = limb.q[0];
-  for (const double q : limb.q) stroke = std::fmin(stroke, std::fmin(q, g.L0 - q));
-  const double sin_1 = sincos(beta[0] + beta[1]).sin;
-  report.margins = {
-      {"reach_x_1", limb.reach_x[0]},
-      {"reach_x_2", limb.reach_x[1]},
-      {"reach_z_1", limb.reach_z[0]},
-      {"reach_z_2", limb.reach_z[1]},
-      {"below_rail_1", -limb.z_c[0]},
-      {"below_rail_2", -limb.z_c[1]},
-      {"stroke", stroke},
-      {"alpha_min", least(alpha) - asin(l.sin_alpha_min)},
-      {"beta_min", least(folded) - asin(l.sin_beta_min)},
-      {"beta_max", atan2(l.sin_beta_max, l.cos_beta_max) - std::fmax(folded[0], folded[1])},
-      {"h_min", least(limb.h) - l.h_min},
-      {"sin_par_min", std::fabs(sin_1) - l.sin_par_min},
-      {"cos_theta_min", c - l.cos_theta_min},
-  };
-  if (l.clearance_min) report.margins.emplace_back("clearance_min", nearest.clearance - *l.clearance_min);
-  report.feasible = true;
-  for (const auto& [name, margin] : report.margins) {  // the most basic tests come first
-    if (report.feasible && !(margin >= 0)) {
-      report.reason = "limit " + name + " is broken";
-      if (name == "clearance_min")
-        report.reason += ": " + link_name(nearest.first) + " and " + link_name(nearest.second) +
-                         (nearest.clearance < 0 ? " overlap" : " are too near");
-    }
-    report.feasible = report.feasible && margin >= 0;
-  }
-  return report;
+std::unique_ptr<const Surveyor> make_column_surveyor(const SurveyPlan& plan, const ColumnOptions& columns,
+                                                     const Demand& demand) {
+  refuse_mode(demand);
+  if (is_over_y(plan) && columns.nodes[0] > 0)
+    throw std::invalid_argument(
+        "nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance instead");
+  return std::make_unique<ColumnSurveyor>(plan, columns, demand);
+}
+
+std::unique_ptr<const Surveyor> make_voxel_surveyor(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                    const Demand& demand) {
+  refuse_mode(demand);
+  if (is_over_y(plan) && how_held(plan, kY).cells < 1)
+    throw std::invalid_argument("voxels integrated over y need a number of cells for y");
+  return std::make_unique<VoxelSurveyor>(plan, voxels, demand);
+}
+
+VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan, const VoxelOptions& voxels) {
+  return VoxelSurveyor(plan, voxels, {}).map(g);
 }
 
 }  // namespace pkm::four_ppa_two_par

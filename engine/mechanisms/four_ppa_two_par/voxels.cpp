@@ -6,30 +6,6 @@
 
 namespace pkm::four_ppa_two_par {
 
-bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, double y, double z, double sin_theta,
-              double cos_theta) {
-  if (cos_theta < l.cos_theta_min) return false;
-  const double half = g.a * cos_theta / 2, shift = g.a * sin_theta / 2;
-  const double x_j[2] = {x - half, g.b - x - half}, y_j[2] = {y - shift, y + shift};
-  double sin_b[2], cos_b[2];
-  for (int j = 0; j < 2; ++j) {
-    if (x_j[j] < 0 || x_j[j] > g.l_d) return false;  // branch, eq 12
-    const double sigma = std::sqrt((g.l_d - x_j[j]) * (g.l_d + x_j[j]));
-    sin_b[j] = x_j[j] / g.l_d;
-    cos_b[j] = sigma / g.l_d;
-    if (x_j[j] < g.l_d * l.sin_beta_min || x_j[j] > g.l_d * l.sin_beta_max) return false;  // eqs 17, 20
-    const double z_c = z + g.d + sigma;
-    if (z_c < -g.l_u || z_c > 0) return false;         // branch, eq 12
-    if (-z_c < g.l_u * l.sin_alpha_min) return false;  // eq 17
-    const double h = std::sqrt((g.l_u - z_c) * (g.l_u + z_c));
-    if (h < l.h_min) return false;                          // eq 19
-    if (y_j[j] - h < 0 || y_j[j] + h > g.L0) return false;  // stroke
-  }
-  if (sin_b[0] * cos_b[1] + cos_b[0] * sin_b[1] < l.sin_par_min) return false;  // eq 15
-  if (!l.clearance_min) return true;
-  return nearest_links(links(g, lower_placement(g, x, z, sin_theta, cos_theta))).clearance >= *l.clearance_min;
-}
-
 Box default_box(const Geometry<double>& g) { return {{{0, g.b}, {-(g.l_u + g.l_d + g.d), -g.d}, {-kPi / 2, kPi / 2}}}; }
 
 VoxelCounter::VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::array<double, 2>& theta)
@@ -42,65 +18,67 @@ VoxelCounter::VoxelCounter(const std::array<std::int64_t, 3>& cells, const std::
   }
 }
 
-Halves VoxelCounter::halves(const Geometry<double>& g, double y, const VoxelGrid& grid) const {
-  const bool middle = y == g.L0 / 2, theta = middle && even_;
+Halves VoxelCounter::halves(const VoxelPlane& plane) const {
+  const Geometry<double>& g = plane.g;
+  const VoxelGrid& grid = plane.grid;
+  const bool middle = plane.y == g.L0 / 2, theta = middle && even_;
   const bool x = middle && grid.lower[0] == 0 && grid.upper[0] == g.b;
-  return {x ? (cells_[0] + 1) / 2 : cells_[0],
-          theta ? (cells_[2] + 1) / 2 : cells_[2],
-          x,
-          theta,
-          cells_[0] % 2 == 1,
-          cells_[2] % 2 == 1};
+  return {.xs = x ? (cells_[0] + 1) / 2 : cells_[0],
+          .thetas = theta ? (cells_[2] + 1) / 2 : cells_[2],
+          .mirrored_x = x,
+          .mirrored_theta = theta,
+          .centre_x = cells_[0] % 2 == 1,
+          .centre_theta = cells_[2] % 2 == 1};
 }
 
-ColumnsAtThetas VoxelCounter::columns(const Geometry<double>& g, const Limits<double>& l, double y,
-                                      const VoxelGrid& grid, std::int64_t k_block, const Halves& part) const {
+ColumnsAtThetas VoxelCounter::columns(const VoxelPlane& plane, std::int64_t k_block, const Halves& part) const {
+  const auto& [g, l, test, y, grid] = plane;
   const auto k = static_cast<std::size_t>(k_block);
-  return {g.a,
-          g.b,
-          g.l_u,
-          g.l_d,
-          g.d,
-          g.L0,
-          l.sin_alpha_min,
-          l.sin_beta_min,
-          l.sin_beta_max,
-          l.sin_par_min,
-          l.cos_theta_min,
-          l.h_min,
-          y,
-          grid.lower[0],
-          grid.step[0],
-          grid.lower[1],
-          grid.step[1],
-          static_cast<double>(grid.cells[1]),
-          &sin_[k],
-          &cos_[k],
-          part.thetas - k_block,
-          part.xs};
+  const Ranges<double> in = ranges(g, l);
+  return {.a = g.a,
+          .b = g.b,
+          .l_u = g.l_u,
+          .l_d = g.l_d,
+          .d = g.d,
+          .L0 = g.L0,
+          .sin_par_min = l.sin_par_min,
+          .cos_theta_min = l.cos_theta_min,
+          .x_min = in.x_min,
+          .x_max = in.x_max,
+          .z_low = in.z_low,
+          .z_high = in.z_high,
+          .y = y,
+          .x_lower = grid.lower[0],
+          .x_step = grid.step[0],
+          .z_lower = grid.lower[1],
+          .z_step = grid.step[1],
+          .z_cells = static_cast<double>(grid.cells[1]),
+          .sines = &sin_[k],
+          .cosines = &cos_[k],
+          .thetas = g.l_u >= l.h_min ? part.thetas - k_block : 0,
+          .columns = part.xs};
 }
 
-void VoxelCounter::fill_block(const Geometry<double>& g, const Limits<double>& l, double y, const VoxelGrid& grid,
-                              std::int64_t k_block, const Halves& part, ColumnBlock& block) const {
+void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, const Halves& part,
+                              ColumnBlock& block) const {
   block.first.resize(static_cast<std::size_t>(cells_[0] * kLanes));
   block.end.resize(static_cast<std::size_t>(cells_[0] * kLanes));
-  const ColumnsAtThetas at = columns(g, l, y, grid, k_block, part);
+  const ColumnsAtThetas at = columns(plane, k_block, part);
   with_instruction_set([&]<InstructionSet set>() { fill<set>(at, block); });
 }
 
-std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest* test,
-                                 double y, const VoxelGrid& grid, bool& touches) const {
-  if (test) return count_clear(g, l, *test, y, grid, touches);
+std::int64_t VoxelCounter::count(const VoxelPlane& plane, VoxelScratch& scratch, bool& touches) const {
+  scratch.workers.resize(std::max(scratch.workers.size(), workers()));
+  if (plane.test) return count_clear(plane, scratch.workers[0].columns, touches);
   constexpr std::int64_t kColumns = 64;  // of eight thetas: a microsecond's work, to be shared out
-  const Halves part = halves(g, y, grid);
-  thread_local std::vector<CellTally> tallies;
-  std::vector<CellTally>& found = tallies;                         // this thread's, also for the others of the team
+  const Halves part = halves(plane);
+  std::vector<CellTally>& found = scratch.tallies;
   const std::int64_t parts = (part.xs + kColumns - 1) / kColumns;  // of each block
   found.resize(blocks(part) * static_cast<std::size_t>(parts));
   const auto block_of = [&](std::size_t piece) { return static_cast<std::int64_t>(piece) / parts * kLanes; };
   share_pieces(found.size(), [&](std::size_t piece, std::size_t end) {
     for (; piece < end; ++piece) {
-      const ColumnsAtThetas at = columns(g, l, y, grid, block_of(piece), part);
+      const ColumnsAtThetas at = columns(plane, block_of(piece), part);
       const std::int64_t from = static_cast<std::int64_t>(piece) % parts * kColumns;
       found[piece] = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });
     }
@@ -122,11 +100,10 @@ std::int64_t VoxelCounter::count(const Geometry<double>& g, const Limits<double>
   return static_cast<std::int64_t>(total);
 }
 
-std::int64_t VoxelCounter::count_clear(const Geometry<double>& g, const Limits<double>& l, const ClearanceTest& test,
-                                       double y, const VoxelGrid& grid, bool& touches) const {
+std::int64_t VoxelCounter::count_clear(const VoxelPlane& plane, ColumnBlock& columns, bool& touches) const {
   std::int64_t total = 0;
   touches = false;
-  visit_columns(g, l, &test, y, grid, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+  visit_columns(plane, columns, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
     total += end - first;
     touches = touches || i == 0 || i == cells_[0] - 1 || first == 0 || end == cells_[1] || k == 0 || k == cells_[2] - 1;
   });

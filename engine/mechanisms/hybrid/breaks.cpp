@@ -11,7 +11,11 @@ Event closing(const Strip& strip) {
   const StripEnd &p = strip.from, &q = strip.to;
   const bool same = (p.first == q.first && p.second == q.second) || (p.first == q.second && p.second == q.first);
   const bool touch = p.kind == StripEnd::Kind::meeting && q.kind == p.kind && same;
-  return {touch ? Event::Kind::touch : Event::Kind::heights, p, q, p.first, p.second};
+  return {.kind = touch ? Event::Kind::touch : Event::Kind::heights,
+          .first = p,
+          .second = q,
+          .left = p.first,
+          .right = p.second};
 }
 
 /// The event between two sections that have different structures; false: nothing is seen to meet.
@@ -19,30 +23,26 @@ bool find_event(const Sample& lower, const Sample& upper, Event& event) {
   using Kind = StripEnd::Kind;
   const Section<double>&s = lower.section, &t = upper.section;
   const Structure &below = lower.structure, &above = upper.structure;
-  const auto end = [&](Kind kind, std::size_t index) {
-    const double z = kind == Kind::lower ? s.lower[index] : kind == Kind::upper ? s.upper[index] : s.hole_end;
-    return StripEnd{z, kind, static_cast<std::uint8_t>(index), {}, {}};
-  };
   const auto changes = [&](const Event& candidate) {
     return (distance(s, candidate) >= 0) != (distance(t, candidate) >= 0);
   };
-  const StripEnd low = end(Kind::lower, below.lower), high = end(Kind::upper, below.upper), hole = end(Kind::hole, 0);
+  const StripEnd low = end_of_z(s, Kind::lower, below.lower), high = end_of_z(s, Kind::upper, below.upper),
+                 hole = end_of_z(s, Kind::hole);
   const auto take = [&](const Event& candidate) {
     event = candidate;
     return true;
   };
-  if (below.lower != above.lower) return take({Event::Kind::heights, low, end(Kind::lower, above.lower), {}, {}});
-  if (below.upper != above.upper) return take({Event::Kind::heights, high, end(Kind::upper, above.upper), {}, {}});
+  if (below.lower != above.lower) return take({Event::Kind::heights, low, end_of_z(s, Kind::lower, above.lower)});
+  if (below.upper != above.upper) return take({Event::Kind::heights, high, end_of_z(s, Kind::upper, above.upper)});
   for (const StripEnd& other : {high, hole})
-    if (const Event closes{Event::Kind::heights, low, other, {}, {}}; changes(closes)) return take(closes);
-  if (const Event covers{Event::Kind::heights, hole, high, {}, {}}; hole.z > low.z && changes(covers))
-    return take(covers);
+    if (const Event closes{Event::Kind::heights, low, other}; changes(closes)) return take(closes);
+  if (const Event covers{Event::Kind::heights, hole, high}; hole.z > low.z && changes(covers)) return take(covers);
   for (const StripEnd& at : {low, high, hole}) {
     if (at.z < low.z || at.z > high.z) continue;
-    std::array<Edge, 2 * kCurves> edge;
-    std::array<double, 2 * kCurves> in_s, in_t;
+    std::array<Edge, kSides * kCurves> edge;
+    std::array<double, kSides * kCurves> in_s, in_t;
     for (std::size_t k = 0; k < edge.size(); ++k) {
-      edge[k] = {static_cast<std::uint8_t>(k / 2), static_cast<std::uint8_t>(k % 2)};
+      edge[k] = {static_cast<std::uint8_t>(k / kSides), static_cast<Side>(k % kSides)};
       in_s[k] = edge_at_end(s, edge[k], at);
       in_t[k] = edge_at_end(t, edge[k], at);
     }
@@ -51,7 +51,8 @@ bool find_event(const Sample& lower, const Sample& upper, Event& event) {
         if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
         const bool apart = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
         if (!apart)
-          return take({Event::Kind::edges, at, {}, edge[j], edge[i]});  // the chain's -x and x never meet but at a tip
+          // the chain's -x and x never meet but at a tip
+          return take({.kind = Event::Kind::edges, .first = at, .left = edge[j], .right = edge[i]});
       }
   }
   // the shortest strip that is not there on the other side, preferably one between two edges that no strip is between
@@ -95,9 +96,8 @@ struct Bent {
 Bent bent(const Section<Dual<1>>& s, const Edge& edge, double z) {
   const Curve<Dual<1>>& c = s.curve[edge.curve];
   const Dual<1> root = c.root(z), slope = c.slope(z, root);
-  const double sign = edge.side == 0 ? s.sign_lo[edge.curve] : s.sign_hi[edge.curve];
-  return {(edge.side == 0 ? s.lo : s.hi)[edge.curve] + root * sign, slope * sign,
-          sign * (value_of(c.curvature()) - slope.a * slope.a) / root.a};
+  const double sign = s.sign(edge);
+  return {s.constant(edge) + root * sign, slope * sign, sign * (value_of(c.curvature()) - slope.a * slope.a) / root.a};
 }
 
 /// A step of Newton's method for the height where two edges meet, with its derivative by beta.

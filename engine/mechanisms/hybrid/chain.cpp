@@ -5,24 +5,18 @@
 namespace pkm::hybrid {
 namespace {
 
-Geometry<Taylor> at_rest(const Geometry<double>& g) {
-  Geometry<Taylor> still{g.a, g.b1, g.b2, g.c, g.d, g.e, g.L1, g.L2, g.L3, g.f, g.fp, g.h1, g.h2, g.theta0, {}};
-  for (std::size_t i = 0; i < g.radius.size(); ++i) still.radius[i] = g.radius[i];
-  return still;
-}
-
 /// Where the forks turn.
-Taylor output(const Geometry<Taylor>& g, const Pose<Taylor>& pose, const Taylor& theta, double zeta) {
+Taylor output(const Geometry<double>& g, const Pose<Taylor>& pose, const Taylor& theta, double zeta) {
   return output_angle(g, forks(shaft(g, pose), pose.angle, zeta), theta);
 }
 
 /// By (x, y, z, beta, theta).
-ChainInfluence influence(const Geometry<Taylor>& g, const Pose<double>& pose, double theta, double zeta) {
+ChainInfluence influence(const Geometry<double>& g, const Pose<double>& pose, double theta, double zeta) {
   const auto along = [&](const Vector<double, 5>& u) {
     return output(g, {{pose.x, u[0], 0}, {pose.y, u[1], 0}, {pose.z, u[2], 0}, {pose.angle, u[3], 0}}, {theta, u[4], 0},
                   zeta);
   };
-  ChainInfluence found;
+  ChainInfluence found{.gradient = AxisVector<double>(5), .hessian = AxisMatrix<double>(5, 5)};
   std::array<Vector<double, 5>, 5> axis;
   for (std::size_t i = 0; i < 5; ++i) {
     axis[i][i] = 1;
@@ -47,8 +41,9 @@ Spin spin(const Turning& beta, const Turning& gamma) {
 }  // namespace
 
 ChainReport inspect_chain(const Geometry<double>& g, const MotionSample& at, double zeta) {
-  const Shaft<double> axis = shaft(g, at.as_pose());
-  const Vector<double, 4>&X = at.pose, &V = at.velocity, &A = at.acceleration;
+  const Pose<double> pose = schoenflies(at.pose);
+  const Shaft<double> axis = shaft(g, pose);
+  const AxisVector<double>&X = at.pose, &V = at.velocity, &A = at.acceleration;
   ChainReport report;
   report.angles = {{"phi1", acos(axis.cos_phi1)}, {"phi2", acos(axis.cos_phi2)}, {"shaft_length", axis.length}};
   report.turns = forks(axis, X[3], zeta).turns;
@@ -57,12 +52,11 @@ ChainReport inspect_chain(const Geometry<double>& g, const MotionSample& at, dou
                                         : "a universal joint of the chain is bent by a right angle or more";
     return report;
   }
-  const Geometry<Taylor> still = at_rest(g);
   const Pose<Taylor> moving{{X[0], V[0], A[0]}, {X[1], V[1], A[1]}, {X[2], V[2], A[2]}, {X[3], V[3], A[3]}};
   const Turning& theta = at.input;
-  const Taylor gamma = output(still, moving, {theta.angle, theta.speed, theta.acceleration}, zeta);
+  const Taylor gamma = output(g, moving, {theta.angle, theta.speed, theta.acceleration}, zeta);
   report.output = {gamma.a, gamma.d, gamma.dd};
-  report.influence = influence(still, at.as_pose(), theta.angle, zeta);
+  report.influence = influence(g, pose, theta.angle, zeta);
   report.spin = spin({X[3], V[3], A[3]}, report.output);
   return report;
 }

@@ -1,25 +1,4 @@
-// Hybrid robot: the auxiliary R-U-P-U-R chain that turns the tool.
-//
-// The input shaft stands on the carriage along Z', the output shaft on the platform along Z'' = o; between their
-// universal joints F1 = (0, f, h1) and F3 = (x, f' cos b + h2 sin b, z + f' sin b - h2 cos b) runs a telescopic shaft
-// along w. The two joints are bent by phi1 and phi2:
-//
-//   w = F3 - F1,   Q = w.Z' = |w| cos phi1,   P = w.o = |w| cos phi2,   T = x sin b
-//
-// The input fork arm is a1 = (-sin t, cos t, 0) with t = theta + theta0. With u = w/|w| the shaft's cross axes are b1 =
-// u x a1 and a2 = cos zeta b1 + sin zeta (u x b1), out of phase by zeta, and the output fork arm is b2 = a2 x o. Times
-// |w|, its components across and along Y'' are linear in (sin t, cos t):
-//
-//   [ S ]   [  P cos zeta + (x M / |w|) sin zeta      -T cos zeta + (|w| cos b - w_y M / |w|) sin zeta ] [ sin t ]
-//   [ C ] = [ -(w_y^2 + w_z^2) / |w| sin zeta          Q cos zeta - (x w_y / |w|) sin zeta             ] [ cos t ]
-//
-// M = w_y cos b + w_z sin b. Its determinant is P Q for every zeta, so gamma = theta + wrap(atan2(S, C) - t) is
-// continuous in theta and gains 2 pi with it, and d gamma/d theta = P Q / (S^2 + C^2). Where P and Q are < 0 (mirrored
-// assembly, known for zeta = 0 only) the matrix changes its sign; where P Q <= 0 a joint is bent by a right angle or
-// more: no gamma.
-//
-// Source: hybrid-robot document, section 5, with the phase worked into its S and C; relation (27) of the paper is the
-// special case zeta = 0, T = 0.
+// Hybrid robot: the auxiliary R-U-P-U-R chain that turns the tool. Equations: README.md.
 #pragma once
 
 #include "engine/mechanisms/hybrid/model.hpp"
@@ -38,8 +17,9 @@ struct Shaft {
   S cos_phi1, cos_phi2;
 };
 
-template <class S>
-Shaft<S> shaft(const Geometry<S>& g, const Pose<S>& pose) {
+/// @param g  of the same scalar, or of numbers
+template <class G, class S>
+Shaft<S> shaft(const Geometry<G>& g, const Pose<S>& pose) {
   const auto [sin_b, cos_b] = sincos(pose.angle);
   const S &x = pose.x, &z = pose.z, zero(0.0);
   Shaft<S> s;
@@ -59,9 +39,9 @@ Shaft<S> shaft(const Geometry<S>& g, const Pose<S>& pose) {
 /// The matrix that takes (sin t, cos t) to (S, C), its sign such that its determinant's root is positive.
 template <class S>
 struct Forks {
-  S ss, sc, cs, cc;  ///< rows S, C [m]
-  S PQ;              ///< determinant [m^2]
-  bool turns;        ///< there is a gamma
+  S ss, sc, cs, cc;    ///< rows S, C [m]
+  S PQ;                ///< determinant [m^2]
+  bool turns = false;  ///< there is a gamma
 };
 
 /// @param zeta  phase of the forks at the two ends of the telescopic shaft [rad]
@@ -71,23 +51,23 @@ Forks<S> forks(const Shaft<S>& s, const S& beta, double zeta) {
   const S PQ = s.P * s.Q;
   const bool bent = !(value_of(PQ) > 0);
   const bool mirrored = value_of(s.Q) < 0;
-  if (bent || (mirrored && zeta != 0)) return {S(0.0), S(0.0), S(0.0), S(0.0), PQ, false};
+  if (bent || (mirrored && zeta != 0)) return {.PQ = PQ};
   const S &x = s.w[0], &wy = s.w[1], &wz = s.w[2];
   const double sign = mirrored ? -1 : 1;
   const auto [sin, cos] = sincos(zeta);
   const double by_sin = sign * sin, by_cos = sign * cos;
   const S M = wy * cos_b + wz * sin_b;
-  return {s.P * by_cos + x * M / s.length * by_sin,
-          s.T * -by_cos + (s.length * cos_b - wy * M / s.length) * by_sin,
-          (wy * wy + wz * wz) / s.length * -by_sin,
-          s.Q * by_cos - x * wy / s.length * by_sin,
-          PQ,
-          true};
+  return {.ss = s.P * by_cos + x * M / s.length * by_sin,
+          .sc = s.T * -by_cos + (s.length * cos_b - wy * M / s.length) * by_sin,
+          .cs = (wy * wy + wz * wz) / s.length * -by_sin,
+          .cc = s.Q * by_cos - x * wy / s.length * by_sin,
+          .PQ = PQ,
+          .turns = true};
 }
 
 /// Output angle [rad] for an input angle; only where the forks turn.
-template <class S>
-S output_angle(const Geometry<S>& g, const Forks<S>& k, const S& theta) {
+template <class G, class S>
+S output_angle(const Geometry<G>& g, const Forks<S>& k, const S& theta) {
   const S t = theta + g.theta0;
   const auto [sin_t, cos_t] = sincos(t);
   return theta + wrapped(S(atan2(S(k.ss * sin_t + k.sc * cos_t), S(k.cs * sin_t + k.cc * cos_t)) - t));

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "engine/math/nested_quadrature.hpp"
+#include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/hybrid/breaks.hpp"
+#include "engine/mechanisms/hybrid/conditioning.hpp"
 
 namespace pkm::hybrid {
 
@@ -14,9 +15,10 @@ template <class S>
 struct ColumnScratch {
   BreakScratch breaks;
   std::vector<Piece<S>> pieces;  ///< one for each of the stretches
-  std::vector<NestedPart<S>> parts;
+  std::vector<QuadraturePart<S>> parts;
   StripScratch strips;
   Structure structure;  ///< of a beta outside of the pieces
+  PoseList poses;       ///< whose conditioning is asked for
 };
 
 /// The structure of a section: that of the stretch around beta, followed from where it was asked for last.
@@ -88,10 +90,8 @@ double roundoff(const Frame<S>& f, const std::vector<Piece<S>>& pieces) {
 /// The integral of the sections' areas over the pieces [m^2 rad].
 template <class S>
 Integral<S> volume(const Frame<S>& f, double tolerance, ColumnScratch<S>& scratch) {
-  const auto areas = [&](std::size_t, std::span<const S> beta, S* area) {
-    for (const S& at : beta) *area++ = area_at(f, at, scratch);
-  };
-  return integrate_nested<S>(areas, scratch.pieces, tolerance, roundoff(f, scratch.pieces), scratch.parts);
+  return integrate<S>([&](const S& beta) { return area_at(f, beta, scratch); }, scratch.pieces, tolerance,
+                      roundoff(f, scratch.pieces), scratch.parts, {.rule = patterson_rule()});
 }
 
 /// Calls visit(z, length, weight) at the nodes of `rule` over z on every strip of the section: the exact length of the

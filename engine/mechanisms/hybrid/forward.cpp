@@ -4,7 +4,7 @@
 
 namespace pkm::hybrid {
 
-Forward forward(const Geometry<double>& g, const std::array<double, 4>& s) {
+Forward forward(const Geometry<double>& g, const AxisVector<double>& s) {
   Forward found;
   const auto none = [&](Closure status) {
     found.status = status;
@@ -33,12 +33,12 @@ Forward forward(const Geometry<double>& g, const std::array<double, 4>& s) {
     for (const int sign_N2 : {1, -1}) {
       if ((flat && sign_z < 0) || (one_beta && sign_N2 < 0)) continue;
       const double z = sign_z * height, beta = wrapped(sign_N2 * xi - atan2(z, g.d));
-      found.assemblies.push_back({{x, s[1], z, beta},
-                                  sign_z,
-                                  sign_N2,
-                                  flat,
-                                  one_beta,
-                                  {sign(x - xA, g.L1), sign(x - xB, g.L2), sign(n3, g.L3)}});
+      found.assemblies.push_back({.pose = {x, s[1], z, beta},
+                                  .sign_z = sign_z,
+                                  .sign_N2 = sign_N2,
+                                  .double_z = flat,
+                                  .double_beta = one_beta,
+                                  .mode = {sign(x - xA, g.L1), sign(x - xB, g.L2), sign(n3, g.L3)}});
     }
   return found;
 }

@@ -1,9 +1,6 @@
 // Hybrid robot: first- and second-order influence coefficients, and the indices of quality made of them.
 //
-//   Jx V = Jq q',   det Jx = z (n1 - n2) N2,   det Jq = n1 n2 n3
-//
-// Their form is the same in every working mode, which is in the signs of n1, n2, n3. All of them are infinite where
-// one of these is 0. Source: hybrid-robot document, sections 4 and 9.
+// All of them are infinite where n1, n2, n3 is 0. Equations: README.md.
 #pragma once
 
 #include "engine/mechanisms/hybrid/limits.hpp"
@@ -11,6 +8,9 @@
 #include "engine/model/influence.hpp"
 
 namespace pkm::hybrid {
+
+template <class S>
+using Influence = pkm::Influence<S, 4>;
 
 /// Jx and Jq = diag(n1, 1, n2, n3).
 template <class S>
@@ -40,13 +40,6 @@ Influence<S> influence(const Geometry<S>& g, const Pose<S>& pose, const Joints<S
   q.H[3](2, 3) = q.H[3](3, 2) = (g.e * cos_b + m1 * m2) / j.n3;
   q.H[3](3, 3) = (g.e * (g.d * cos_b - z * sin_b) + m2 * m2) / j.n3;
   return q;
-}
-
-/// J of (s1, s3, s4) over (x, z, beta length): y stands alone with the gain 1 and is left out.
-template <class S>
-Rows3<S> homogeneous_jacobian(const S& z, const Joints<S>& j, const S& length) {
-  const S zero(0.0), one(1.0);
-  return {{{one, z / j.n1, zero}, {one, z / j.n2, zero}, {one, j.N1 / j.n3, j.N2 / j.n3 / length}}};
 }
 
 /// Least of the measures of transmission but the constraint's: LTI.

@@ -1,5 +1,6 @@
 #include "engine/mechanisms/hybrid/inspect.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/mechanisms/hybrid/influence.hpp"
@@ -22,20 +23,16 @@ std::string out_of_reach(const Joints<double>& j) {
   return reason;
 }
 
-Eigen::Matrix4d as_eigen(const Matrix<double, 4, 4>& matrix) {
-  return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(matrix.m.data());
-}
-
 /// What depends on the platform's and the limbs' velocities alone.
 void add_velocity(const Geometry<double>& g, const Pose<double>& pose, const Joints<double>& j, PoseReport& report) {
   const VelocityEquation<double> v = velocity_equation(pose, j);
-  report.Jq = as_eigen(v.Jq);
-  report.G = as_eigen(v.Jx);
+  report.Jq = v.Jq;
+  report.G = v.Jx;
   report.det_Jq = j.n1 * j.n2 * j.n3;
   report.det_G = pose.z * (j.n1 - j.n2) * j.N2;
   report.conditioning = 0;
   if (j.serial) return;
-  report.J = as_eigen(influence(g, pose, j).G);
+  report.J = influence(g, pose, j).G;
   const Rows3<double> J = homogeneous_jacobian(pose.z, j, g.e);  // L_c = e
   report.conditioning = inverse_condition(J);
   const ExtremeSingularValues<double> s = extreme_singular_values(J);
@@ -72,23 +69,24 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
   const Joints<double> j = inverse(g, pose, mode);
   const Margins<double> m = margins(g, l, pose, j, branch);
   report.assembles = j.assembles();
-  report.joints = j.s;
-  constexpr std::size_t kDriveOfLimb[3] = {0, 2, 3};
+  report.joints = {j.s[0], j.s[1], j.s[2], j.s[3]};
   for (std::size_t limb = 0; limb < 3; ++limb)
     if (j.unreached & bit(limb)) (*report.joints)[kDriveOfLimb[limb]] = kAbsent;
   for (std::size_t i = 0; i < kMargins; ++i)
-    report.margins.emplace_back(margin_names()[i], report.assembles || i <= kReach3 ? m[i] : kAbsent);
+    report.margins.emplace_back(kMarginNames[i].name, report.assembles || i <= kReach3 ? m[i] : kAbsent);
   if (!report.assembles) {
     report.reason = out_of_reach(j);
     return report;
   }
   add_velocity(g, pose, j, report);
   add_transmission(g, pose, j, report);
-  report.feasible = feasible(pose.z, m);
-  if (report.feasible) return report;
-  report.reason = "the platform is not above the base";
-  for (std::size_t i = kMargins; i-- > 0;)  // the first that is broken
-    if (!(m[i] >= 0)) report.reason = "limit " + margin_names()[i] + " is broken";
+  const auto broken = std::ranges::find_if(m, [](double margin) { return !(margin >= 0); });
+  if (broken != m.end())
+    report.reason =
+        "limit " + std::string(kMarginNames[static_cast<std::size_t>(broken - m.begin())].name) + " is broken";
+  else if (!(pose.z > 0))
+    report.reason = "the platform is not above the base";
+  report.feasible = report.reason.empty();
   return report;
 }
 

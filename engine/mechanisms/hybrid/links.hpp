@@ -44,6 +44,12 @@ inline constexpr std::array<LinkPair, kLinkPairs> kPairs = {{{kLinkA, kLinkB},
                                                              {kLinkC, kLinkP},
                                                              {kLinkF, kLinkP}}};
 
+/// Distance of two links as capsules [m].
+template <class S>
+S link_distance(const Links<S>& link, const LinkPair& pair) {
+  return capsule_distance(link[pair.first], link[pair.second]);
+}
+
 /// The robot as it is drawn at a pose: these links, and what carries them and is carried. Empty where the pose does not
 /// assemble.
 /// @param p  all parameters

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "engine/core/options.hpp"
+#include "engine/mechanism/both_scalars.hpp"
 #include "engine/mechanisms/hybrid/forward.hpp"
 #include "engine/mechanisms/hybrid/influence.hpp"
 #include "engine/mechanisms/hybrid/inspect.hpp"
@@ -46,18 +47,11 @@ MechanismInfo make_info() {
   i.title = "two P-R-R-R limbs and a P-U-U limb on a carriage, with an auxiliary chain that turns a tool";
   i.source = "Kinematics Analysis and Dynamic Simulation of a Novel Mixed-connection Manipulator";
   i.parameters = hybrid::parameters();
-  i.coordinates = {"x", "y", "z", "beta"};
-  i.joints = {"s1", "s2", "s3", "s4"};
+  i.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"beta", "rad"}};
+  i.joints = {{"s1", "m"}, {"s2", "m"}, {"s3", "m"}, {"s4", "m"}};
   for (const Mode& mode : all_modes()) i.modes.push_back(name_of(mode));
   i.branches = {"+", "-"};
-  i.swept = {0, 2, 3};
-  i.held = 1;
-  i.column = 0;
-  i.held_can_integrate = true;
-  i.volume_unit = "m^2 rad";
-  i.integrated_unit = "m^3 rad";
-  i.size_unit = "m^2";
-  i.size_meaning = "(2 a + L1 + L2) L3";
+  i.sweeps = {{.swept = {0, 2, 3}, .held = {1}, .column = 0, .integrates = true}};
   for (const ParameterIndex tau : {kTauS, kTauP, kTauC}) {
     const Parameter& own = i.parameters[tau];
     i.limits.push_back({own.name, own.unit, own.nominal, own.lower, own.upper, "singularity-margin", "", own.meaning});
@@ -66,17 +60,7 @@ MechanismInfo make_info() {
                       "least distance of links that do not share a joint; < 0: they may overlap that far. Where it is "
                       "not given, poses need 0 and surveys leave the links' thickness out"});
   i.characteristic_length = "e";
-  i.margin_unit = "m";
-  i.has_influence = true;
-  i.has_links = true;
-  i.chain_input = "theta";
-  i.chain_output = "gamma";
   return i;
-}
-
-/// Pose margins in one unit: lengths as they are, angles and ratios at the length e.
-bool is_length(std::size_t margin) {
-  return (margin >= kStroke1 && margin <= kZClearance) || margin == kCarriageGap || margin >= kAuxLength;
 }
 
 /// The platform and links A and B stretched along their rails, by link C.
@@ -85,83 +69,106 @@ S size_of(std::span<const S> p) {
   return (p[kA] * 2.0 + p[kL1] + p[kL2]) * p[kL3];
 }
 
-class Hybrid final : public Mechanism {
+class Hybrid final : public Mechanism,
+                     Voxels,
+                     Columns,
+                     Derivatives,
+                     Size,
+                     PoseMarginsOf<Hybrid>,
+                     Velocities,
+                     ForwardKinematics,
+                     pkm::Links,
+                     AuxiliaryChain {
  public:
   const MechanismInfo& info() const override { return info_; }
+  const Voxels* voxels() const override { return this; }
+  const Columns* columns() const override { return this; }
+  const Derivatives* derivatives() const override { return this; }
+  const Size* size() const override { return this; }
+  const PoseMargins* pose_margins() const override { return this; }
+  const Velocities* velocities() const override { return this; }
+  const ForwardKinematics* forward() const override { return this; }
+  const pkm::Links* links() const override { return this; }
+  const AuxiliaryChain* chain() const override { return this; }
 
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand& demand) const override {
-    sweep_of(info_, plan);  // refuses a plan that holds another coordinate than y
-    const Mode& mode = demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
-    return make_surveyor(mode.signs, mode.branch, plan, demand);
+  std::optional<double> middle(std::span<const double> p, int) const override {
+    return (p[kSMin + 1] + p[kSMax + 1]) / 2;
   }
-  VoxelMap voxel_map(std::span<const double> p, const SurveyPlan& plan) const override {
-    return hybrid::voxel_map(modes_.front().signs, modes_.front().branch, p, plan);
-  }
-  double middle(std::span<const double> p, int) const override { return (p[kSMin + 1] + p[kSMax + 1]) / 2; }
-  void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
-  void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const override {}
-  double size(std::span<const double> p) const override { return size_of(p); }
-  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
   void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
     find_thresholds(p, spec, values);
   }
-  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
-    find_thresholds(p, spec, values);
-  }
-  NamedValues facts(std::span<const double>, const LimitSpec&) const override { return {}; }
-  std::string refuse(std::span<const double> p) const override {
-    for (std::size_t i = 0; i < info_.parameters.size(); ++i) {
-      const Parameter& parameter = info_.parameters[i];
-      if (!(p[i] >= parameter.lower && p[i] <= parameter.upper))
-        return parameter.name + " = " + shortest(p[i]) + " is outside the model's range " + shortest(parameter.lower) +
-               " to " + shortest(parameter.upper) + " " + parameter.unit;
-    }
-    const auto empty = [&](std::size_t least, std::size_t greatest) -> std::string {
+  Refusal refuse(std::span<const double> p) const override {
+    if (Refusal outside = Mechanism::refuse(p)) return outside;
+    const auto empty = [&](std::size_t least, std::size_t greatest) -> Refusal {
       const Parameter &low = info_.parameters[least], &high = info_.parameters[greatest];
       if (p[least] < p[greatest]) return {};
       return low.name + " = " + shortest(p[least]) + " " + low.unit + " leaves no range below " + high.name + " = " +
              shortest(p[greatest]) + " " + high.unit;
     };
-    std::string reason;
-    for (std::size_t i = 0; i < 4 && reason.empty(); ++i) reason = empty(kSMin + i, kSMax + i);
-    if (reason.empty()) reason = empty(kBetaMin, kBetaMax);
-    return reason.empty() ? empty(kLwMin, kLwMax) : reason;
+    Refusal reason;
+    for (std::size_t i = 0; i < 4 && !reason; ++i) reason = empty(kSMin + i, kSMax + i);
+    if (!reason) reason = empty(kBetaMin, kBetaMax);
+    return reason ? reason : empty(kLwMin, kLwMax);
   }
-  PoseReport inspect(std::span<const double> p, const Pose<double>& pose, const std::string& mode,
+  PoseReport inspect(std::span<const double> p, const pkm::Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
     const Mode& named = mode_called(mode);
-    return hybrid::inspect(geometry(p), limits(p, spec), pose, named.signs, named.branch);
+    return hybrid::inspect(geometry(p), limits(p, spec), schoenflies(pose), named.signs, named.branch);
   }
-  void pose_margins(std::span<const double> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
-                    std::vector<double>& margins) const override {
-    find_margins(p, spec, poses, margins);
+
+ private:
+  friend PoseMarginsOf<Hybrid>;
+
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                          const Demand& demand) const override {
+    const Mode& mode = surveyed_mode(demand);
+    return make_voxel_surveyor(mode.signs, mode.branch, plan, voxels, demand);
   }
-  void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+                                          const Demand& demand) const override {
+    const Mode& mode = surveyed_mode(demand);
+    return make_column_surveyor(mode.signs, mode.branch, plan, columns, demand);
+  }
+  VoxelMap map(std::span<const double> p, const SurveyPlan& plan, const VoxelOptions& voxels) const override {
+    return voxel_map(modes_.front().signs, modes_.front().branch, p, plan, voxels);
+  }
+
+  std::string unit() const override { return "m^2"; }
+  std::string meaning() const override { return "(2 a + L1 + L2) L3"; }
+  double of(std::span<const double> p) const override { return size_of(p); }
+  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
+  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
+    find_thresholds(p, spec, values);
+  }
+  void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
                     std::vector<Dual4>& margins) const override {
     find_margins(p, spec, poses, margins);
   }
-  std::optional<Influence<double>> influence(std::span<const double> p, const Pose<double>& pose,
-                                             const std::string& mode) const override {
+
+  std::optional<pkm::Influence<double>> influence(std::span<const double> p, const pkm::Pose<double>& pose,
+                                                  const std::string& mode) const override {
     const auto g = geometry(p);
-    const Joints<double> j = inverse(g, pose, mode_called(mode).signs);
+    const Joints<double> j = inverse(g, schoenflies(pose), mode_called(mode).signs);
     if (!j.assembles() || j.serial) return std::nullopt;
-    return hybrid::influence(g, pose, j);
+    return hybrid::influence(g, schoenflies(pose), j);
   }
-  std::vector<PlacedLink> links(std::span<const double> p, const Pose<double>& pose,
+  std::vector<PlacedLink> place(std::span<const double> p, const pkm::Pose<double>& pose,
                                 const std::string& mode) const override {
-    return placed_links(p, pose, mode_called(mode).signs);
+    return placed_links(p, schoenflies(pose), mode_called(mode).signs);
   }
-  ChainReport chain(std::span<const double> p, const MotionSample& at, double phase) const override {
+  std::string input() const override { return "theta"; }
+  std::string output() const override { return "gamma"; }
+  ChainReport report(std::span<const double> p, const MotionSample& at, double phase) const override {
     return inspect_chain(geometry(p), at, phase);
   }
-  std::optional<double> chain_input(std::span<const double> p, const Pose<double>& pose, double output,
-                                    double phase) const override {
+  std::optional<double> input_for(std::span<const double> p, const pkm::Pose<double>& pose, double gamma,
+                                  double phase) const override {
     const auto g = geometry(p);
-    const Forks<double> k = forks(shaft(g, pose), pose.angle, phase);
+    const Forks<double> k = forks(shaft(g, schoenflies(pose)), pose[3], phase);
     if (!k.turns) return std::nullopt;
-    return input_angle(g, k, output);
+    return input_angle(g, k, gamma);
   }
-  std::vector<AssemblyMode> forward(std::span<const double> p, const std::array<double, 4>& s) const override {
+  std::vector<AssemblyMode> assemblies(std::span<const double> p, const AxisVector<double>& s) const override {
     std::vector<AssemblyMode> modes;
     for (const Assembly& found : hybrid::forward(geometry(p), s).assemblies) {
       AssemblyMode mode{found.pose, std::string(sign_name(found.sign_z)) + "," + sign_name(found.sign_N2)};
@@ -172,7 +179,7 @@ class Hybrid final : public Mechanism {
     }
     return modes;
   }
-  ForwardStatus forward_status(std::span<const double> p, const std::array<double, 4>& s) const override {
+  ForwardStatus status(std::span<const double> p, const AxisVector<double>& s) const override {
     static const std::array<ForwardStatus, 5> meanings = {
         {{},
          {"NO_XZ", "the carriages A and B are too far apart, or as far apart as links of different lengths can't be"},
@@ -182,11 +189,13 @@ class Hybrid final : public Mechanism {
     return meanings[static_cast<std::size_t>(hybrid::forward(geometry(p), s).status)];
   }
 
- private:
   const Mode& mode_called(const std::string& name) const {
     for (const Mode& known : modes_)
       if (name == name_of(known)) return known;
     throw std::invalid_argument("unknown working mode " + name);
+  }
+  const Mode& surveyed_mode(const Demand& demand) const {
+    return demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
   }
   template <class S>
   void find_thresholds(std::span<const S> p, const LimitSpec& spec, std::span<S> values) const {
@@ -197,15 +206,16 @@ class Hybrid final : public Mechanism {
     values[kClearanceMin] = l.clearance_min;
   }
   template <class S>
-  void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const Pose<double>> poses,
+  void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
                     std::vector<S>& margins) const {
     const auto g = geometry(p);
     const Limits<S> l = limits(p, spec);
     const Mode& mode = modes_.front();
-    for (const Pose<double>& at : poses) {
-      const Pose<S> pose{S(at.x), S(at.y), S(at.z), S(at.angle)};
+    for (const pkm::Pose<double>& at : poses) {
+      const SchoenfliesPose<S> pose{S(at[0]), S(at[1]), S(at[2]), S(at[3])};
       const Margins<S> found = hybrid::margins(g, l, pose, inverse(g, pose, mode.signs), mode.branch);
-      for (std::size_t i = 0; i < kMargins; ++i) margins.push_back(is_length(i) ? found[i] : S(found[i] * g.e));
+      for (std::size_t i = 0; i < kMargins; ++i)  // in one unit: lengths as they are, angles and ratios at the length e
+        margins.push_back(kMarginNames[i].kind == MarginKind::length ? found[i] : S(found[i] * g.e));
     }
   }
 

@@ -24,9 +24,8 @@ struct Gap {
 Gap gap(const Section<double>& s, const Edge& first, const Edge& second, double z) {
   const auto at = [&](const Edge& e) {
     const Curve<double>& c = s.curve[e.curve];
-    const double root = c.root(z), slope = c.slope(z, root), sign = sign_of(s, e);
-    return Gap{(e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]) + root * sign, sign * slope,
-               (std::fabs(c.curvature()) + slope * slope) / root};
+    const double root = c.root(z), slope = c.slope(z, root), sign = s.sign(e);
+    return Gap{s.constant(e) + root * sign, sign * slope, (std::fabs(c.curvature()) + slope * slope) / root};
   };
   const Gap a = at(first), b = at(second);
   return Gap{a.value - b.value, a.slope - b.slope, a.bend + b.bend};
@@ -38,10 +37,11 @@ double circles_meeting(const Section<double>& s, const Edge& first, const Edge& 
                        double high) {
   const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
   if (!circle(first) || !circle(second)) return kNowhere;
-  const auto x = [&](const Edge& e) { return e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]; };  // centres and radii
+  // centres and radii
   const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
   const double foot = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
-  const double dx = x(second) - x(first), dz = 0.5 * (d.a - d.b) - foot, apart = 1 / (dx * dx + dz * dz);
+  const double dx = s.constant(second) - s.constant(first), dz = 0.5 * (d.a - d.b) - foot,
+               apart = 1 / (dx * dx + dz * dz);
   const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * apart), across2 = r1 * r1 * apart - along * along;
   constexpr double kTouch = 1e-4;
   if (!(across2 >= kTouch * along * along)) return kNowhere;
@@ -49,7 +49,7 @@ double circles_meeting(const Section<double>& s, const Edge& first, const Edge& 
   double least = std::numeric_limits<double>::infinity(), nearest = kNowhere;
   for (const double h : {across, -across}) {
     const double at = foot + along * dz + h * dx, from_first = along * dx - h * dz, from_second = from_first - dx;
-    const bool on_both = from_first * sign_of(s, first) >= 0 && from_second * sign_of(s, second) >= 0;
+    const bool on_both = from_first * s.sign(first) >= 0 && from_second * s.sign(second) >= 0;
     if (!on_both || !(at > low && at < high) || std::fabs(at - z) >= least) continue;
     least = std::fabs(at - z);
     nearest = at;

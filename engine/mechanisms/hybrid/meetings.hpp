@@ -9,11 +9,6 @@ namespace pkm::hybrid {
 
 inline constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
-/// The sign of the root in an edge.
-inline double sign_of(const Section<double>& s, const Edge& e) {
-  return e.side == 0 ? s.sign_lo[e.curve] : s.sign_hi[e.curve];
-}
-
 /// Both belong to the chain, on one side: they differ as Q, P, lw_max cos(phi_max), lw_min cos(phi_max) do, which are
 /// linear in z.
 inline bool of_chain(const Edge& first, const Edge& second) {

@@ -1,20 +1,6 @@
 // Four-degree-of-freedom hybrid robot with an auxiliary rotation: geometry and inverse kinematics of one pose.
 //
-// Source: "Kinematics Analysis and Dynamic Simulation of a Novel Mixed-connection Manipulator", with its errata. A
-// 2T1R parallel stage (two P-R-R-R limbs A and B, one P-U-U limb C) stands on a carriage E that runs along Y; a
-// telescopic shaft between two universal joints turns a tool on its platform (chain.hpp).
-//
-// Frame O' on the carriage: X' along the rails of A, B and C, the first two on the line y' = z' = 0, that of C on y' =
-// d, z' = 0; Z' normal to the base. Pose (x, y, z, beta): the platform's point O'' is at (x, 0, z), the carriage at y,
-// and the platform turned by beta about X'. With b = beta
-//
-//   A'' = (-b1 + s1, 0, 0)   A' = (x - a, 0, z)     n1 = x - a + b1 - s1     n1^2 + z^2 = L1^2
-//   B'' = (b2 + s3, 0, 0)    B' = (x + a, 0, z)     n2 = x + a - b2 - s3     n2^2 + z^2 = L2^2
-//   C'' = (c + s4, d, 0)     C' = (x, e cos b, z + e sin b)
-//   n3  = x - c - s4,  k = e cos b - d,  N1 = z + e sin b                    n3^2 + k^2 + N1^2 = L3^2
-//   N2  = e (z cos b + d sin b)                                              y = s2
-//
-// The drives are ordered A, E, B, C.
+// A pose is (x, y, z, beta), the drives are ordered A, E, B, C. Frames, names and equations: README.md.
 #pragma once
 
 #include <array>
@@ -25,9 +11,13 @@
 
 #include "engine/core/parameter.hpp"
 #include "engine/math/scalar.hpp"
+#include "engine/mechanisms/hybrid/limbs.hpp"
 #include "engine/model/pose.hpp"
 
 namespace pkm::hybrid {
+
+template <class S>
+using Pose = SchoenfliesPose<S>;
 
 /// Order of the parameters: geometry, then what bounds the poses (limits.hpp), then the links' radii.
 enum ParameterIndex {
@@ -82,13 +72,28 @@ struct Geometry {
 
 template <class S>
 Geometry<S> geometry(std::span<const S> p) {
-  return {p[kA],  p[kB1], p[kB2], p[kC],      p[kD],
-          p[kE],  p[kL1], p[kL2], p[kL3],     p[kF],
-          p[kFp], p[kH1], p[kH2], p[kTheta0], {p[kRadiusA], p[kRadiusB], p[kRadiusC], p[kRadiusF], p[kRadiusP]}};
+  return {.a = p[kA],
+          .b1 = p[kB1],
+          .b2 = p[kB2],
+          .c = p[kC],
+          .d = p[kD],
+          .e = p[kE],
+          .L1 = p[kL1],
+          .L2 = p[kL2],
+          .L3 = p[kL3],
+          .f = p[kF],
+          .fp = p[kFp],
+          .h1 = p[kH1],
+          .h2 = p[kH2],
+          .theta0 = p[kTheta0],
+          .radius = {p[kRadiusA], p[kRadiusB], p[kRadiusC], p[kRadiusF], p[kRadiusP]}};
 }
 
 /// Signs of n1, n2, n3, +1 or -1.
 using WorkingMode = std::array<int, 3>;
+
+/// The drives that limbs A, B and C have.
+inline constexpr std::array<std::size_t, 3> kDriveOfLimb = {0, 2, 3};
 
 /// Relative roundoff within which a radicand counts as 0, a limb as stretched across its rail.
 inline constexpr double kRoundoff = 1e-12;
@@ -96,9 +101,7 @@ inline constexpr double kRoundoff = 1e-12;
 /// The limbs at a pose. Masks: bit 0 is limb A, bit 1 B, bit 2 C. Of a limb out of reach n is 0 and s where it would
 /// be then: finite, of no meaning.
 template <class S>
-struct Joints {
-  S n1, n2, n3;            ///< components of the links along the rails [m]
-  S k, N1, N2;             ///< [m], [m], [m^2]
+struct Joints : Limbs<S> {
   std::array<S, 4> s;      ///< drives s1, s2, s3, s4 [m]
   unsigned unreached = 0;  ///< limbs out of reach
   unsigned serial = 0;     ///< limbs across their rail, n = 0: serially singular
@@ -108,7 +111,7 @@ struct Joints {
 template <class S>
 Joints<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& mode) {
   const auto [sin_b, cos_b] = sincos(pose.angle);
-  const S &x = pose.x, &z = pose.z;
+  const S& x = pose.x;
   Joints<S> j;
   const auto along_rail = [&](const S& square, const S& L, std::size_t limb) {
     const double tolerance = kRoundoff * value_of(L) * value_of(L);
@@ -117,12 +120,7 @@ Joints<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& 
     if (std::fabs(value_of(square)) <= tolerance) j.serial |= bit;
     return value_of(square) > tolerance ? S(sqrt(square) * static_cast<double>(mode[limb])) : S(0.0);
   };
-  j.k = g.e * cos_b - g.d;
-  j.N1 = z + g.e * sin_b;
-  j.N2 = g.e * (z * cos_b + g.d * sin_b);
-  j.n1 = along_rail(S((g.L1 - z) * (g.L1 + z)), g.L1, 0);
-  j.n2 = along_rail(S((g.L2 - z) * (g.L2 + z)), g.L2, 1);
-  j.n3 = along_rail(S(g.L3 * g.L3 - j.k * j.k - j.N1 * j.N1), g.L3, 2);
+  static_cast<Limbs<S>&>(j) = limbs(g, pose.z, sin_b, cos_b, along_rail);
   j.s = {x - g.a + g.b1 - j.n1, pose.y, x + g.a - g.b2 - j.n2, x - g.c - j.n3};
   return j;
 }

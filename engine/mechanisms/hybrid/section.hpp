@@ -1,29 +1,11 @@
-// Hybrid robot: the feasible x-z section of one working mode at given beta.
+// Hybrid robot: the feasible x-z section of one working mode at given beta: the margins of limits.hpp, solved for z and
+// x.
 //
-// With beta held, whether a pose is feasible depends on x through strokes 1, 3, 4 and the auxiliary chain alone. All
-// other limits cut out one interval of z each, so z runs over one interval [max of lower ends, min of upper ends]:
-//
-//   z only (Frame)     z_clear, serial1, serial2, passiveA, passiveB, parallel_xz, gap
-//   limb C             k^2 + N1^2 between (L3 cos psiC_max)^2 and L3^2 (1 - tau_s^2),  N1 >= z_clear,
-//                      z cos b + d sin b >= tau_p L3
-//   its plane          D = |d - e cos b|:  D cot(lam_max) <= N1 <= D sqrt(1 - tau_c^2)/tau_c,
-//                      z sin(mu_max +- b) >= +-((d cos b - e) cos mu_max) - d sin b sin mu_max
-//   auxiliary chain    |w_y| <= Q tan(phi_max),  |w''_y| <= P tan(phi_max),  w_y^2 + Q^2 <= lw_max^2
-//
-// where w''_y = w_y cos b + w_z sin b is the shaft's component along Y'' at x = 0. Over each z, x runs between the
-// greatest of the lower and the least of the upper
-//
-//   A, B, C:  s_min + offset + n_i, s_max + offset + n_i     n_i = w_i sqrt(L^2 - ...)
-//   Q, P:     -+sqrt(Q^2 tan^2(phi_max) - w_y^2),  -+sqrt(P^2 tan^2(phi_max) - w''_y^2)
-//   L:        -+sqrt(lw_max^2 - w_y^2 - Q^2)
-//   without   (-H, H),  H = sqrt(lw_min^2 - w_y^2 - Q^2)
-//
-// Every one of these ends is a constant and a root of a product of two linear functions of z.
-//
-// The branch N2 < 0 is empty: |lambda - b| <= mu_max < pi/2 means N2 > 0.
-//
-// Source: hybrid-robot document, sections 7 and 8, whose columns in z and in x are these.
+// z runs over one interval [max of lower ends, min of upper ends]. Over each z, x runs between the greatest of the
+// lower and the least of the upper ends that are in Section::curve, less a hole. Derivation: README.md.
 #pragma once
+
+#include <cstdint>
 
 #include "engine/math/dual.hpp"
 #include "engine/mechanisms/hybrid/limits.hpp"
@@ -36,16 +18,16 @@ struct Frame {
   Geometry<S> g;
   Limits<S> l;
   WorkingMode signs;
-  double side;              ///< the sign of d - e cos b on the side of beta = 0
+  int branch;               ///< required sign of N2, +1 or -1
   std::array<S, 3> lo, hi;  ///< s_min and s_max of limbs A, B, C with their offsets [m]
   S sine_s, cot_c;          ///< sqrt(1 - tau_s^2), sqrt(1 - tau_c^2) / tau_c
   SinCosOf<S> lam, mu;      ///< of the greatest angles
   S tan_phi, cot_phi;
-  S z_low, z_high;  ///< what limits on z alone leave [m]
-  bool empty;       ///< which is nothing, or the branch is N2 < 0
+  S z_low, z_high;    ///< what limits on z alone leave [m]
+  bool empty = true;  ///< which is nothing, or the branch is N2 < 0
 };
 
-/// Fills z_low and z_high: the box of section 8.1 of the document, shrunk to what parallel_xz and gap leave.
+/// Fills z_low and z_high: the heights of all poses, shrunk to what parallel_xz and gap leave.
 template <class S>
 void find_heights(Frame<S>& f) {
   const Geometry<S>& g = f.g;
@@ -86,32 +68,24 @@ void find_heights(Frame<S>& f) {
   }
 }
 
-/// @param branch  required sign of N2, +1 or -1
 template <class S>
 Frame<S> frame(const Geometry<S>& g, const Limits<S>& l, const WorkingMode& signs, int branch) {
   const std::array<S, 3> offset = {g.a - g.b1, g.b2 - g.a, g.c};
-  constexpr std::size_t kDrive[3] = {0, 2, 3};
-  Frame<S> f{g,
-             l,
-             signs,
-             value_of(g.d) < value_of(g.e) ? -1.0 : 1.0,
-             {},
-             {},
-             S(0.0),
-             S(0.0),
-             sincos(l.lam_max),
-             sincos(l.mu_max),
-             l.phi.sin / l.phi.cos,
-             l.phi.cos / l.phi.sin,
-             S(0.0),
-             S(0.0),
-             true};
+  const auto cosine_of = [](const S& sine) { return root_or_zero(S((1.0 - sine) * (1.0 + sine))); };
+  Frame<S> f{.g = g,
+             .l = l,
+             .signs = signs,
+             .branch = branch,
+             .sine_s = cosine_of(l.tau_s),
+             .cot_c = cosine_of(l.tau_c) / l.tau_c,
+             .lam = sincos(l.lam_max),
+             .mu = sincos(l.mu_max),
+             .tan_phi = l.phi.sin / l.phi.cos,
+             .cot_phi = l.phi.cos / l.phi.sin};
   for (std::size_t i = 0; i < 3; ++i) {
-    f.lo[i] = l.s_min[kDrive[i]] + offset[i];
-    f.hi[i] = l.s_max[kDrive[i]] + offset[i];
+    f.lo[i] = l.s_min[kDriveOfLimb[i]] + offset[i];
+    f.hi[i] = l.s_max[kDriveOfLimb[i]] + offset[i];
   }
-  f.sine_s = root_or_zero(S((1.0 - l.tau_s) * (1.0 + l.tau_s)));
-  f.cot_c = root_or_zero(S((1.0 - l.tau_c) * (1.0 + l.tau_c))) / l.tau_c;
   if (branch > 0) find_heights(f);
   return f;
 }
@@ -130,6 +104,17 @@ struct Curve {
   S slope(const S& z, const S& root) const { return (a_z * (b + b_z * z) + b_z * (a + a_z * z)) / (root * 2.0); }
 };
 
+/// A column of x lies right of its left end, and left of its right one.
+enum Side : std::uint8_t { kLeft, kRight };
+inline constexpr std::size_t kSides = 2;
+
+/// An end of x at all heights: a curve of a section on one side.
+struct Edge {
+  std::uint8_t curve = 0;
+  Side side = kLeft;
+  bool operator==(const Edge&) const = default;
+};
+
 inline constexpr std::size_t kLowerEnds = 9, kUpperEnds = 9;
 /// Those at which a curve begins or ends: P at either, L at an upper, Q at a lower one.
 inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
@@ -137,13 +122,16 @@ inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
 template <class S>
 struct Section {
   std::array<Curve<S>, kCurves> curve;
-  std::array<double, kCurves> sign_lo, sign_hi;  ///< of the root in the ends of x
-  std::array<S, kCurves> lo, hi;                 ///< constants in them [m]
-  std::array<S, kLowerEnds> lower;               ///< ends of z [m]; those that do not apply cut nothing
+  std::array<std::array<double, kCurves>, kSides> signs;  ///< of the root in the ends of x
+  std::array<std::array<S, kCurves>, kSides> constants;   ///< in them [m]
+  std::array<S, kLowerEnds> lower;                        ///< ends of z [m]; those that do not apply cut nothing
   std::array<S, kUpperEnds> upper;
   S hole_end;  ///< up to this z there is a hole of x
   /// Of Q, P, L, H: their squares are ((m + m_z z) / cos(phi_max))^2 less what they have in common.
   std::array<double, 4> m, m_z;
+
+  double sign(const Edge& e) const { return signs[e.side][e.curve]; }
+  const S& constant(const Edge& e) const { return constants[e.side][e.curve]; }
 };
 
 template <class S>
@@ -152,9 +140,9 @@ Section<S> section(const Frame<S>& f, const S& beta) {
   const Limits<S>& l = f.l;
   const S none(-1.0), all(1e4), zero(0.0), one(1.0);  // z below which, and above which, no mechanism reaches
   const auto [sin_b, cos_b] = sincos(beta);
-  const S lift = g.e * sin_b;                        // N1 = z + lift
-  const S width = (g.d - g.e * cos_b) * f.side;      // D; < 0 beyond the constraint singularity
-  const S reach2 = (g.L3 - width) * (g.L3 + width);  // n3^2 + N1^2
+  const S lift = g.e * sin_b;                          // N1 = z + lift
+  const S width = (g.d - g.e * cos_b) * home_side(g);  // D; < 0 beyond the constraint singularity
+  const S reach2 = (g.L3 - width) * (g.L3 + width);    // n3^2 + N1^2
   const S Q0 = g.fp * sin_b - g.h2 * cos_b - g.h1, w_y = g.fp * cos_b + g.h2 * sin_b - g.f;
   const S P0 = g.f * sin_b - g.h1 * cos_b - g.h2, v_0 = g.fp - g.f * cos_b - g.h1 * sin_b;  // w''_y = v_0 + z sin b
   const S& t = f.tan_phi;
@@ -201,10 +189,10 @@ Section<S> section(const Frame<S>& f, const S& beta) {
              circle(root_or_zero(hole2), S(-Q0))};
   for (std::size_t i = 0; i < kCurves; ++i) {
     const bool limb = i < 3;
-    s.lo[i] = limb ? f.lo[i] : zero;
-    s.hi[i] = limb ? f.hi[i] : zero;
-    s.sign_lo[i] = limb ? f.signs[i] : -1;
-    s.sign_hi[i] = limb ? f.signs[i] : 1;
+    s.constants[kLeft][i] = limb ? f.lo[i] : zero;
+    s.constants[kRight][i] = limb ? f.hi[i] : zero;
+    s.signs[kLeft][i] = limb ? f.signs[i] : -1;
+    s.signs[kRight][i] = limb ? f.signs[i] : 1;
   }
   s.m = {value_of(Q0), value_of(P0), value_of(l.lw_max * l.phi.cos), value_of(l.lw_min * l.phi.cos)};
   s.m_z = {1, value_of(cos_b), 0, 0};
@@ -214,12 +202,11 @@ Section<S> section(const Frame<S>& f, const S& beta) {
 /// The values of a section.
 template <class S>
 Section<double> values(const Section<S>& s) {
-  Section<double> v{{}, s.sign_lo, s.sign_hi, {}, {}, {}, {}, value_of(s.hole_end), s.m, s.m_z};
+  Section<double> v{.signs = s.signs, .hole_end = value_of(s.hole_end), .m = s.m, .m_z = s.m_z};
   for (std::size_t i = 0; i < kCurves; ++i) {
     const Curve<S>& c = s.curve[i];
     v.curve[i] = {value_of(c.a), value_of(c.a_z), value_of(c.b), value_of(c.b_z)};
-    v.lo[i] = value_of(s.lo[i]);
-    v.hi[i] = value_of(s.hi[i]);
+    for (const Side side : {kLeft, kRight}) v.constants[side][i] = value_of(s.constants[side][i]);
   }
   for (std::size_t i = 0; i < kLowerEnds; ++i) v.lower[i] = value_of(s.lower[i]);
   for (std::size_t i = 0; i < kUpperEnds; ++i) v.upper[i] = value_of(s.upper[i]);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/hash.hpp"
 #include "engine/mechanisms/hybrid/meetings.hpp"
 
 namespace pkm::hybrid {
@@ -30,14 +31,14 @@ Node node_at(const Section<double>& s, double z) {
 }
 
 double place(const Section<double>& s, const Edge& e, const Node& n) {
-  return (e.side == 0 ? s.lo[e.curve] : s.hi[e.curve]) + n.root[e.curve] * sign_of(s, e);
+  return s.constant(e) + n.root[e.curve] * s.sign(e);
 }
 
 /// Where `above` may come down to `below` between two heights at which it is not below it: at that height its least
 /// bound is negative; NaN: it stays above. A convex function lies above its tangents, a concave one above its chord.
 double may_meet(const Section<double>& s, const Edge& above, const Edge& below, const Node& p, const Node& q) {
   if (of_chain(above, below)) return kNowhere;
-  const double high = sign_of(s, above), low = sign_of(s, below);
+  const double high = s.sign(above), low = s.sign(below);
   const bool high_bends = high<0, low_bends = low> 0;  // convex, and the other concave
   const double width = q.z - p.z, gap_p = place(s, above, p) - place(s, below, p),
                gap_q = place(s, above, q) - place(s, below, q);
@@ -72,7 +73,7 @@ double may_meet(const Section<double>& s, const Edge& above, const Edge& below, 
 /// The curves of one side in force over a range of z.
 class Envelope {
  public:
-  Envelope(const Section<double>& s, std::uint8_t side, std::size_t curves, const Node& low, const Node& high,
+  Envelope(const Section<double>& s, Side side, std::size_t curves, const Node& low, const Node& high,
            std::vector<StripScratch::Stretch>& stretches)
       : s_(s), side_(side), curves_(curves), out_(stretches) {
     out_.clear();
@@ -87,7 +88,7 @@ class Envelope {
     double at = place(s_, edge(0), n);
     for (std::size_t k = 1; k < curves_; ++k) {
       const double x = place(s_, edge(k), n);
-      if (!(side_ == 0 ? x > at : x < at)) continue;
+      if (!(side_ == kLeft ? x > at : x < at)) continue;
       best = k;
       at = x;
     }
@@ -106,7 +107,7 @@ class Envelope {
     }
     for (std::size_t k = 0; k < curves_ && depth > 0; ++k) {
       if (k == i || !(p.z < q.z)) continue;
-      const double z = side_ == 0 ? may_meet(s_, edge(i), edge(k), p, q) : may_meet(s_, edge(k), edge(i), p, q);
+      const double z = side_ == kLeft ? may_meet(s_, edge(i), edge(k), p, q) : may_meet(s_, edge(k), edge(i), p, q);
       if (!(z > p.z && z < q.z)) continue;
       const Node n = node_at(s_, z);
       const std::size_t between = in_force(n);
@@ -122,10 +123,14 @@ class Envelope {
   }
 
   const Section<double>& s_;
-  std::uint8_t side_;
+  Side side_;
   std::size_t curves_;
   std::vector<StripScratch::Stretch>& out_;
 };
+
+StripEnd meeting_at(double z, const Edge& first, const Edge& second) {
+  return {.z = z, .kind = StripEnd::Kind::meeting, .first = first, .second = second};
+}
 
 /// An end of a strip and the curves there.
 struct Place {
@@ -140,7 +145,7 @@ void add_positive(const Section<double>& s, const Edge& left, const Edge& right,
   const double low = p.node.z, high = q.node.z;
   if (p.positive != q.positive) {
     const double z = meeting(s, right, left, low, high);
-    Place middle{{z, StripEnd::Kind::meeting, 0, left, right}, node_at(s, z), p.positive};
+    Place middle{meeting_at(z, left, right), node_at(s, z), p.positive};
     add_positive(s, left, right, p, middle, depth, strips);
     middle.positive = q.positive;
     add_positive(s, left, right, middle, q, depth, strips);
@@ -151,7 +156,7 @@ void add_positive(const Section<double>& s, const Edge& left, const Edge& right,
                    : p.positive ? may_meet(s, right, left, p.node, q.node)
                                 : may_meet(s, left, right, p.node, q.node);
   if (z > low && z < high) {
-    Place middle{{z, StripEnd::Kind::meeting, 0, left, left}, node_at(s, z), false};  // no end, if the strip goes on
+    Place middle{meeting_at(z, left, left), node_at(s, z), false};  // no end, if the strip goes on
     middle.positive = place(s, right, middle.node) >= place(s, left, middle.node);
     add_positive(s, left, right, p, middle, depth - 1, strips);
     add_positive(s, left, right, middle, q, depth - 1, strips);
@@ -172,17 +177,18 @@ void find_plain_strips(const Section<double>& s, std::size_t curves, const Strip
   strips.clear();
   if (!(low.z < high.z)) return;
   const Node bottom = node_at(s, low.z), top = node_at(s, high.z);
-  const Envelope left(s, 0, curves, bottom, top, scratch.left), right(s, 1, curves, bottom, top, scratch.right);
+  const Envelope left(s, kLeft, curves, bottom, top, scratch.left),
+      right(s, kRight, curves, bottom, top, scratch.right);
   Place from{low, bottom, false};
   for (std::size_t i = 0, j = 0; i < scratch.left.size() && j < scratch.right.size();) {
     const auto &l = scratch.left[i], &r = scratch.right[j];
-    const Edge lower{l.curve, 0}, upper{r.curve, 1};
+    const Edge lower{l.curve, kLeft}, upper{r.curve, kRight};
     StripEnd end = high;
     const bool left_ends = l.to <= r.to, right_ends = r.to <= l.to;
     if (left_ends && i + 1 < scratch.left.size())
-      end = {l.to, StripEnd::Kind::meeting, 0, lower, {scratch.left[i + 1].curve, 0}};
+      end = meeting_at(l.to, lower, {scratch.left[i + 1].curve, kLeft});
     else if (right_ends && j + 1 < scratch.right.size())
-      end = {r.to, StripEnd::Kind::meeting, 0, upper, {scratch.right[j + 1].curve, 1}};
+      end = meeting_at(r.to, upper, {scratch.right[j + 1].curve, kRight});
     Place to{end, end.z == high.z ? top : node_at(s, end.z), false};
     for (Place* at : {&from, &to}) at->positive = place(s, upper, at->node) >= place(s, lower, at->node);
     add_positive(s, lower, upper, from, to, kDepth, strips);
@@ -221,23 +227,18 @@ void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, 
 
 std::uint64_t signature_of(const Structure& structure) {
   if (structure.strips.empty()) return 0;
-  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-  const auto mix = [&](std::uint64_t word) { hash = (hash ^ word) * 1099511628211u; };
+  Fnv1a hash;
   const auto mix_end = [&](const StripEnd& e) {
-    mix(static_cast<std::uint64_t>(e.kind));
-    mix(e.index + 16u * (e.first.curve + 16u * (e.first.side + 2u * (e.second.curve + 16u * e.second.side))));
+    hash.add(static_cast<std::uint64_t>(e.kind));
+    hash.add(e.index + 16u * (e.first.curve + 16u * (e.first.side + 2u * (e.second.curve + 16u * e.second.side))));
   };
   for (const Strip& strip : structure.strips) {
     mix_end(strip.from);
     mix_end(strip.to);
-    mix(strip.left.curve + 16u * strip.right.curve + 256u * (strip.left.side + 2u * strip.right.side));
+    hash.add(strip.left.curve + 16u * strip.right.curve + 256u * (strip.left.side + 2u * strip.right.side));
   }
-  return hash | 1;
+  return hash.value() | 1;
 }
-
-}  // namespace
-
-namespace {
 
 /// The ends of z in force, as numbers of the lower and the upper one.
 std::array<std::size_t, 2> ends_in_force(const Section<double>& s) {
@@ -256,19 +257,8 @@ bool follow_strips(const Section<double>& s, Structure& structure) {
   const double low = s.lower[lower], high = s.upper[upper];
   if (lower != structure.lower || upper != structure.upper || hole_of(s, low, high) != structure.hole) return false;
   const auto follow = [&](StripEnd& end) {
-    switch (end.kind) {
-      case StripEnd::Kind::lower:
-        end.z = low;
-        break;
-      case StripEnd::Kind::upper:
-        end.z = high;
-        break;
-      case StripEnd::Kind::hole:
-        end.z = s.hole_end;
-        break;
-      case StripEnd::Kind::meeting:
-        end.z = meeting_near(s, end.first, end.second, end.z);
-    }
+    const bool meet = end.kind == StripEnd::Kind::meeting;
+    end.z = meet ? meeting_near(s, end.first, end.second, end.z) : height(s, end);
   };
   StripEnd from, to;  // of the strip before, where it was
   for (std::size_t i = 0; i < structure.strips.size(); ++i) {
@@ -299,19 +289,14 @@ void find_strips(const Section<double>& s, StripScratch& scratch, Structure& str
   const auto [lower, upper] = ends_in_force(s);
   structure.lower = lower;
   structure.upper = upper;
-  const StripEnd low{
-      s.lower[structure.lower], StripEnd::Kind::lower, static_cast<std::uint8_t>(structure.lower), {}, {}};
-  const StripEnd high{
-      s.upper[structure.upper], StripEnd::Kind::upper, static_cast<std::uint8_t>(structure.upper), {}, {}};
+  const StripEnd low = end_of_z(s, StripEnd::Kind::lower, lower), high = end_of_z(s, StripEnd::Kind::upper, upper);
   structure.hole = hole_of(s, low.z, high.z);
-  find_plain_strips(s, kCurveH, low, high, scratch, scratch.outer);
-  if (structure.hole != Structure::Hole::none) {
-    const StripEnd end =
-        structure.hole == Structure::Hole::below ? StripEnd{s.hole_end, StripEnd::Kind::hole, 0, {}, {}} : high;
+  const bool whole = structure.hole == Structure::Hole::none;
+  find_plain_strips(s, kCurveH, low, high, scratch, whole ? structure.strips : scratch.outer);
+  if (!whole) {
+    const StripEnd end = structure.hole == Structure::Hole::below ? end_of_z(s, StripEnd::Kind::hole) : high;
     find_plain_strips(s, kCurves, low, end, scratch, scratch.inner);
     take_out(scratch.outer, scratch.inner, structure.strips);
-  } else {
-    structure.strips.swap(scratch.outer);
   }
   structure.signature = signature_of(structure);
 }

@@ -16,13 +16,6 @@
 
 namespace pkm::hybrid {
 
-/// An end of x at all heights: a curve of a section as a lower (side 0) or an upper (side 1) end.
-struct Edge {
-  std::uint8_t curve = 0;
-  std::uint8_t side = 0;
-  bool operator==(const Edge&) const = default;
-};
-
 /// A height where a strip ends: an end of z of the section, or where two edges meet.
 struct StripEnd {
   enum class Kind : std::uint8_t { lower, upper, hole, meeting };
@@ -73,19 +66,15 @@ bool follow_strips(const Section<double>& s, Structure& structure);
 /// x of an edge.
 template <class S>
 S edge_at(const Section<S>& s, const Edge& edge, const S& z) {
-  const std::size_t k = edge.curve;
-  const S root = s.curve[k].root(z);
-  return edge.side == 0 ? s.lo[k] + root * s.sign_lo[k] : s.hi[k] + root * s.sign_hi[k];
+  return s.constant(edge) + s.curve[edge.curve].root(z) * s.sign(edge);
 }
 
 /// Integral of x along an edge over z.
 template <class S>
 S edge_integral(const Section<S>& s, const Edge& edge, const S& from, const S& to) {
-  const std::size_t k = edge.curve;
-  const Curve<S>& c = s.curve[k];
+  const Curve<S>& c = s.curve[edge.curve];
   const S length = to - from;
-  const S root = root_integral(length, c.root(from), c.root(to), c.curvature());
-  return edge.side == 0 ? s.lo[k] * length + root * s.sign_lo[k] : s.hi[k] * length + root * s.sign_hi[k];
+  return s.constant(edge) * length + root_integral(length, c.root(from), c.root(to), c.curvature()) * s.sign(edge);
 }
 
 /// The height of a strip's end with its derivatives. Where edges meet it is an implicit function of the design.
@@ -98,11 +87,17 @@ S height(const Section<S>& s, const StripEnd& end) {
   const auto slope = [&](const Edge& edge) {
     const Curve<S>& c = s.curve[edge.curve];
     const double root = value_of(c.root(z));
-    const double sign = edge.side == 0 ? s.sign_lo[edge.curve] : s.sign_hi[edge.curve];
-    return root > 0 ? sign * value_of(c.slope(z, S(root))) : 0.0;
+    return root > 0 ? s.sign(edge) * value_of(c.slope(z, S(root))) : 0.0;
   };
   const double by_z = slope(end.second) - slope(end.first);
   return by_z != 0 ? S(z - (apart - value_of(apart)) / by_z) : z;
+}
+
+/// An end of z of a section.
+inline StripEnd end_of_z(const Section<double>& s, StripEnd::Kind kind, std::size_t index = 0) {
+  StripEnd end{.kind = kind, .index = static_cast<std::uint8_t>(index)};
+  end.z = height(s, end);
+  return end;
 }
 
 /// Area of a section in closed form [m^2], from the integrals along the edges of its strips; an edge that goes on in

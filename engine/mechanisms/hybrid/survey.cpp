@@ -11,10 +11,11 @@
 namespace pkm::hybrid {
 namespace {
 
-/// The clearance that a plan asks for.
-std::optional<double> clearance_of(const SurveyPlan& plan) {
-  const std::optional<double>& given = plan.limits.given[kClearanceMin];
-  return given.value_or(kNoClearance) > kNoClearance ? given : std::nullopt;
+constexpr int kY = 1;  ///< the coordinate that surveys hold
+
+/// Whether a plan asks for a clearance.
+bool with_links(const SurveyPlan& plan) {
+  return plan.limits.given[kClearanceMin].value_or(kNoClearance) > kNoClearance;
 }
 
 /// What the carriage's stroke makes of a volume of (x, z, beta): its length where y is integrated over [m], else 1, or
@@ -64,9 +65,14 @@ class Conditioning {
       for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine}) list->resize(whole);
       survey_.conditioning.resize(before + whole);
       const Geometry<double>& g = frame_.g;
-      const ConditioningDesign design{
-          g.L1,      g.L2,   g.L3, g.d, g.e, {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
-          kRoundoff, length_};
+      const ConditioningDesign design{.L1 = g.L1,
+                                      .L2 = g.L2,
+                                      .L3 = g.L3,
+                                      .d = g.d,
+                                      .e = g.e,
+                                      .signs = {1.0 * frame_.signs[0], 1.0 * frame_.signs[1], 1.0 * frame_.signs[2]},
+                                      .roundoff = kRoundoff,
+                                      .length = length_};
       with_instruction_set([&]<InstructionSet set>() {
         inverse_conditions<set>(design, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), whole,
                                 survey_.conditioning.data() + before);
@@ -84,41 +90,56 @@ class Conditioning {
   SinCosOf<double> sincos_{0, 1};
 };
 
-class ColumnSurveyor final : public Surveyor {
+/// What surveys of either method know.
+class PlannedSurveyor : public Surveyor {
  public:
-  ColumnSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
-      : signs_(signs),
-        branch_(branch),
-        plan_(plan),
-        demand_(demand),
-        fixed_(plan.nodes[0] > 0),
-        z_rule_(gauss_legendre(fixed_ ? plan.nodes[0] : kSampleNodes)),
-        beta_rule_(gauss_legendre(fixed_ ? plan.nodes[1] : kSampleNodes)) {}
+  PlannedSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
+      : signs_(signs), branch_(branch), plan_(plan), demand_(demand) {}
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override { run(parameters, survey); }
-  void survey(std::span<const Dual4> parameters, Survey<Dual4>& survey) const override { run(parameters, survey); }
-  std::string no_derivatives() const override { return {}; }
+ protected:
+  template <class S>
+  Frame<S> frame_of(std::span<const S> parameters) const {
+    return frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_);
+  }
+
+  WorkingMode signs_;
+  int branch_;
+  SurveyPlan plan_;
+  Demand demand_;
+};
+
+class ColumnSurveyor final : public PlannedSurveyor, public SlopeSurveyor {
+ public:
+  ColumnSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const ColumnOptions& columns,
+                 const Demand& demand)
+      : PlannedSurveyor(signs, branch, plan, demand), columns_(columns) {}
+
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<double>>(), survey);
+  }
+  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
+    run(parameters, scratch.get<ColumnScratch<Dual4>>(), survey);
+  }
+  const SlopeSurveyor* slopes() const override { return this; }
 
  private:
   static constexpr int kSampleNodes = 8;  // per strip of z and piece of beta
 
   template <class S>
-  void run(std::span<const S> parameters, Survey<S>& survey) const {
-    thread_local ColumnScratch<S> scratch;
+  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
     survey.clear();
     const Frame<S> f = frame_of(parameters);
-    const S stroke = carriage(f.l, plan_.held);
+    const S stroke = carriage(f.l, how_held(plan_, kY));
     if (!(value_of(stroke) > 0)) return;
     find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     if (!fixed_) {
-      const Integral<S> volume = hybrid::volume(f, plan_.tolerance, scratch);
+      const Integral<S> volume = hybrid::volume(f, columns_.tolerance, scratch);
       survey.volume = volume.value * stroke;
       survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
       survey.columns = volume.evaluations;
       if (!demand_.conditioning) return;
     }
-    thread_local PoseList poses;
-    Conditioning<S> conditioning(f, demand_, poses, survey);
+    Conditioning<S> conditioning(f, demand_, scratch.poses, survey);
     for (const Piece<S>& piece : scratch.pieces)
       for (std::size_t i = 0; i < beta_rule_.node.size(); ++i) {
         const MappedNode<S> at = map_node(piece, beta_rule_.node[i]);
@@ -134,10 +155,6 @@ class ColumnSurveyor final : public Surveyor {
     conditioning.finish();
   }
 
-  template <class S>
-  Frame<S> frame_of(std::span<const S> parameters) const {
-    return frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_);
-  }
   /// The design as constants of another scalar.
   template <class To, class From>
   Frame<To> still(std::span<const From> parameters) const {
@@ -146,45 +163,66 @@ class ColumnSurveyor final : public Surveyor {
     return frame_of(std::span<const To>(constants));
   }
 
-  WorkingMode signs_;
-  int branch_;
-  SurveyPlan plan_;
-  Demand demand_;
-  bool fixed_;  ///< numbers of nodes are given
-  GaussRule z_rule_, beta_rule_;
+  ColumnOptions columns_;
+  bool fixed_ = columns_.nodes[0] > 0;  ///< numbers of nodes are given
+  GaussRule z_rule_ = gauss_legendre(fixed_ ? columns_.nodes[0] : kSampleNodes),
+            beta_rule_ = gauss_legendre(fixed_ ? columns_.nodes[1] : kSampleNodes);
 };
 
-class VoxelSurveyor final : public Surveyor {
+class VoxelSurveyor final : public PlannedSurveyor {
  public:
-  VoxelSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
-      : signs_(signs), branch_(branch), plan_(plan), demand_(demand) {}
+  VoxelSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const VoxelOptions& voxels,
+                const Demand& demand)
+      : PlannedSurveyor(signs, branch, plan, demand), voxels_(voxels) {}
 
-  std::string no_derivatives() const override { return voxels_have_no_derivatives(); }
+  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
 
-  void survey(std::span<const double> parameters, Survey<double>& survey) const override {
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    run(parameters, scratch.get<VoxelScratch>(), survey);
+  }
+
+  VoxelMap map(std::span<const double> parameters) const {
+    const VoxelDesign d = design_of(parameters);
+    const VoxelGrid grid = grid_of(d);
+    VoxelMap m = grid.map();
+    if (!(carriage(d.frame.l, how_held(plan_, kY)) > 0)) return m;
+    VoxelHeights heights;
+    CellRuns runs;
+    const VoxelColumns columns(d, grid, heights);
+    for (std::int64_t k = 0; k < grid.cells[2]; ++k)
+      columns.visit(k, runs, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+        for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
+      });
+    return m;
+  }
+
+ private:
+  static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
+
+  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
     survey.clear();
     const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
-    const double stroke = carriage(d.frame.l, plan_.held);
+    const VoxelGrid grid = grid_of(d);
+    const double stroke = carriage(d.frame.l, how_held(plan_, kY));
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
     if (!(stroke > 0)) return;
-    thread_local VoxelHeights heights;
-    const VoxelColumns columns(d, grid, heights);
+    if (scratch.workers.size() < workers()) scratch.workers.resize(workers());
+    const VoxelColumns columns(d, grid, scratch.heights);
     const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
-    const bool counts = !d.clearance && !demand_.conditioning;
+    const bool counts = !d.with_links && !demand_.conditioning;
     share_samples(
         static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
-        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t) {
-          thread_local PoseList poses;
+        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t worker) {
+          auto& [poses, runs] = scratch.workers[worker];
           Conditioning<double> conditioning(d.frame, demand_, poses, part);
           const auto first = static_cast<std::int64_t>(piece) * kBetas;
           for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) {
             if (counts) {
-              part.feasible_cells += columns.count(k, part.touches_box);
+              part.feasible_cells += columns.count(k, runs, part.touches_box);
               continue;
             }
-            columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
+            columns.visit(k, runs, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
               part.feasible_cells += end - i;
               part.touches_box =
                   part.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
@@ -197,48 +235,31 @@ class VoxelSurveyor final : public Surveyor {
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
-  VoxelMap map(std::span<const double> parameters) const {
-    const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid(plan_.cells, plan_.box ? *plan_.box : default_box(d));
-    VoxelMap m = grid.map();
-    if (!(carriage(d.frame.l, plan_.held) > 0)) return m;
-    VoxelHeights heights;
-    const VoxelColumns columns(d, grid, heights);
-    for (std::int64_t k = 0; k < grid.cells[2]; ++k)
-      columns.visit(k, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
-        for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
-      });
-    return m;
-  }
+  VoxelDesign design_of(std::span<const double> parameters) const { return {frame_of(parameters), with_links(plan_)}; }
+  VoxelGrid grid_of(const VoxelDesign& d) const { return {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d)}; }
 
- private:
-  static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
-
-  VoxelDesign design_of(std::span<const double> parameters) const {
-    return {frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_), branch_,
-            clearance_of(plan_)};
-  }
-
-  WorkingMode signs_;
-  int branch_;
-  SurveyPlan plan_;
-  Demand demand_;
+  VoxelOptions voxels_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
-                                              const Demand& demand) {
-  if (plan.method == Method::voxels) return std::make_unique<VoxelSurveyor>(signs, branch, plan, demand);
-  if (clearance_of(plan))
+std::unique_ptr<const Surveyor> make_column_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
+                                                     const ColumnOptions& columns, const Demand& demand) {
+  if (with_links(plan))
     throw std::invalid_argument(
         "mechanism 2t1r-p-hybrid has no column surveys under a clearance (clearance_min), because links that meet end "
         "columns where no formula says; take voxels, or require the clearance of a task-workspace");
-  return std::make_unique<ColumnSurveyor>(signs, branch, plan, demand);
+  return std::make_unique<ColumnSurveyor>(signs, branch, plan, columns, demand);
 }
 
-VoxelMap voxel_map(const WorkingMode& signs, int branch, std::span<const double> parameters, const SurveyPlan& plan) {
-  return VoxelSurveyor(signs, branch, plan, {}).map(parameters);
+std::unique_ptr<const Surveyor> make_voxel_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
+                                                    const VoxelOptions& voxels, const Demand& demand) {
+  return std::make_unique<VoxelSurveyor>(signs, branch, plan, voxels, demand);
+}
+
+VoxelMap voxel_map(const WorkingMode& signs, int branch, std::span<const double> parameters, const SurveyPlan& plan,
+                   const VoxelOptions& voxels) {
+  return VoxelSurveyor(signs, branch, plan, voxels, {}).map(parameters);
 }
 
 }  // namespace pkm::hybrid

@@ -5,54 +5,11 @@
 
 namespace pkm::hybrid {
 
-namespace {
-
-bool inside(double value, double lower, double upper) { return value >= lower && value <= upper; }
-
-bool links_clear(const VoxelDesign& design, const Pose<double>& pose) {
-  const Geometry<double>& g = design.frame.g;
-  const Links<double> link = links(g, pose, inverse(g, pose, design.frame.signs), shaft(g, pose));
-  return std::ranges::all_of(kPairs, [&](const LinkPair& pair) {
-    return capsule_distance(link[pair.first], link[pair.second]) >= *design.clearance;
-  });
-}
-
-}  // namespace
-
-// The margins of limits.hpp, cheap ones first, as comparisons of squares and of products with cosines.
 bool feasible(const VoxelDesign& design, double x, double z, double beta) {
   const Frame<double>& f = design.frame;
-  const Geometry<double>& g = f.g;
-  const Limits<double>& l = f.l;
-  const auto square = [](double value) { return value * value; };
-
-  // limbs A and B
-  if (!(z > 0 && z >= l.z_clear && inside(beta, l.beta_min, l.beta_max))) return false;
-  const double A2 = (g.L1 - z) * (g.L1 + z), B2 = (g.L2 - z) * (g.L2 + z);  // n1^2, n2^2
-  const double least = square(l.tau_s), greatest_A = square(l.psiA.sin), greatest_C = square(l.psiC.sin);
-  if (!inside(A2, least * square(g.L1), greatest_A * square(g.L1))) return false;
-  if (!inside(B2, least * square(g.L2), greatest_A * square(g.L2))) return false;
-  const double n1 = f.signs[0] * std::sqrt(A2), n2 = f.signs[1] * std::sqrt(B2);
-  if (!inside(x - n1, f.lo[0], f.hi[0]) || !inside(x - n2, f.lo[1], f.hi[1])) return false;
-  if (!(z * std::fabs(n1 - n2) >= l.tau_p * g.L1 * g.L2 && g.a * 2 + n1 - n2 >= l.gap)) return false;
-
-  // the shaft w of the auxiliary chain
-  const auto [sin_b, cos_b] = sincos(beta);
-  const double w_y = g.fp * cos_b + g.h2 * sin_b - g.f, Q = z + g.fp * sin_b - g.h2 * cos_b - g.h1;
-  const double P = (z - g.h1) * cos_b + g.f * sin_b - g.h2, w2 = x * x + w_y * w_y + Q * Q;
-  if (!inside(w2, square(l.lw_min), square(l.lw_max))) return false;
-  if (!(Q > 0 && P > 0 && std::fmin(Q * Q, P * P) >= square(l.phi.cos) * w2)) return false;
-
-  // limb C
-  const double k = g.e * cos_b - g.d, N1 = z + g.e * sin_b, across2 = k * k + N1 * N1, L2 = g.L3 * g.L3;
-  const double C2 = L2 - across2;  // n3^2
-  if (!(N1 >= l.z_clear && inside(C2, least * L2, greatest_C * L2))) return false;
-  if (!inside(x - f.signs[2] * std::sqrt(C2), f.lo[2], f.hi[2])) return false;
-  if (!((z * cos_b + g.d * sin_b) * design.branch >= l.tau_p * g.L3)) return false;
-  const double across = std::sqrt(across2);
-  if (!(-k * f.side >= l.tau_c * across && std::fabs(k) * f.lam.cos <= N1 * f.lam.sin)) return false;
-  if (!(N1 * cos_b - k * sin_b >= f.mu.cos * across)) return false;
-  return !design.clearance || links_clear(design, {x, 0, z, beta});
+  const Pose<double> pose{x, f.l.s_min[1], z, beta};
+  return z > 0 && visit_margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), f.branch, design.with_links,
+                                [](std::size_t, double margin) { return margin >= 0; });
 }
 
 Box default_box(const VoxelDesign& design) {
@@ -102,11 +59,10 @@ VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, Vox
   }
 }
 
-VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k) const {
-  thread_local CellRuns runs;
+VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) const {
   const Frame<double>& f = design_.frame;
   const double beta = grid_.centre(2, k);
-  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {runs, 0, 0, {0, false}};
+  if (f.empty || beta < f.l.beta_min || beta > f.l.beta_max) return {};
   for (auto* list : {&runs.first, &runs.hole, &runs.after, &runs.end}) list->resize(heights_.z.size());
   const Section<double> s = section(f, beta);
   const double low = *std::ranges::max_element(s.lower), high = *std::ranges::min_element(s.upper);
@@ -117,48 +73,48 @@ VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k) const {
     const Curve<double>& c = s.curve[index];
     return EndOfX{c.a, c.a_z, c.b, c.b_z};
   };
-  const ColumnsAtBeta columns{end_of_x(kCurveC),
-                              end_of_x(kCurveQ),
-                              end_of_x(kCurveP),
-                              end_of_x(kCurveL),
-                              end_of_x(kCurveH),
-                              s.sign_hi[kCurveC],
-                              s.lo[kCurveC],
-                              s.hi[kCurveC],
-                              high,
-                              s.hole_end,
-                              grid_.lower[0],
-                              grid_.step[0],
-                              static_cast<double>(grid_.cells[0]),
-                              heights_.z.data(),
-                              heights_.left.data(),
-                              heights_.right.data(),
-                              first_z,
-                              end_z};
-  return {runs, first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
+  const Edge left_C{kCurveC, kLeft}, right_C{kCurveC, kRight};
+  const ColumnsAtBeta columns{.C = end_of_x(kCurveC),
+                              .Q = end_of_x(kCurveQ),
+                              .P = end_of_x(kCurveP),
+                              .L = end_of_x(kCurveL),
+                              .H = end_of_x(kCurveH),
+                              .sign = s.sign(right_C),
+                              .lo_C = s.constant(left_C),
+                              .hi_C = s.constant(right_C),
+                              .z_high = high,
+                              .hole_end = s.hole_end,
+                              .x_lower = grid_.lower[0],
+                              .x_step = grid_.step[0],
+                              .cells = static_cast<double>(grid_.cells[0]),
+                              .z = heights_.z.data(),
+                              .left = heights_.left.data(),
+                              .right = heights_.right.data(),
+                              .first_z = first_z,
+                              .end_z = end_z};
+  return {first_z, end_z, with_instruction_set([&]<InstructionSet set>() { return fill<set>(columns, runs); })};
 }
 
-std::int64_t VoxelColumns::count(std::int64_t k, bool& touches) const {
-  const auto& [runs, first_z, end_z, tally] = find_runs(k);
-  const auto some_at = [&, &r = runs, first = first_z, last = end_z](std::size_t j) {
-    return first <= j && j < last && r.hole[j] - r.first[j] + (r.end[j] - r.after[j]) > 0;
+std::int64_t VoxelColumns::count(std::int64_t k, CellRuns& runs, bool& touches) const {
+  const Columns at = find_runs(k, runs);
+  const auto some_at = [&](std::size_t j) {
+    return at.first_z <= j && j < at.end_z && runs.hole[j] - runs.first[j] + (runs.end[j] - runs.after[j]) > 0;
   };
   const bool last_beta = k == 0 || k == grid_.cells[2] - 1;
-  if (tally.cells > 0)
+  if (at.tally.cells > 0)
     touches =
-        touches || tally.touches || last_beta || some_at(0) || some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
-  return static_cast<std::int64_t>(tally.cells);
+        touches || at.tally.touches || last_beta || some_at(0) || some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
+  return static_cast<std::int64_t>(at.tally.cells);
 }
 
 bool VoxelColumns::clear(double x, double z, double beta, bool along_x) const {
   const Frame<double>& f = design_.frame;
   const Pose<double> pose{x, 0, z, beta};
   const Links<double> link = links(f.g, pose, inverse(f.g, pose, f.signs), shaft(f.g, pose));
-  for (const auto& [first, second] : kPairs) {
-    const bool moves = first == kLinkF || second == kLinkF;  // the others move along x together
-    if (moves == along_x && !(capsule_distance(link[first], link[second]) >= *design_.clearance)) return false;
-  }
-  return true;
+  return std::ranges::all_of(kPairs, [&](const LinkPair& pair) {
+    const bool moves = pair.first == kLinkF || pair.second == kLinkF;  // the others move along x together
+    return moves != along_x || link_distance(link, pair) >= f.l.clearance_min;
+  });
 }
 
 }  // namespace pkm::hybrid

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "engine/mechanisms/hybrid/cells.hpp"
+#include "engine/mechanisms/hybrid/conditioning.hpp"
 #include "engine/mechanisms/hybrid/section.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
@@ -15,19 +15,28 @@ namespace pkm::hybrid {
 /// The design whose cells are counted.
 struct VoxelDesign {
   Frame<double> frame;
-  int branch = 1;                   ///< required sign of N2
-  std::optional<double> clearance;  ///< least distance of the links as capsules [m]; none: they are left out
+  bool with_links = false;  ///< they keep their clearance as capsules; else they are left out
 };
 
-/// Whether a pose is feasible: every margin of section 7 of the document, stroke 2 apart, and the clearance asked for.
+/// Whether a pose is feasible, the carriage within its stroke.
 bool feasible(const VoxelDesign& design, double x, double z, double beta);
 
 /// A box that contains every feasible pose, as x, z, beta; where there is none, a box of some size.
 Box default_box(const VoxelDesign& design);
 
-/// What all columns at a height have in common; storage that surveys reuse.
+/// What all columns at a height have in common.
 struct VoxelHeights {
   std::vector<double> z, left, right;  ///< heights, and what limbs A and B leave of x there [m]
+};
+
+/// Storage that surveys reuse.
+struct VoxelScratch {
+  struct Worker {
+    PoseList poses;  ///< whose conditioning is asked for
+    CellRuns runs;   ///< at one beta
+  };
+  VoxelHeights heights;
+  std::vector<Worker> workers;
 };
 
 /// The feasible cells of a grid, column by column along x. Threads may share it.
@@ -37,20 +46,22 @@ class VoxelColumns {
   VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelHeights& heights);
 
   /// Cells at beta number k, whatever the clearance.
+  /// @param runs     overwritten
   /// @param touches  set if some of them are at a side of the box
-  std::int64_t count(std::int64_t k, bool& touches) const;
+  std::int64_t count(std::int64_t k, CellRuns& runs, bool& touches) const;
 
   /// Calls visit(i, i_end, j) for every run [i, i_end) of feasible cells along x at beta number k.
+  /// @param runs  overwritten
   template <class Visit>
-  void visit(std::int64_t k, const Visit& visit) const {
-    const Columns at = find_runs(k);
+  void visit(std::int64_t k, CellRuns& runs, const Visit& visit) const {
+    const Columns at = find_runs(k, runs);
     for (std::size_t j = at.first_z; j < at.end_z; ++j)
       for (const auto& [first, end] :
-           {std::array{at.runs.first[j], at.runs.hole[j]}, std::array{at.runs.after[j], at.runs.end[j]}}) {
+           {std::array{runs.first[j], runs.hole[j]}, std::array{runs.after[j], runs.end[j]}}) {
         const auto from = static_cast<std::int64_t>(first), to = static_cast<std::int64_t>(end),
                    height = static_cast<std::int64_t>(j);
         if (!(from < to)) continue;
-        if (design_.clearance)
+        if (design_.with_links)
           visit_clear(from, to, height, k, visit);
         else
           visit(from, to, height);
@@ -58,13 +69,12 @@ class VoxelColumns {
   }
 
  private:
-  /// The columns at one beta; the runs are this thread's, until its next call.
+  /// The columns at one beta.
   struct Columns {
-    const CellRuns& runs;
-    std::size_t first_z, end_z;
-    CellTally tally;
+    std::size_t first_z = 0, end_z = 0;
+    CellTally tally{0, false};
   };
-  Columns find_runs(std::int64_t k) const;
+  Columns find_runs(std::int64_t k, CellRuns& runs) const;
   /// The links' pairs whose distance changes along x, or those where it doesn't, keep clear.
   bool clear(double x, double z, double beta, bool along_x) const;
 

@@ -1,6 +1,7 @@
 #include "engine/optimisers/evolutionary/evolution.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/optimisers/evolutionary/breeding.hpp"
 #include "engine/optimisers/option_specs.hpp"
@@ -41,8 +42,12 @@ class Run {
   }
 
   bool report(std::size_t first) {
-    return input_.monitor.generation(
-        {generation_, first, &table_, &survivors_.population(), survivors_.best_row(), nullptr, survivors_.front()});
+    return input_.monitor.generation({.number = generation_,
+                                      .first_row = first,
+                                      .table = &table_,
+                                      .population = &survivors_.population(),
+                                      .best_row = survivors_.best_row(),
+                                      .front = survivors_.front()});
   }
 
   std::optional<StopReason> stop() const {
@@ -70,15 +75,27 @@ class Run {
   std::int64_t last_advance_ = 0;
 };
 
+class Evolution final : public Optimiser {
+ public:
+  Evolution(const EvolutionPlan& plan, SurvivorsMaker survivors) : plan_(plan), survivors_(std::move(survivors)) {}
+
+  StageResult minimise(const StageInput& input, EvaluationTable& table) const override {
+    return Run(plan_, input, table, *survivors_(input.problem, table))();
+  }
+  std::int64_t evaluation_limit(const Problem&) const override {
+    return std::min(plan_.evaluations, static_cast<std::int64_t>(plan_.breeding.population) +
+                                           plan_.generations * static_cast<std::int64_t>(plan_.children));
+  }
+
+ private:
+  EvolutionPlan plan_;
+  SurvivorsMaker survivors_;
+};
+
 }  // namespace
 
-StageResult evolve(const EvolutionPlan& plan, const StageInput& input, EvaluationTable& table, Survivors& survivors) {
-  return Run(plan, input, table, survivors)();
-}
-
-std::int64_t evaluation_limit(const EvolutionPlan& plan) {
-  return std::min(plan.evaluations, static_cast<std::int64_t>(plan.breeding.population) +
-                                        plan.generations * static_cast<std::int64_t>(plan.children));
+std::unique_ptr<Optimiser> make_evolution(const EvolutionPlan& plan, SurvivorsMaker survivors) {
+  return std::make_unique<Evolution>(plan, std::move(survivors));
 }
 
 std::vector<OptionSpec> evolution_options(const std::string& progress) {
@@ -101,6 +118,7 @@ EvolutionPlan evolution_plan(const Options& options, const DesignSpace& space) {
   plan.generations = options.integer("generations");
   if (options.has("evaluations")) plan.evaluations = options.integer("evaluations");
   if (options.has("stall")) plan.stall = options.integer("stall");
+  plan.tolerance = options.number("tolerance");
   return plan;
 }
 

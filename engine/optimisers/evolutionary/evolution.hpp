@@ -2,8 +2,11 @@
 // the survivors say that it is enough. Who survives is what they differ in.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +22,9 @@ struct EvolutionPlan {
   std::int64_t generations = 100;
   std::int64_t evaluations = std::numeric_limits<std::int64_t>::max();
   std::optional<std::int64_t> stall;  ///< generations without progress after which to stop
+  double tolerance = 1e-8;            ///< relative improvement that is progress
+
+  bool progress(double gain, double before) const { return gain > tolerance * std::fabs(before); }
 };
 
 /// Who lives on after a generation.
@@ -38,11 +44,10 @@ class Survivors {
   virtual const Front* front() const { return nullptr; }
 };
 
-/// Runs a stage; see Optimiser::minimise.
-StageResult evolve(const EvolutionPlan& plan, const StageInput& input, EvaluationTable& table, Survivors& survivors);
+/// Makes the survivors of one run.
+using SurvivorsMaker = std::function<std::unique_ptr<Survivors>(const Problem&, const EvaluationTable&)>;
 
-/// Most evaluations that the plan makes.
-std::int64_t evaluation_limit(const EvolutionPlan& plan);
+std::unique_ptr<Optimiser> make_evolution(const EvolutionPlan& plan, SurvivorsMaker survivors);
 
 /// The options that `evolution_plan` reads, for catalogue entries; `progress` says what stalls.
 std::vector<OptionSpec> evolution_options(const std::string& progress);

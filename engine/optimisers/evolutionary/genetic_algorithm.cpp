@@ -1,14 +1,14 @@
 #include "engine/optimisers/evolutionary/genetic_algorithm.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include "engine/optimisers/evolutionary/evolution.hpp"
-#include "engine/optimisers/evolutionary/order.hpp"
 #include "engine/optimisers/option_specs.hpp"
+#include "engine/problem/order.hpp"
 
 namespace pkm {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 struct Plan {
   EvolutionPlan evolution;
   std::size_t parents = 0;  ///< best ones that compete with the children
-  double tolerance = 1e-8;
   std::optional<double> target;
 };
 
@@ -26,20 +25,18 @@ class Best final : public Survivors {
   Best(const Plan& plan, const Problem& problem, const EvaluationTable& table)
       : plan_(plan), problem_(problem), table_(table) {}
 
-  // Both lists are sorted; so is their merge.
   bool take(const std::vector<std::int64_t>& newcomers) override {
-    children_.clear();
-    for (const std::int64_t row : newcomers)
-      children_.push_back(ranked(problem_, table_, static_cast<std::size_t>(row)));
-    std::sort(children_.begin(), children_.end());
     population_.resize(std::min(population_.size(), plan_.parents));
-    merged_.resize(population_.size() + children_.size());
-    std::merge(population_.begin(), population_.end(), children_.begin(), children_.end(), merged_.begin());
-    merged_.resize(std::min(merged_.size(), plan_.evolution.breeding.population));
-    population_.swap(merged_);
+    const auto parents = static_cast<std::ptrdiff_t>(population_.size());
+    for (const std::int64_t row : newcomers)
+      population_.push_back(ranked(problem_.objectives(), table_, static_cast<std::size_t>(row)));
+    const auto children = population_.begin() + parents;
+    std::sort(children, population_.end());
+    if (children != population_.end() && (best_.row < 0 || *children < best_)) best_ = *children;
+    std::inplace_merge(population_.begin(), children, population_.end());
+    population_.resize(std::min(population_.size(), plan_.evolution.breeding.population));
     rows_.clear();
     for (const Ranked& member : population_) rows_.push_back(member.row);
-    if (!children_.empty() && (best_.row < 0 || children_.front() < best_)) best_ = children_.front();
     if (!advanced()) return false;
     reference_ = best_;
     return true;
@@ -56,31 +53,17 @@ class Best final : public Survivors {
 
  private:
   bool advanced() const {
-    if (reference_.row < 0 || best_.status != reference_.status) return true;
-    return reference_.value - best_.value > plan_.tolerance * std::fabs(reference_.value);
+    return reference_.row < 0 || best_.status != reference_.status ||
+           plan_.evolution.progress(reference_.value - best_.value, reference_.value);
   }
 
   const Plan& plan_;
   const Problem& problem_;
   const EvaluationTable& table_;
-  std::vector<Ranked> children_, population_, merged_;
+  std::vector<Ranked> population_;  // best first
   std::vector<std::int64_t> rows_;  // of the population, best first
   Ranked best_;                     // of all generations
   Ranked reference_;                // best at the last improvement that counted
-};
-
-class GeneticAlgorithm final : public Optimiser {
- public:
-  explicit GeneticAlgorithm(Plan plan) : plan_(std::move(plan)) {}
-
-  StageResult minimise(const StageInput& input, EvaluationTable& table) const override {
-    Best best(plan_, input.problem, table);
-    return evolve(plan_.evolution, input, table, best);
-  }
-  std::int64_t evaluation_limit(const Problem&) const override { return pkm::evaluation_limit(plan_.evolution); }
-
- private:
-  Plan plan_;
 };
 
 std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space) {
@@ -94,9 +77,10 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space
   const bool generational = options.word("replacement") == "generational";
   plan.parents = generational ? elite : population;
   plan.evolution.children = generational ? population - elite : population;
-  plan.tolerance = options.number("tolerance");
   if (options.has("target")) plan.target = options.number("target");
-  return std::make_unique<GeneticAlgorithm>(plan);
+  return make_evolution(plan.evolution, [plan](const Problem& problem, const EvaluationTable& table) {
+    return std::make_unique<Best>(plan, problem, table);
+  });
 }
 
 std::vector<OptionSpec> options() {
@@ -115,12 +99,12 @@ std::vector<OptionSpec> options() {
 }  // namespace
 
 OptimiserEntry genetic_algorithm() {
-  return {"ga",
-          "genetic algorithm for one objective with constraints",
-          [](const Options&) { return Capabilities{.objectives_hint = "nsga2 works on several"}; },
-          options(),
-          make,
-          resolve_breeding};
+  return {.name = "ga",
+          .meaning = "genetic algorithm for one objective with constraints",
+          .capabilities = [](const Options&) { return Capabilities{.objectives_hint = "nsga2 works on several"}; },
+          .options = options(),
+          .make = make,
+          .resolve = resolve_breeding};
 }
 
 }  // namespace pkm

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
-#include <utility>
 
-#include "engine/optimisers/evolutionary/diversity.hpp"
+#include "engine/optimisers/diversity.hpp"
 #include "engine/optimisers/evolutionary/evolution.hpp"
-#include "engine/optimisers/evolutionary/order.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/front_keeper.hpp"
 #include "engine/optimisers/option_specs.hpp"
+#include "engine/problem/order.hpp"
 
 namespace pkm {
 namespace {
@@ -17,7 +17,6 @@ namespace {
 struct Plan {
   EvolutionPlan evolution;
   FrontPlan front;
-  double tolerance = 1e-8;
 };
 
 /// Feasible designs by the number of their front, within a front those first that tell most of it; then the others by
@@ -43,7 +42,7 @@ class TradeOff final : public Survivors {
         candidates_.push_back(row);
         add_scores(problem_.objectives(), table_, r, scores_);
       } else {
-        others.push_back(ranked(problem_, table_, r));
+        others.push_back(ranked(problem_.objectives(), table_, r));
       }
     }
     rows_.clear();
@@ -101,7 +100,7 @@ class TradeOff final : public Survivors {
   bool progress(bool gained, bool less_broken) {
     const double now = keeper_.front().hypervolume;
     if (std::isnan(now)) return gained || (less_broken && keeper_.compromise_row() < 0);
-    if (now - last_hypervolume_ <= plan_.tolerance * std::fabs(last_hypervolume_)) return false;
+    if (!plan_.evolution.progress(now - last_hypervolume_, last_hypervolume_)) return false;
     last_hypervolume_ = now;
     return true;
   }
@@ -118,40 +117,25 @@ class TradeOff final : public Survivors {
   double last_hypervolume_ = -1;
 };
 
-class Nsga2 final : public Optimiser {
- public:
-  explicit Nsga2(Plan plan) : plan_(std::move(plan)) {}
-
-  StageResult minimise(const StageInput& input, EvaluationTable& table) const override {
-    TradeOff trade_off(plan_, input.problem, table);
-    return evolve(plan_.evolution, input, table, trade_off);
-  }
-  std::int64_t evaluation_limit(const Problem&) const override { return pkm::evaluation_limit(plan_.evolution); }
-
- private:
-  Plan plan_;
-};
-
 Capabilities capabilities(const Options& options) {
-  Capabilities can;
-  can.min_objectives = 2;
-  can.max_objectives = options.has("stall") || options.has("reference") ? 3 : kManyObjectives;
-  can.objectives_hint =
-      "stall and reference are for the hypervolume of two and three objectives, and it handles more without";
-  return can;
+  return {.min_objectives = 2,
+          .max_objectives = options.has("stall") || options.has("reference") ? 3 : kManyObjectives,
+          .objectives_hint =
+              "stall and reference are for the hypervolume of two and three objectives, and it handles more without"};
 }
 
 std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace& space) {
   Plan plan;
   plan.evolution = evolution_plan(options, space);
-  plan.tolerance = options.number("tolerance");
   if (options.has("archive")) plan.front.limit = static_cast<std::size_t>(options.integer("archive"));
   if (options.has("reference")) plan.front.reference = options.numbers("reference");
   plan.front.settled = plan.evolution.breeding.population;
   if (options.has("reference_front")) plan.front.front = options.list("reference_front");
   if (options.has("reference_front") && plan.front.front.empty())
     throw std::invalid_argument("reference_front has no points");
-  return std::make_unique<Nsga2>(plan);
+  return make_evolution(plan.evolution, [plan](const Problem& problem, const EvaluationTable& table) {
+    return std::make_unique<TradeOff>(plan, problem, table);
+  });
 }
 
 std::vector<OptionSpec> options() {
@@ -165,28 +149,27 @@ std::vector<OptionSpec> options() {
   }
   specs.push_back(integer_option("archive", {}, 4, 1e9,
                                  "most designs of the front that is kept; more are thinned out (default: no limit)"));
-  OptionSpec reference;
-  reference.name = "reference";
-  reference.kind = OptionKind::named_numbers;
-  reference.field_names = FieldNames::objectives;
-  reference.meaning =
-      "corner of the hypervolume, a value per objective (default: a tenth beyond the worst of the first feasible "
-      "designs, as many as the population)";
-  specs.push_back(reference);
-  OptionSpec front = reference;
-  front.name = "reference_front";
-  front.kind = OptionKind::list_of_numbers;
-  front.meaning = "known front, a value per objective and point, to which the distance (IGD+) is reported";
-  specs.push_back(front);
+  specs.push_back({.name = "reference",
+                   .kind = OptionKind::named_numbers,
+                   .meaning = "corner of the hypervolume, a value per objective (default: a tenth beyond the worst of "
+                              "the first feasible designs, as many as the population)",
+                   .field_names = FieldNames::objectives});
+  specs.push_back({.name = "reference_front",
+                   .kind = OptionKind::list_of_numbers,
+                   .meaning = "known front, a value per objective and point, to which the distance (IGD+) is reported",
+                   .field_names = FieldNames::objectives});
   return specs;
 }
 
 }  // namespace
 
 OptimiserEntry nsga2() {
-  return {"nsga2",      "genetic algorithm for the trade-off between several objectives, with constraints",
-          capabilities, options(),
-          make,         resolve_breeding};
+  return {.name = "nsga2",
+          .meaning = "genetic algorithm for the trade-off between several objectives, with constraints",
+          .capabilities = capabilities,
+          .options = options(),
+          .make = make,
+          .resolve = resolve_breeding};
 }
 
 }  // namespace pkm

@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/optimisers/evolutionary/order.hpp"
 #include "engine/optimisers/optimiser.hpp"
+#include "engine/problem/order.hpp"
 
 namespace pkm {
 

@@ -231,18 +231,20 @@ std::vector<OptionSpec> options() {
   std::vector<OptionSpec> specs = solver_options();
   specs.push_back(number_option("tighten", 1e-10, 0, 1e-3,
                                 "what margins must keep, in their unit, so that a solution's rounding stays feasible"));
-  OptionSpec pass;
-  pass.name = "options";
-  pass.kind = OptionKind::named_settings;
-  pass.meaning = "Ipopt's own options, such as { tol = 1e-10, mu_strategy = \"monotone\" }";
-  specs.push_back(pass);
+  specs.push_back({.name = "options",
+                   .kind = OptionKind::named_settings,
+                   .meaning = "Ipopt's own options, such as { tol = 1e-10, mu_strategy = \"monotone\" }"});
   return specs;
 }
 
 }  // namespace
 
 OptimiserEntry ipopt_stage() {
-  return {"ipopt", "Ipopt: interior-point refinement by gradients", capabilities, options(), make};
+  return {.name = "ipopt",
+          .meaning = "Ipopt: interior-point refinement by gradients",
+          .capabilities = capabilities,
+          .options = options(),
+          .make = make};
 }
 
 }  // namespace pkm

@@ -169,9 +169,13 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
   if (plan.scalarisation.kind != Scalarisation::Kind::none && !outer.constraints)
     throw std::invalid_argument("start = \"pareto\" for the algorithm " + std::string(outer.name) +
                                 ", which handles no constraints, as it would have to");
-  plan.solver = std::make_shared<NloptSolver>(Settings{outer, inner, options.number("ftol"), options.number("xtol"),
-                                                       options.number("tighten"), options.number("initial_step"),
-                                                       options.integer("population")});
+  plan.solver = std::make_shared<NloptSolver>(Settings{.outer = outer,
+                                                       .inner = inner,
+                                                       .ftol = options.number("ftol"),
+                                                       .xtol = options.number("xtol"),
+                                                       .tighten = options.number("tighten"),
+                                                       .initial_step = options.number("initial_step"),
+                                                       .population = options.integer("population")});
   plan.detail = uses_gradient(options) ? Detail::derivatives : Detail::complete;
   return make_solver_stage(std::move(plan));
 }
@@ -205,7 +209,11 @@ std::vector<OptionSpec> options() {
 }  // namespace
 
 OptimiserEntry nlopt_stage() {
-  return {"nlopt", "NLopt: local refinement by gradients, and searches without them", capabilities, options(), make};
+  return {.name = "nlopt",
+          .meaning = "NLopt: local refinement by gradients, and searches without them",
+          .capabilities = capabilities,
+          .options = options(),
+          .make = make};
 }
 
 }  // namespace pkm

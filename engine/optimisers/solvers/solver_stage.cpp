@@ -9,9 +9,9 @@
 
 #include <Eigen/QR>
 
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/front_keeper.hpp"
 #include "engine/optimisers/option_specs.hpp"
-#include "engine/optimisers/solvers/start.hpp"
+#include "engine/optimisers/start.hpp"
 #include "engine/problem/replay.hpp"
 
 namespace pkm {
@@ -26,13 +26,13 @@ constexpr double kHair = 1e-14;  // what a margin keeps for the rounding of its 
 class Run {
  public:
   Run(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
-      : plan_(plan), input_(input), table_(table), how_(plan.scalarisation) {
+      : plan_(plan), stage_{input, table, plan.scalarisation}, input_(stage_.input), table_(table) {
     const auto& objectives = input.problem.objectives();
     if (objectives.size() == 1) return;
-    how_.extents = input.known_front.extents;
+    stage_.how.extents = input.known_front.extents;
     FrontPlan front;
     for (std::size_t k = 0; k < objectives.size(); ++k) {
-      if (objectives[k].name == plan.objective) how_.objective = k;
+      if (objectives[k].name == plan.objective) stage_.how.objective = k;
       if (!input.known_front.reference.empty()) front.reference[objectives[k].name] = input.known_front.reference[k];
     }
     front_.emplace(front, input.problem, table);
@@ -42,10 +42,10 @@ class Run {
     const std::vector<StartDesign> starts = all_starts();
     for (std::size_t k = 0; k < starts.size(); ++k) {
       const bool goes_on = on_record(k) ? repeat(input_.recorded_starts[k]) : begin(k, starts[k]);
-      if (!goes_on) return {StopReason::interrupted, best_.row, finished_};
+      if (!goes_on) return {StopReason::interrupted, stage_.best.row, stage_.finished};
       if (front_) keep_end();
     }
-    StageResult result{reason(), best_.row, finished_};
+    StageResult result{reason(), stage_.best.row, stage_.finished};
     if (front_) result.front = front_->front();
     return result;
   }
@@ -53,9 +53,9 @@ class Run {
  private:
   /// The end of the start that has just ended becomes a point of the stage's front.
   void keep_end() {
-    front_->add(std::array{finished_.back().end_row});
+    front_->add(std::array{stage_.finished.back().end_row});
     if (front_->compromise_row() >= 0)
-      best_ = ranked(input_.problem, table_, static_cast<std::size_t>(front_->compromise_row()));
+      stage_.best = ranked(input_.problem.objectives(), table_, static_cast<std::size_t>(front_->compromise_row()));
   }
 
   std::vector<StartDesign> all_starts() const {
@@ -94,21 +94,17 @@ class Run {
       std::ranges::copy(input_.recorded->design(static_cast<std::size_t>(outcome.first_row + i)),
                         table_.design(row).begin());
       input_.evaluator.evaluate(input_.problem, table_, row);
-      if (!goal) goal.emplace(how_, input_.problem, table_, row);
-      const Ranked candidate = goal->rank(row);
-      if (best.row < 0 || candidate < best) best = candidate;
-      if (best_.row < 0 || (!front_ && candidate < best_)) best_ = candidate;
-      const std::vector<std::int64_t> population{best.row};
-      if (!input_.monitor.generation({generation_++, row, &table_, &population, best_.row, &finished_})) return false;
+      if (!goal) goal.emplace(stage_.how, input_.problem, table_, row);
+      if (!stage_.take(row, *goal, best)) return false;
     }
-    finished_.push_back(std::move(again));
+    stage_.finished.push_back(std::move(again));
     return true;
   }
 
   bool begin(std::size_t k, const StartDesign& start) {
     const std::size_t first = table_.size();
-    const std::int64_t generation = generation_;
-    const Ranked best = best_;
+    const std::int64_t generation = stage_.generation;
+    const Ranked best = stage_.best;
     const auto [record_first, record_end] = record_of(k);
     input_.evaluator.follow(first, record_first, record_end);
     try {
@@ -117,8 +113,8 @@ class Run {
       input_.monitor.warn("Start " + std::to_string(k + 1) + " (" + start.origin +
                           ") left the path on record, as solvers may on another processor; it began anew.");
       table_.truncate(first);
-      generation_ = generation;
-      best_ = best;
+      stage_.generation = generation;
+      stage_.best = best;
       input_.evaluator.follow(first, 0, 0);
       return solve(k, start);
     }
@@ -138,7 +134,7 @@ class Run {
   }
 
   bool solve(std::size_t k, const StartDesign& start) {
-    Trials trials(input_, table_, plan_.limits, how_, start.design, generation_, best_, finished_);
+    Trials trials(stage_, plan_.limits, start.design);
     SolverEnd end;
     std::vector<double> from = trials.start();
     const bool measurable = !front_ || table_.status[trials.first_row()] != Status::failed;
@@ -166,7 +162,7 @@ class Run {
         trials.stop() == Trials::Stop::not_a_point ? "asked for a design that is not a number" : end.message;
     outcome.optimality = trials.optimality(static_cast<std::size_t>(outcome.end_row));
     outcome.stop = words(stop_reason(trials.stop(), end, outcome.optimality));
-    finished_.push_back(std::move(outcome));
+    stage_.finished.push_back(std::move(outcome));
     return true;
   }
 
@@ -248,17 +244,15 @@ class Run {
 
   StopReason reason() const {
     for (const StopReason each : {StopReason::tolerance, StopReason::evaluations, StopReason::time, StopReason::failed})
-      if (std::ranges::all_of(finished_, [&](const StartOutcome& o) { return o.stop == words(each); })) return each;
+      if (std::ranges::all_of(stage_.finished, [&](const StartOutcome& o) { return o.stop == words(each); }))
+        return each;
     return StopReason::starts;
   }
 
   const SolverPlan& plan_;
+  Starts stage_;
   const StageInput& input_;
   EvaluationTable& table_;
-  std::int64_t generation_ = 0;
-  Ranked best_;
-  std::vector<StartOutcome> finished_;
-  Scalarisation how_;
   std::optional<FrontKeeper> front_;  ///< several objectives: of the ends
 };
 
@@ -293,17 +287,6 @@ void allow_fronts(const Options& options, Capabilities& can) {
 std::vector<OptionSpec> solver_options() {
   OptionSpec time = number_option("time", {}, 0, 1e9, "most wall time of one start (default: no limit)");
   time.unit = "s";
-  OptionSpec objective;
-  objective.name = "objective";
-  objective.kind = OptionKind::word;
-  objective.field_names = FieldNames::objectives;
-  objective.meaning = "epsilon-constraint: the one that is to gain (default: the first)";
-  OptionSpec designs;
-  designs.name = "designs";
-  designs.kind = OptionKind::list_of_numbers;
-  designs.field_names = FieldNames::variables;
-  designs.meaning =
-      "designs to start from besides, such as [{ a = 0.3, b = 1.0 }]; variables left out are the baseline's";
   return {
       word_option("start", {"best", "best-of-basins", "pareto", "none"},
                   "best design so far (else the baseline), best designs of distinct basins, points of the front found "
@@ -311,10 +294,17 @@ std::vector<OptionSpec> solver_options() {
       integer_option("starts", std::int64_t{5}, 1, 1e4, "best-of-basins and pareto: most starts"),
       word_option("scalarisation", {"achievement", "epsilon-constraint"},
                   "pareto: gain in all objectives alike, or in one while the others keep what they have"),
-      objective,
+      {.name = "objective",
+       .kind = OptionKind::word,
+       .meaning = "epsilon-constraint: the one that is to gain (default: the first)",
+       .field_names = FieldNames::objectives},
       number_option("basin_radius", 0.1, 1e-6, 1,
                     "best-of-basins: a start is a design with no better one nearer than this, in units of the ranges"),
-      designs,
+      {.name = "designs",
+       .kind = OptionKind::list_of_numbers,
+       .meaning =
+           "designs to start from besides, such as [{ a = 0.3, b = 1.0 }]; variables left out are the baseline's",
+       .field_names = FieldNames::variables},
       integer_option("multistart", std::int64_t{0}, 0, 1e6, "starts at scrambled Sobol points besides"),
       integer_option("evaluations", std::int64_t{1000}, 1, 1e9, "most evaluations of one start"),
       time,

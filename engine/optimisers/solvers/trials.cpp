@@ -8,19 +8,28 @@
 
 namespace pkm {
 
-Trials::Trials(const StageInput& input, EvaluationTable& table, const TrialLimits& limits, const Scalarisation& how,
-               std::span<const double> start, std::int64_t& generation, Ranked& best,
-               const std::vector<StartOutcome>& finished)
-    : input_(input),
-      table_(table),
+bool Starts::take(std::size_t row, const Goal& goal, Ranked& best_of_start) {
+  const Ranked candidate = goal.rank(row);
+  if (best_of_start.row < 0 || candidate < best_of_start) best_of_start = candidate;
+  // Of several objectives the stage's best is on its front, which knows the ends of starts.
+  if (best.row < 0 || (how.kind == Scalarisation::Kind::none && candidate < best)) best = candidate;
+  population = {best_of_start.row};
+  return input.monitor.generation({.number = generation++,
+                                   .first_row = row,
+                                   .table = &table,
+                                   .population = &population,
+                                   .best_row = best.row,
+                                   .starts = &finished});
+}
+
+Trials::Trials(Starts& stage, const TrialLimits& limits, std::span<const double> start)
+    : stage_(stage),
+      input_(stage.input),
+      table_(stage.table),
       limits_(limits),
-      how_(how),
-      first_row_(table.size()),
-      generation_(generation),
-      stage_best_(best),
-      finished_(finished),
+      first_row_(stage.table.size()),
       start_design_(start.begin(), start.end()) {
-  const DesignSpace& space = input.problem.space();
+  const DesignSpace& space = input_.problem.space();
   for (std::size_t i = 0; i < space.dimension(); ++i) start_unit_.push_back(space.to_unit(i, start[i]));
   evaluate(start_unit_);
   if (goal_->has_slack()) start_unit_.push_back(unit_.back());
@@ -68,18 +77,12 @@ void Trials::evaluate(std::span<const double> u) {
   for (std::size_t i = 0; i < design.size(); ++i)  // the start keeps its own bits
     design[i] = u[i] == start_unit_[i] ? start_design_[i] : space.from_unit(i, u[i]);
   input_.evaluator.evaluate(input_.problem, table_, row);
-  if (!goal_) goal_.emplace(how_, input_.problem, table_, row);
+  if (!goal_) goal_.emplace(stage_.how, input_.problem, table_, row);
   unit_.assign(u.begin(), u.end());
   if (goal_->has_slack()) unit_.push_back(0);
   set(row);
 
-  const Ranked candidate = goal_->rank(row);
-  if (best_.row < 0 || candidate < best_) best_ = candidate;
-  if (stage_best_.row < 0 || (how_.kind == Scalarisation::Kind::none && candidate < stage_best_))
-    stage_best_ = candidate;
-  population_ = {best_.row};
-  const bool goes_on =
-      input_.monitor.generation({generation_++, row, &table_, &population_, stage_best_.row, &finished_});
+  const bool goes_on = stage_.take(row, *goal_, best_);
   const auto made = static_cast<std::int64_t>(table_.size() - first_row_);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (made >= limits_.evaluations)

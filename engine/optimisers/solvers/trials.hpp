@@ -14,9 +14,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/optimisers/evolutionary/order.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/optimisers/solvers/goal.hpp"
+#include "engine/problem/order.hpp"
 
 namespace pkm {
 
@@ -26,6 +26,20 @@ struct TrialLimits {
   std::optional<double> seconds;
 };
 
+/// What the starts of a stage share.
+struct Starts {
+  const StageInput& input;
+  EvaluationTable& table;
+  Scalarisation how = {};
+  std::int64_t generation = 0;  ///< evaluations so far
+  Ranked best = {};             ///< of the stage
+  std::vector<StartOutcome> finished = {};
+  std::vector<std::int64_t> population = {};  ///< the best of the start at work
+
+  /// Counts an evaluated row of the start at work, and reports it. False: the monitor wants to stop.
+  bool take(std::size_t row, const Goal& goal, Ranked& best_of_start);
+};
+
 class Trials {
  public:
   /// Why no further point is evaluated.
@@ -33,10 +47,8 @@ class Trials {
 
   using Point = GoalPoint;  ///< where the evaluation failed, its numbers stand for a bad design
 
-  /// Evaluates the start and scales by it. `generation` counts the stage's evaluations; `best` is the stage's best.
-  Trials(const StageInput& input, EvaluationTable& table, const TrialLimits& limits, const Scalarisation& how,
-         std::span<const double> start, std::int64_t& generation, Ranked& best,
-         const std::vector<StartOutcome>& finished);
+  /// Evaluates the start and scales by it.
+  Trials(Starts& stage, const TrialLimits& limits, std::span<const double> start);
 
   std::size_t dimension() const { return goal_->dimension(); }
   std::size_t margins() const { return goal_->margins(); }
@@ -69,14 +81,11 @@ class Trials {
   void set(std::size_t row);
   void read(std::size_t row, double slack);
 
+  Starts& stage_;
   const StageInput& input_;
   EvaluationTable& table_;
   TrialLimits limits_;
-  const Scalarisation& how_;
   std::size_t first_row_;
-  std::int64_t& generation_;
-  Ranked& stage_best_;
-  const std::vector<StartOutcome>& finished_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<double> start_design_, start_unit_, unit_;
   double start_size_ = 0;        ///< of the objective at the start; 0: not usable
@@ -85,7 +94,6 @@ class Trials {
   std::optional<double> worst_;  ///< greatest objective seen
   Point point_;
   Ranked best_;
-  std::vector<std::int64_t> population_;
   Stop stop_ = Stop::none;
   std::exception_ptr exception_;
 };

@@ -33,15 +33,18 @@ class Cells {
   constructor(packed) {
     Object.assign(this, packed);
     this.axes = packed.axes.map((axis) => ({ ...axis, step: (axis.upper - axis.lower) / axis.cells }));
-    const [n0, n1, n2] = this.axes.map((axis) => axis.cells);
-    this.strides = [n1 * n2, n2, 1];
+    this.strides = this.axes.map((_, k) => this.axes.slice(k + 1).reduce((product, axis) => product * axis.cells, 1));
     this.feasible = unpack(packed.feasible);
-    this.number = new Int32Array(n0 * n1 * n2).fill(-1);
+    this.number = new Int32Array(this.strides[0] * this.axes[0].cells).fill(-1);
     let count = 0;
     for (let cell = 0; cell < this.number.length; ++cell) if (this.feasible[cell]) this.number[cell] = count++;
     this.values = new Map(packed.fields.map((field) => [field.name, unpack(field.values)]));
-    const [x, y, z] = packed.surface.vertices.map(unpack);
-    this.surface = { at: [x, y, z], cells: unpack(packed.surface.cells), triangles: unpack(packed.surface.triangles) };
+    const { surface } = packed; // of three axes only
+    this.surface = surface && {
+      at: surface.vertices.map(unpack),
+      cells: unpack(surface.cells),
+      triangles: unpack(surface.triangles),
+    };
   }
   centre(axis, k) {
     return this.axes[axis].lower + (k + 0.5) * this.axes[axis].step;
@@ -54,37 +57,41 @@ class Cells {
     const k = Math.floor((value - this.axes[axis].lower) / this.axes[axis].step);
     return k >= 0 && k < this.axes[axis].cells ? k : -1;
   }
-  /** A field on a cut: rows along `up`, columns along `across`; null where there is none. */
-  cut(field, fixed, layer, across, up) {
-    const values = this.values.get(field);
-    return Array.from({ length: this.axes[up].cells }, (_, j) =>
-      Array.from({ length: this.axes[across].cells }, (_, i) => {
-        if (layer < 0) return null;
-        const number = this.number[layer * this.strides[fixed] + i * this.strides[across] + j * this.strides[up]];
-        if (number < 0) return null;
-        const value = values ? values[number] : 1;
-        return Number.isFinite(value) ? value : null;
-      }),
+  /** What `of` says of cells: rows along `up` (one if it is undefined), columns along `across`. */
+  matrix(across, up, of) {
+    const steps = up === undefined ? 1 : this.axes[up].cells;
+    return Array.from({ length: steps }, (_, j) =>
+      Array.from({ length: this.axes[across].cells }, (_, i) =>
+        of(i * this.strides[across] + (j && j * this.strides[up])),
+      ),
     );
+  }
+  /** A field on a cut; null where there is none. */
+  cut(field, { fixed, across, up }, layer) {
+    const values = this.values.get(field);
+    return this.matrix(across, up, (cell) => {
+      if (layer < 0) return null;
+      const number = this.number[cell + (layer && layer * this.strides[fixed])];
+      if (number < 0) return null;
+      const value = values ? values[number] : 1;
+      return Number.isFinite(value) ? value : null;
+    });
   }
   /** Length of the feasible cells along an axis. */
   lengths(along, across, up) {
     const { cells, step } = this.axes[along];
-    return Array.from({ length: this.axes[up].cells }, (_, j) =>
-      Array.from({ length: this.axes[across].cells }, (_, i) => {
-        let sum = 0;
-        for (let k = 0; k < cells; ++k)
-          sum += this.feasible[k * this.strides[along] + i * this.strides[across] + j * this.strides[up]];
-        return sum ? sum * step : null;
-      }),
-    );
+    return this.matrix(across, up, (cell) => {
+      let sum = 0;
+      for (let k = 0; k < cells; ++k) sum += this.feasible[cell + k * this.strides[along]];
+      return sum ? sum * step : null;
+    });
   }
 }
 
-/** The axes as they are drawn: x, y, rotation, z, so that z or else the rotation points up. */
+/** The axes as they are drawn: x, y, rotations, z, so that z or else a rotation points up. */
 function drawingOrder(axes) {
-  const place = (axis) => [0, 1, 3, 2][axis.coordinate];
-  return [0, 1, 2].sort((a, b) => place(axes[a]) - place(axes[b]));
+  const place = (axis) => ["x", "y", "other", "turn", "z"].indexOf(axis.role);
+  return [...axes.keys()].sort((a, b) => place(axes[a]) - place(axes[b]));
 }
 
 /** What both designs' pictures span, in shown units: the feasible cells and a little room. */
@@ -98,6 +105,33 @@ function sharedRange(designs, axis) {
 /** Range of a field over all designs. */
 function fieldRange(designs, field) {
   return rangeOf(designs.flatMap((d) => rangeOf(d.values.get(field) || [])));
+}
+
+/**
+ * What a matrix of Cells says, on the axes that all designs share: cells of a plane in colour, or along one coordinate a
+ * curve.
+ */
+function cellsPicture(designs, design, matrix, across, up, look) {
+  if (up !== undefined)
+    return { data: planeTraces(design, matrix, across, up, look), layout: planeAxes(designs, across, up) };
+  const h = design.axes[across];
+  return {
+    data: [
+      {
+        type: "scatter",
+        mode: "lines+markers",
+        x: design.centres(across).map((value) => value * shownScale(h.unit)),
+        y: matrix[0],
+        line: { color: seriesColours[0], width: 2 },
+        marker: { size: 4, color: seriesColours[0] },
+        hovertemplate: `${label(h.name)} %{x:.4g} ${label(unitText(shownUnit(h.unit)))}<br>${label(look.title)} %{y:.4g} ${label(unitText(look.unit))}<extra></extra>`,
+      },
+    ],
+    layout: {
+      xaxis: axis(axisTitle(h), { range: sharedRange(designs, across), zeroline: false }),
+      yaxis: axis(axisName(look.title, look.unit), { range: widened(look.range) }),
+    },
+  };
 }
 
 /** Axes of a plane, to scale where both are lengths. */
@@ -167,7 +201,7 @@ function planeTraces(
 /** Between which values of an axis the designs have feasible cells. */
 function feasibleRange(designs, axis) {
   const ranges = designs.map((design) => {
-    design.extents ??= [0, 1, 2].map((k) => {
+    design.extents ??= design.axes.map((_, k) => {
       const used = design.feasible.reduce(
         (set, feasible, cell) =>
           feasible ? set.add(Math.floor(cell / design.strides[k]) % design.axes[k].cells) : set,
@@ -181,14 +215,15 @@ function feasibleRange(designs, axis) {
 }
 
 /**
- * Controls for a cut: which coordinate is held, and where.
- * @returns { fixed, across, up, value, layer(design) }, always as they are set
+ * Controls for a cut: which coordinate is held, and where. A workspace of fewer than three is shown whole.
+ * @returns { fixed, across, up, layer(design) }, always as they are set; undefined where there is no such axis
  */
 function cutControls(parent, designs, changed) {
   const first = designs[0],
     order = drawingOrder(first.axes);
+  if (order.length < 3) return { across: order[0], up: order[1], layer: () => 0 };
   const names = order.map((k) => first.axes[k].name);
-  const rotation = order.findIndex((k) => first.axes[k].coordinate === 3);
+  const rotation = order.findIndex((k) => first.axes[k].role === "turn");
   const steps = 41;
   let place = (steps - 1) / 2;
   const cut = {

@@ -50,7 +50,8 @@ function histogramTraces(cells, names) {
 
 function showCoupling(study, section) {
   const { coupling } = study,
-    names = limbNames(coupling.joints);
+    names = limbNames(coupling.joints),
+    n = names.length;
   const designs = coupling.designs.map((design) => {
     const packed = study.workspace.designs.find((each) => each.name === design.name);
     return { ...design, cells: (packed.cells ??= new Cells(packed)) };
@@ -66,11 +67,12 @@ function showCoupling(study, section) {
   const grid = element("div", "grid");
   section.append(grid);
   const size = designs.length > 1 ? "half" : "";
+  const turning = designs.filter((design) => design.rotations);
   const top = Math.min(
     1,
-    1.05 * Math.max(...designs.flatMap((d) => d.indices.slice(0, 4).flatMap((i) => rangeOf(i.max)[1]))),
+    1.05 * Math.max(...turning.flatMap((d) => d.indices.slice(0, n).flatMap((i) => rangeOf(i.max)[1]))),
   );
-  for (const design of designs)
+  for (const design of turning)
     addPlot(grid, {
       title: `Against ${coupling.rotation}, ${design.name}`,
       caption: "Mean over the feasible poses, and dotted the greatest.",
@@ -89,7 +91,8 @@ function showCoupling(study, section) {
     Math.max(...heights),
     Math.max(
       30,
-      1.3 * Math.max(...designs.map((_, d) => [...heights.slice(4 * d, 4 * d + 4)].sort((a, b) => b - a)[1])),
+      1.3 *
+        Math.max(...designs.map((_, d) => heights.slice(n * d, n * d + n).sort((a, b) => b - a)[Math.min(1, n - 1)])),
     ),
   );
   for (const design of designs)
@@ -107,7 +110,6 @@ function showCoupling(study, section) {
       }),
     });
   const bar = element("div", "controls panel");
-  grid.append(bar);
   let maps = [];
   const redraw = () => maps.forEach((plot) => plot.update());
   const which =
@@ -121,7 +123,8 @@ function showCoupling(study, section) {
         )
       : { value: 0 };
   const cut = cutControls(bar, all, redraw);
-  const range = rangeOf([1, 2, 3, 4].flatMap((limb) => fieldRange(all, "dci_" + limb)));
+  if (bar.children.length) grid.append(bar);
+  const range = rangeOf(names.flatMap((_, i) => fieldRange(all, "dci_" + (i + 1))));
   maps = names.map((name, i) =>
     addPlot(grid, {
       title: name[0].toUpperCase() + name.slice(1),
@@ -129,16 +132,8 @@ function showCoupling(study, section) {
       height: 380,
       make() {
         const { cells } = designs[which.value];
-        return {
-          data: planeTraces(
-            cells,
-            cells.cut("dci_" + (i + 1), cut.fixed, cut.layer(cells), cut.across, cut.up),
-            cut.across,
-            cut.up,
-            { range, title: "DCI", unit: "1" },
-          ),
-          layout: planeAxes(all, cut.across, cut.up),
-        };
+        const matrix = cells.cut("dci_" + (i + 1), cut, cut.layer(cells));
+        return cellsPicture(all, cells, matrix, cut.across, cut.up, { range, title: "DCI", unit: "1" });
       },
     }),
   );

@@ -4,33 +4,43 @@ function partColour(part, parts) {
   if (part === "frame") return "#8893a0";
   if (part === "platform") return document.documentElement.dataset.theme === "dark" ? "#e2e6eb" : "#2b3440";
   const isLimb = (name) => name.startsWith("limb ");
-  if (isLimb(part)) return limbColours[parts.filter(isLimb).indexOf(part) % 4];
+  if (isLimb(part)) return limbColours[parts.filter(isLimb).indexOf(part) % limbColours.length];
   const others = parts.filter((name) => !isLimb(name) && name !== "frame" && name !== "platform");
   return ["#56b4e9", "#d55e00", "#b8a000"][others.indexOf(part) % 3];
 }
 
-/** Cells of the workspace that are feasible at a rotation, as booleans seen along an axis; null where it does not show. */
-function workspaceShadow(cells, rotation, h, v) {
-  const find = (coordinate) => cells.axes.findIndex((axis) => axis.coordinate === coordinate);
-  const [across, up, turning] = [find(h), find(v), find(3)];
-  if (across < 0 || up < 0) return null;
-  const layer = turning < 0 ? -1 : cells.layer(turning, rotation);
-  if (turning >= 0 && layer < 0) return null;
-  const third = [0, 1, 2].find((k) => k !== across && k !== up);
-  const layers = turning >= 0 ? [layer] : Array.from({ length: cells.axes[third].cells }, (_, k) => k);
+const room = ["x", "y", "z"]; // roles of the coordinates that are places in it
+
+/** The axes of the workspace that are x, y and z, in this order; -1: not swept. */
+function axesInRoom(cells) {
+  return room.map((role) => cells.axes.findIndex((axis) => axis.role === role));
+}
+
+/** Where the cells lie that share a pose's values of all that is no place in the room; null: none does. */
+function layerAt(cells, values) {
+  const layers = cells.axes.map((axis, k) => (room.includes(axis.role) ? 0 : cells.layer(k, values[axis.coordinate])));
+  return layers.some((layer) => layer < 0) ? null : layers.reduce((sum, layer, k) => sum + layer * cells.strides[k], 0);
+}
+
+/** Cells of the workspace that are feasible at a pose's rotation, seen along an axis; null where it does not show. */
+function workspaceShadow(cells, values, h, v) {
+  const places = axesInRoom(cells);
+  const [across, up] = [places[h], places[v]];
+  const first = layerAt(cells, values);
+  if (across < 0 || up < 0 || first === null) return null;
+  const depth = places[3 - h - v];
+  const layers = depth < 0 ? [0] : Array.from({ length: cells.axes[depth].cells }, (_, k) => k * cells.strides[depth]);
   const z = Array.from({ length: cells.axes[up].cells }, (_, j) =>
     Array.from({ length: cells.axes[across].cells }, (_, i) =>
-      layers.some((k) => cells.feasible[k * cells.strides[third] + i * cells.strides[across] + j * cells.strides[up]])
-        ? 1
-        : null,
+      layers.some((k) => cells.feasible[first + k + i * cells.strides[across] + j * cells.strides[up]]) ? 1 : null,
     ),
   );
   return { x: cells.centres(across), y: cells.centres(up), z };
 }
 
-function flatTraces(poses, pose, cells, rotation, [h, v]) {
+function flatTraces(poses, pose, cells, values, [h, v]) {
   const traces = [];
-  const shadow = cells && workspaceShadow(cells, rotation, h, v);
+  const shadow = cells && workspaceShadow(cells, values, h, v);
   if (shadow)
     traces.push({
       type: "heatmap",
@@ -65,8 +75,12 @@ function flatTraces(poses, pose, cells, rotation, [h, v]) {
   return traces;
 }
 
-/** The workspace in the room: its surface, or at the rotation a layer of cells where the platform's plane is. */
-function solidWorkspace(cells, rotation, held) {
+/**
+ * The workspace in the room: its surface, or of those that sweep other coordinates too, the cells at the pose's values
+ * of these: a layer where the platform's plane is, or a line.
+ * @param place  of the platform, [x, y, z]
+ */
+function solidWorkspace(cells, values, place) {
   const look = {
     type: "mesh3d",
     color: "#56b4e9",
@@ -75,34 +89,47 @@ function solidWorkspace(cells, rotation, held) {
     name: "workspace",
     showlegend: true,
   };
-  const turning = cells.axes.findIndex((axis) => axis.coordinate === 3);
-  if (turning < 0) {
-    const { at, triangles } = cells.surface,
-      order = [0, 1, 2].map((c) => cells.axes.findIndex((axis) => axis.coordinate === c));
+  const order = axesInRoom(cells);
+  if (order.every((k) => k >= 0)) {
+    const { at, triangles } = cells.surface;
     const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
     return { ...look, x: at[order[0]], y: at[order[1]], z: at[order[2]], i: corner(0), j: corner(1), k: corner(2) };
   }
-  const layer = cells.layer(turning, rotation),
+  const first = layerAt(cells, values),
     mesh = { x: [], y: [], z: [], i: [], j: [], k: [] };
-  const [a, b] = [0, 1, 2].filter((k) => k !== turning),
-    names = ["x", "y", "z"];
-  for (let p = 0; layer >= 0 && p < cells.axes[a].cells; ++p)
+  const [a, b] = cells.axes.flatMap((axis, k) => (room.includes(axis.role) ? [k] : []));
+  if (first === null || a === undefined) return null;
+  if (b === undefined) {
+    const line = cells.centres(a).map((value, k) => (cells.feasible[first + k * cells.strides[a]] ? value : null));
+    const points = room.map((role, c) => line.map((value) => (cells.axes[a].role === role ? value : place[c])));
+    const { color, hoverinfo, name, showlegend } = look;
+    return {
+      type: "scatter3d",
+      mode: "lines",
+      ...{ x: points[0], y: points[1], z: points[2] },
+      line: { color, width: 8 },
+      ...{ hoverinfo, name, showlegend },
+    };
+  }
+  for (let p = 0; p < cells.axes[a].cells; ++p)
     for (let q = 0; q < cells.axes[b].cells; ++q) {
-      if (!cells.feasible[layer * cells.strides[turning] + p * cells.strides[a] + q * cells.strides[b]]) continue;
-      const first = mesh.x.length;
+      if (!cells.feasible[first + p * cells.strides[a] + q * cells.strides[b]]) continue;
+      const corner = mesh.x.length;
       for (const [da, db] of [
         [0, 0],
         [1, 0],
         [1, 1],
         [0, 1],
       ]) {
-        mesh[names[cells.axes[a].coordinate]].push(cells.axes[a].lower + (p + da) * cells.axes[a].step);
-        mesh[names[cells.axes[b].coordinate]].push(cells.axes[b].lower + (q + db) * cells.axes[b].step);
-        mesh[names[cells.held.coordinate]].push(held);
+        const at = { [a]: p + da, [b]: q + db };
+        room.forEach((role, c) => {
+          const axis = cells.axes[order[c]];
+          mesh[role].push(axis ? axis.lower + at[order[c]] * axis.step : place[c]);
+        });
       }
-      mesh.i.push(first, first);
-      mesh.j.push(first + 1, first + 2);
-      mesh.k.push(first + 2, first + 3);
+      mesh.i.push(corner, corner);
+      mesh.j.push(corner + 1, corner + 2);
+      mesh.k.push(corner + 2, corner + 3);
     }
   return mesh.x.length ? { ...look, ...mesh, lighting: { ambient: 1, diffuse: 0 } } : null;
 }
@@ -123,7 +150,7 @@ function solidTraces(poses, pose, cells, values) {
     lighting: { ambient: 0.6, diffuse: 0.6, specular: 0.15, roughness: 0.7 },
     lightposition: { x: 1e4, y: -2e4, z: 3e4 },
   }));
-  const around = cells && solidWorkspace(cells, values[3], values[cells.held.coordinate]);
+  const around = cells && solidWorkspace(cells, values, poses.place(values));
   return around ? [...traces, around] : traces;
 }
 
@@ -134,12 +161,18 @@ function showMechanism(study, section) {
     const found = study.workspace?.designs.find((design) => design.name === name);
     return found ? (found.cells ??= new Cells(found)) : null;
   };
+  const roles = all[0].coordinates.map((coordinate) => coordinate.role);
+  const planar =
+    ["x", "y"].every((role) => roles.includes(role)) &&
+    roles.every((role, c) => /x|y/.test(role) || (role === "turn" && roles.indexOf(role) === c));
+  const goes = study.workspace?.designs.some((design) => design.axes.some((axis) => room.includes(axis.role)));
   section.append(
     element(
       "p",
       "lead",
-      `Drawn to scale in working mode ${mode}. The sliders step through stored poses; blue is where the platform can go` +
-        " at this rotation.",
+      `Drawn to scale in working mode ${mode}. The sliders step through stored poses` +
+        (goes ? "; blue is where the platform can go" + (roles.includes("turn") ? " at this rotation" : "") : "") +
+        ".",
     ),
   );
   const controls = element("div", "controls panel"),
@@ -164,7 +197,7 @@ function showMechanism(study, section) {
       ...(number < 0
         ? []
         : [
-            ...poses.joints.map((joint, i) => [joint, quantity(poses.positions[i][number], "m", 5)]),
+            ...poses.joints.map((joint, i) => [joint.name, shownValue(poses.positions[i][number], joint, 5)]),
             ["conditioning", digits(poses.conditioning[number], 4)],
           ]
       ).map(([name, value]) => element("div", "", element("span", "", name + " "), element("b", "", value))),
@@ -206,20 +239,21 @@ function showMechanism(study, section) {
     all
       .map((design) => design.span())
       .reduce((a, b) => a.map(([low, high], c) => [Math.min(low, b[c][0]), Math.max(high, b[c][1])]));
-  const [xs, ys, zs] = span();
+  const spans = span(),
+    [xs, ys, zs] = spans;
   const [width, depth, height] = [xs, ys, zs].map(([low, high]) => high - low);
   const slim = Math.max(depth, height) > 1.6 * width;
   const column = element("div", "half column" + (slim ? " abreast" : ""));
-  const flat = (title, h, v, names, ranges) =>
+  const flat = (title, h, v, tall = slim ? 694 : 312) =>
     addPlot(column, {
       title,
-      height: slim ? 694 : 312,
+      height: tall,
       make: () => ({
-        data: flatTraces(poses, now(), cellsOf(poses.name), poses.values(places)[3], [h, v]),
+        data: flatTraces(poses, now(), cellsOf(poses.name), poses.values(places), [h, v]),
         layout: {
-          xaxis: axis(axisName(names[0], "m"), { range: ranges[0], zeroline: false, constrain: "domain" }),
-          yaxis: axis(axisName(names[1], "m"), {
-            range: ranges[1],
+          xaxis: axis(axisName(room[h], "m"), { range: spans[h], zeroline: false, constrain: "domain" }),
+          yaxis: axis(axisName(room[v], "m"), {
+            range: spans[v],
             scaleanchor: "x",
             constrain: "domain",
             zeroline: false,
@@ -228,31 +262,35 @@ function showMechanism(study, section) {
         },
       }),
     });
-  const room = addPlot(grid, {
-    title: "In space",
-    size: "half",
-    height: 694,
-    make() {
-      const most = Math.max(width, depth, height);
-      return {
-        data: solidTraces(poses, now(), cellsOf(poses.name), poses.values(places)),
-        layout: {
-          uirevision: "camera",
-          margin: { l: 0, r: 0, t: 0, b: 0 },
-          legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
-          scene: {
-            xaxis: sceneAxis("x [m]", xs),
-            yaxis: sceneAxis("y [m]", ys),
-            zaxis: sceneAxis("z [m]", zs),
-            aspectmode: "manual",
-            aspectratio: { x: (1.35 * width) / most, y: (1.35 * depth) / most, z: (1.35 * height) / most },
-            camera: { eye: { x: 1.1, y: -1.45, z: 0.75 } },
+  const solid = () =>
+    addPlot(grid, {
+      title: "In space",
+      size: "half",
+      height: 694,
+      make() {
+        const most = Math.max(width, depth, height);
+        return {
+          data: solidTraces(poses, now(), cellsOf(poses.name), poses.values(places)),
+          layout: {
+            uirevision: "camera",
+            margin: { l: 0, r: 0, t: 0, b: 0 },
+            legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
+            scene: {
+              xaxis: sceneAxis("x [m]", xs),
+              yaxis: sceneAxis("y [m]", ys),
+              zaxis: sceneAxis("z [m]", zs),
+              aspectmode: "manual",
+              aspectratio: { x: (1.35 * width) / most, y: (1.35 * depth) / most, z: (1.35 * height) / most },
+              camera: { eye: { x: 1.1, y: -1.45, z: 0.75 } },
+            },
           },
-        },
-      };
-    },
-  });
+        };
+      },
+    });
+  if (planar) {
+    column.className = "half";
+    plots = [flat("In its plane", 0, 1, 694)];
+  } else plots = [solid(), flat("From the front", 0, 2), flat("From above", 0, 1)];
   grid.append(column);
-  plots = [room, flat("From the front", 0, 2, ["x", "z"], [xs, zs]), flat("From above", 0, 1, ["x", "y"], [xs, ys])];
   grid.append(element("div", "panel", element("h3", "", "At this pose"), verdict, readout));
 }

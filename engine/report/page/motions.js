@@ -1,11 +1,15 @@
 // What the study's motions ask of the drives: positions, speeds, forces and power against time.
 
-const motionColumns = [
-  ["positions", "Positions of the joints", "position", "m"],
-  ["speeds", "Speeds", "speed", "m/s"],
-  ["forces", "Drive forces", "force", "N"],
-  ["power", "Power of the drives", "power", "W"],
-];
+// Of joints by their unit: title, name, unit and what is shown of it in SI. Power has one unit for all.
+const motionColumns = {
+  positions: {
+    m: ["Positions of the joints", "position", "m", 1],
+    rad: ["Angles of the joints", "angle", "deg", 180 / Math.PI],
+  },
+  speeds: { m: ["Speeds", "speed", "m/s", 1], rad: ["Angular speeds", "angular speed", "rad/s", 1] },
+  forces: { m: ["Drive forces", "force", "N", 1], rad: ["Drive torques", "torque", "N m", 1] },
+  power: { "": ["Power of the drives", "power", "W", 1] },
+};
 
 // Of the auxiliary chain; the last is the unit per radian.
 const chainColumns = [
@@ -19,15 +23,22 @@ function beside(value, size) {
   return Math.abs(value) < 1e-9 * Math.abs(size) ? 0 : value;
 }
 
+const turns = (coordinate) => coordinate.unit === "rad";
+
 function timesOf(motion) {
   return Array.from({ length: motion.samples }, (_, k) => (motion.duration * k) / (motion.samples - 1));
 }
 
-/** One line for each of `names`, of every design. @param curvesOf  packed; what is shown is `scale` times it */
+/**
+ * One line for each of `names`, of every design.
+ * @param names     null: this curve is not meant
+ * @param curvesOf  packed; what is shown is `scale` times it
+ */
 function motionTraces(motion, names, unit, scale, curvesOf) {
   const time = timesOf(motion);
+  const meant = [...names.keys()].filter((i) => names[i] !== null);
   return motion.designs.flatMap((design, d) =>
-    (curvesOf(design) || []).map((packed, i) => ({
+    (curvesOf(design) ? meant.map((i) => [curvesOf(design)[i], i]) : []).map(([packed, i]) => ({
       type: "scatter",
       mode: "lines",
       x: time,
@@ -59,30 +70,51 @@ function posesAlong(motion, coordinates) {
     type: "scatter",
     mode: "lines",
     x: time,
-    y: Array.from(unpack(packed), (value) => (c === 3 ? (value * 180) / Math.PI : value)),
-    name: label(coordinates[c]),
-    yaxis: c === 3 ? "y2" : "y",
-    line: { color: seriesColours[c], width: 2, dash: c === 3 ? "dot" : "solid" },
-    hovertemplate: `%{y:.4g} ${c === 3 ? "deg" : "m"} at %{x:.4g} s<extra>${label(coordinates[c])}</extra>`,
+    y: Array.from(unpack(packed), (value) => value * shownScale(coordinates[c].unit)),
+    name: label(coordinates[c].name),
+    yaxis: turns(coordinates[c]) ? "y2" : "y",
+    line: { color: seriesColours[c], width: 2, dash: turns(coordinates[c]) ? "dot" : "solid" },
+    hovertemplate: `%{y:.4g} ${shownUnit(coordinates[c].unit)} at %{x:.4g} s<extra>${label(coordinates[c].name)}</extra>`,
   }));
+}
+
+/** Lengths on the left, angles on the right, or on the left where there is nothing else. */
+function poseAxes(coordinates) {
+  const angles = coordinates.filter(turns),
+    lengths = angles.length < coordinates.length;
+  const right = axis(axisName(angles.length === 1 ? angles[0].name : "angle", "deg"), {
+    ...(lengths ? { overlaying: "y", side: "right", showgrid: false } : {}),
+  });
+  return {
+    xaxis: axis("time [s]"),
+    ...(lengths ? { yaxis: axis("position [m]") } : {}),
+    ...(angles.length ? { yaxis2: right } : {}),
+    showlegend: true, // also of one coordinate
+  };
 }
 
 function motionSummary(motion, joints) {
   const rows = [],
-    head = ["design", "", ...joints, "all"];
+    head = ["design", "", ...joints.map((joint) => joint.name), "all"];
+  const unitsOf = (column) => joints.map((joint) => motionColumns[column][joint.unit][2]);
   for (const { name, summary } of motion.designs) {
-    const add = (title, values, unit, total) =>
+    const add = (title, values, units, total) =>
       values &&
       rows.push([
         name,
         title,
-        ...values.map((v) => quantity(v, unit, 4)),
-        total === undefined || total === null ? "" : quantity(total, unit, 4),
+        ...values.map((v, i) => quantity(v, units[i], 4)),
+        total === undefined || total === null ? "" : quantity(total, units[0], 4),
       ]);
-    add("peak speed", summary.peak_speed, "m/s");
-    add("peak force", summary.peak_force, "N");
-    add("root mean square of force", summary.rms_force, "N");
-    add("peak power", summary.peak_power, "W", summary.peak_total_power);
+    add("peak speed", summary.peak_speed, unitsOf("speeds"));
+    add("peak force", summary.peak_force, unitsOf("forces"));
+    add("root mean square of force", summary.rms_force, unitsOf("forces"));
+    add(
+      "peak power",
+      summary.peak_power,
+      joints.map(() => "W"),
+      summary.peak_total_power,
+    );
     if (summary.energy !== undefined) {
       rows.push([
         name,
@@ -151,11 +183,7 @@ function showMotions(study, section) {
       height: 360,
       make: () => ({
         data: posesAlong(motion(), coordinates),
-        layout: {
-          xaxis: axis("time [s]"),
-          yaxis: axis("position [m]"),
-          yaxis2: axis(axisName(coordinates[3], "deg"), { overlaying: "y", side: "right", showgrid: false }),
-        },
+        layout: poseAxes(coordinates),
       }),
     }),
   );
@@ -173,8 +201,11 @@ function showMotions(study, section) {
       }),
     );
   };
-  for (const [key, title, name, unit] of motionColumns)
-    addCurves(title, name, unit, 1, joints, (design) => design[key]);
+  for (const [key, kinds] of Object.entries(motionColumns))
+    for (const [kind, [title, name, unit, scale]] of Object.entries(kinds)) {
+      const names = joints.map((joint) => (kind && joint.unit !== kind ? null : joint.name));
+      if (names.some(Boolean)) addCurves(title, name, unit, scale, names, (design) => design[key]);
+    }
   for (const [key, title, name, unit, scale] of chainColumns)
     addCurves(title, name, unit, scale, chain, (design) => design.chain?.[key]);
   plots.push(

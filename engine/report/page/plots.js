@@ -1,6 +1,7 @@
 // Plots: drawn when they come into view, in the colours of the theme, and drawn again when it changes.
 
-const limbColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7"]; // Okabe and Ito: told apart by everybody
+// Okabe and Ito, told apart by everybody; of eight limbs the last two are beyond them.
+const limbColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c6d31", "#7f7f7f"];
 const seriesColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
 const fieldColours = "Cividis"; // perceptually uniform
 const timeColours = "Viridis";

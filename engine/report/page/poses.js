@@ -18,7 +18,8 @@ class Poses {
   /** Places of the sliders at a pose, and back. */
   places(pose) {
     const places = [];
-    for (let c = 3; c >= 0; pose = Math.floor(pose / this.counts[c--])) places.unshift(pose % this.counts[c]);
+    for (let c = this.counts.length - 1; c >= 0; pose = Math.floor(pose / this.counts[c--]))
+      places.unshift(pose % this.counts[c]);
     return places;
   }
   pose(places) {
@@ -26,6 +27,10 @@ class Poses {
   }
   values(places) {
     return places.map((place, c) => this.coordinates[c].values[place]);
+  }
+  /** Of the platform in the room, [x, y, z], for values of the coordinates; 0 where it has no such coordinate. */
+  place(values) {
+    return ["x", "y", "z"].map((role) => values[this.coordinates.findIndex((c) => c.role === role)] ?? 0);
   }
   /** The links that can be drawn at a pose: all, or those of the frame where it does not assemble. */
   linksAt(pose) {

@@ -99,12 +99,13 @@ function showWorkspace(study, section) {
   for (const problem of study.workspace.problems) section.append(element("p", "warning", problem));
   if (!designs.length) return;
   const first = designs[0],
-    order = drawingOrder(first.axes);
+    order = drawingOrder(first.axes),
+    solid = order.length === 3;
   const places = [
     ...new Set(
       designs
-        .filter((d) => d.held.name)
-        .map((d) => `${d.held.name} = ${shownValue(d.held.value, d.held)}, ${d.held.note}`),
+        .filter((d) => d.held.length)
+        .map((d) => d.held.map((held) => `${held.name} = ${shownValue(held.value, held)}, ${held.note}`).join("; ")),
     ),
   ];
   const volumes = designs.map((d) => `${d.name} ${quantity(d.volume, d.volume_unit, 6)}`).join(", ");
@@ -114,8 +115,10 @@ function showWorkspace(study, section) {
       "lead",
       "Feasible poses" +
         (places.length ? " at " + places.join("; ") : "") +
-        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their volume: ${volumes}.` +
-        (designs.length > 1 ? " The designs have the same axes and colours, and turn together." : ""),
+        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their ${solid ? "volume" : "extent"}: ${volumes}.` +
+        (designs.length > 1
+          ? " The designs have the same axes and colours" + (solid ? ", and turn together." : ".")
+          : ""),
     ),
   );
   const size = designs.length > 1 ? "half" : "";
@@ -142,7 +145,7 @@ function showWorkspace(study, section) {
   };
   current();
 
-  const surfaces = designs.map((design) =>
+  const surfaces = (solid ? designs : []).map((design) =>
     addPlot(grid, {
       title: design.name[0].toUpperCase() + design.name.slice(1),
       size,
@@ -159,35 +162,28 @@ function showWorkspace(study, section) {
   linkCameras(surfaces);
 
   const cutBar = element("div", "controls panel");
-  grid.append(cutBar);
+  if (solid) grid.append(cutBar);
   const cut = cutControls(cutBar, designs, () => cuts.forEach((plot) => plot.update()));
   const cuts = designs.map((design) =>
     addPlot(grid, {
-      title: "Section of " + design.name,
+      title: solid ? "Section of " + design.name : design.name[0].toUpperCase() + design.name.slice(1),
       size,
       height: 440,
-      caption: "Cells in colour, contour lines in white.",
+      caption: order.length > 1 ? "Cells in colour, contour lines in white." : "At the cells' centres.",
       make() {
         const info = current();
-        return {
-          data: planeTraces(
-            design,
-            design.cut(info.name, cut.fixed, cut.layer(design), cut.across, cut.up),
-            cut.across,
-            cut.up,
-            {
-              range: fieldRange(designs, info.name),
-              title: info.name ? fieldTitle(info.name) : "feasible",
-              unit: info.unit === "mixed" ? "1" : info.unit,
-              lines: names.length > 0,
-              bar: names.length > 0,
-            },
-          ),
-          layout: planeAxes(designs, cut.across, cut.up),
-        };
+        return cellsPicture(designs, design, design.cut(info.name, cut, cut.layer(design)), cut.across, cut.up, {
+          range: fieldRange(designs, info.name),
+          title: info.name ? fieldTitle(info.name) : "feasible",
+          unit: info.unit === "mixed" ? "1" : info.unit,
+          lines: names.length > 0,
+          bar: names.length > 0,
+        });
       },
     }),
   );
+  const all = [...surfaces, ...cuts];
+  if (order.length < 2) return; // the length is the volume
   const along = first.axes.findIndex((a) => a.name === study.workspace.column);
   const [across, up] = order.filter((k) => k !== along);
   const lengths = designs.map((design) => {
@@ -200,16 +196,13 @@ function showWorkspace(study, section) {
       title: `Length of the columns along ${first.axes[along].name}, ${design.name}`,
       size,
       height: 440,
-      caption: "How far one can go along this coordinate, the other two standing still.",
-      make: () => ({
-        data: planeTraces(design, lengths[d], across, up, {
+      caption: `How far one can go along this coordinate, the other${solid ? " two" : ""} standing still.`,
+      make: () =>
+        cellsPicture(designs, design, lengths[d], across, up, {
           range,
           title: "length",
           unit: shownUnit(first.axes[along].unit),
         }),
-        layout: planeAxes(designs, across, up),
-      }),
     }),
   );
-  const all = [...surfaces, ...cuts];
 }

@@ -28,6 +28,12 @@ inline Options some_options(const std::vector<OptionSpec>& specs, const Mechanis
   return options;
 }
 
+/// Not the number of a joint that the mechanism lacks.
+inline bool makes_sense(const std::string& choice, const MechanismInfo& info) {
+  const bool number = choice.size() == 1 && std::isdigit(static_cast<unsigned char>(choice[0]));
+  return !number || static_cast<std::size_t>(choice[0] - '0') <= info.joints.size();
+}
+
 /// The same, in each choice of an option that has choices.
 inline std::vector<Options> every_choice(const std::vector<OptionSpec>& specs, const MechanismInfo& info,
                                          const std::string& expression) {
@@ -36,6 +42,7 @@ inline std::vector<Options> every_choice(const std::vector<OptionSpec>& specs, c
     std::vector<Options> more;
     for (const Options& options : all)
       for (const std::string& choice : spec.choices) {
+        if (!makes_sense(choice, info)) continue;
         more.push_back(options);
         more.back().set(spec.name, choice);
       }
@@ -47,8 +54,9 @@ inline std::vector<Options> every_choice(const std::vector<OptionSpec>& specs, c
 /// Which objectives: those of the volume, with conditioning, and with inertia too.
 enum class Of { volume, kinematics, inertia };
 
-inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanism, const SurveyPlan& plan,
-                                Of of = Of::kinematics) {
+/// @param centre  of the box of poses that is to be feasible
+inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanism, const SurveyPlan& plan, Of of,
+                                const Pose<double>& centre) {
   const MechanismInfo& info = mechanism->info();
   ProblemParts parts;
   parts.mechanism = mechanism;
@@ -64,7 +72,7 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
   const std::string product = info.parameters[0].name + " * " + info.parameters[1].name;
   for (const ObjectiveEntry& entry : all_objectives()) {
     // Those that look at the design alone have nothing of the survey, and designs may fail them: their own tests.
-    if (!entry.reads_survey || !entry.refusal(info).empty()) continue;
+    if (!entry.reads_survey || !entry.refusal(*mechanism).empty()) continue;
     for (const Options& options : every_choice(entry.options, info, "volume * " + product)) {
       const EntryContext context{*mechanism, plan, options};
       Demand demand = parts.demand;
@@ -79,9 +87,9 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
     }
   }
   for (const ConstraintEntry& entry : all_constraints()) {
-    if (entry.pose_level || !entry.refusal(info).empty()) continue;
+    if (entry.pose_level || !entry.refusal(*mechanism).empty()) continue;
     const Options options = some_options(entry.options(info), info, "1 - " + product);
-    const std::vector<Region> regions = {task(info)};
+    const std::vector<Region> regions = {task(info, centre)};
     const EntryContext context{*mechanism, plan, options, regions};
     NamedQuantity margin;
     margin.name = entry.name;
@@ -90,6 +98,10 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
     parts.design_margins.push_back(margin);
   }
   return DesignProblem(parts);
+}
+inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanism, const SurveyPlan& plan,
+                                Of of = Of::kinematics) {
+  return everything(mechanism, plan, of, usual_pose(*mechanism));
 }
 
 /// A design whose parameters are 0.6 to 1.6 times the nominal ones.

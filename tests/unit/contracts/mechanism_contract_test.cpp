@@ -1,19 +1,21 @@
-// Laws that every mechanism of the catalogue obeys. A new mechanism is tested without a change here.
+// Laws that every mechanism of the catalogue obeys, and a user's, as far as it has what they speak of. A new mechanism
+// is tested without a change here.
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <set>
 
+#include "engine/math/statistics.hpp"
 #include "engine/problem/expression.hpp"
 #include "engine/problem/survey_results.hpp"
-#include "engine/survey/voxel_grid.hpp"
+#include "engine/report/workspace_fields.hpp"
+#include "engine/survey/plain_voxels.hpp"
 #include "tests/unit/contracts/nominal.hpp"
 
 namespace pkm {
 namespace {
 
 using test::nominal;
-using test::plan;
 using test::survey;
 
 class MechanismContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
@@ -22,47 +24,16 @@ class MechanismContract : public testing::TestWithParam<std::shared_ptr<const Me
   const MechanismInfo& info() const { return mechanism().info(); }
   std::vector<double> parameters() const { return nominal(info()); }
 
-  /// The held coordinate's value at which a coarse grid has most feasible cells: a plane where poses can be tested.
-  double plane() const {
-    double best_value = 0;
-    std::int64_t most = -1;
-    for (int i = -60; i <= 60; ++i) {
-      const double value = 0.1 * i;
-      const std::int64_t cells = survey(mechanism(), parameters(), at(value, 10)).feasible_cells;
-      if (cells > most) {
-        most = cells;
-        best_value = value;
-      }
-    }
-    return best_value;
-  }
-  SurveyPlan at(double held, std::int64_t cells) const {
-    SurveyPlan p = plan(info(), Method::voxels, cells);
-    p.held = {HeldCoordinate::Kind::value, held};
-    return p;
-  }
-
   struct Found {
     std::vector<Pose<double>> inside, outside;  ///< centres of feasible cells and of the others
   };
+  /// Some 2700 cells of the usual sweep.
   Found centres() const {
-    const double held = plane();
-    const VoxelMap map = mechanism().voxel_map(parameters(), at(held, 14));
-    Box box;
-    for (std::size_t i = 0; i < 3; ++i) box[i] = {map.lower[i], map.upper[i]};
-    const VoxelGrid grid({map.cells[0], map.cells[1], map.cells[2]}, box);
+    const auto axes = static_cast<double>(info().sweeps.front().swept.size());
+    const test::Cells cells = test::some_cells(mechanism(), std::lround(std::pow(14, 3 / axes)));
     Found found;
-    std::size_t cell = 0;
-    for (std::int64_t i = 0; i < grid.cells[0]; ++i)
-      for (std::int64_t j = 0; j < grid.cells[1]; ++j)
-        for (std::int64_t k = 0; k < grid.cells[2]; ++k) {
-          std::array<double, 4> c{};
-          c[static_cast<std::size_t>(info().held)] = held;
-          c[static_cast<std::size_t>(info().swept[0])] = grid.centre(0, i);
-          c[static_cast<std::size_t>(info().swept[1])] = grid.centre(1, j);
-          c[static_cast<std::size_t>(info().swept[2])] = grid.centre(2, k);
-          (map.feasible[cell++] ? found.inside : found.outside).push_back({c[0], c[1], c[2], c[3]});
-        }
+    for (std::size_t i = 0; i < cells.poses.size(); ++i)
+      (cells.feasible[i] ? found.inside : found.outside).push_back(cells.poses[i]);
     return found;
   }
   PoseReport inspect(const Pose<double>& pose) const {
@@ -70,14 +41,21 @@ class MechanismContract : public testing::TestWithParam<std::shared_ptr<const Me
   }
 };
 
-std::string text(const Pose<double>& p) {
-  return "pose " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + " " +
-         std::to_string(p.angle);
+template <class Axes>
+void expect_named(const Axes& axes, std::size_t most) {
+  std::set<std::string> names;
+  EXPECT_GE(axes.size(), 1u);
+  EXPECT_LE(axes.size(), most);
+  for (const AxisInfo& axis : axes) {
+    EXPECT_TRUE(names.insert(axis.name).second) << axis.name << " twice";
+    EXPECT_TRUE(axis.unit == "m" || axis.unit == "rad") << axis.name;
+  }
 }
 
 TEST_P(MechanismContract, DescribesItself) {
-  for (const std::string& words : {info().name, info().title, info().source, info().volume_unit})
-    EXPECT_NE(words, "") << info().name;
+  for (const std::string& words : {info().name, info().title, info().source}) EXPECT_NE(words, "") << info().name;
+  expect_named(info().coordinates, kMostCoordinates);
+  expect_named(info().joints, kMostJoints);
   ASSERT_FALSE(info().modes.empty());
   std::set<std::string> names;
   for (const Parameter& p : info().parameters) {
@@ -87,30 +65,43 @@ TEST_P(MechanismContract, DescribesItself) {
     EXPECT_LE(p.lower, p.nominal) << p.name;
     EXPECT_LE(p.nominal, p.upper) << p.name;
   }
-  std::set<int> held;
-  for (const Sweep& sweep : sweeps_of(info())) {
-    std::set<int> coordinates(sweep.swept.begin(), sweep.swept.end());
-    coordinates.insert(sweep.held);
-    EXPECT_EQ(coordinates, (std::set<int>{0, 1, 2, 3}));  // each is swept or held
-    EXPECT_NE(sweep.column, sweep.held);
-    EXPECT_NE(sweep.volume_unit, "");
-    EXPECT_TRUE(held.insert(sweep.held).second) << "two sweeps hold coordinate " << sweep.held;
+}
+
+TEST_P(MechanismContract, SweepsAreFoundByWhatTheyHold) {
+  std::set<int> all, can_hold;
+  for (int coordinate = 0; coordinate < std::ssize(info().coordinates); ++coordinate) all.insert(coordinate);
+  ASSERT_FALSE(info().sweeps.empty());
+  for (const Sweep& sweep : info().sweeps) {
+    SCOPED_TRACE(test::words(info(), sweep));
+    EXPECT_GE(sweep.swept.size(), 1u);
+    EXPECT_LE(sweep.swept.size(), 3u);
+    std::multiset<int> coordinates(sweep.swept.begin(), sweep.swept.end());
+    EXPECT_TRUE(coordinates.contains(sweep.column));
+    coordinates.insert(sweep.held.begin(), sweep.held.end());
+    EXPECT_EQ(coordinates, std::multiset<int>(all.begin(), all.end()));  // each is swept or held
+    EXPECT_TRUE(std::ranges::is_sorted(sweep.held));
+    const SurveyPlan plan = test::voxels(info(), sweep, 2);
+    EXPECT_EQ(&sweep_of(info(), plan), &sweep) << "another holds the same";
+    EXPECT_NE(volume_unit(info(), plan), "");
+    for (const int coordinate : sweep.held) EXPECT_TRUE(mechanism().middle(parameters(), coordinate)) << coordinate;
+    can_hold.insert(sweep.held.begin(), sweep.held.end());
   }
-  SurveyPlan other = plan(info(), Method::voxels, 4);
-  for (int coordinate = -1; coordinate < 5; ++coordinate) {
-    other.held.coordinate = coordinate;
-    if (held.contains(coordinate)) continue;
-    EXPECT_THROW(mechanism().prepare(other, {}), std::invalid_argument) << coordinate;
+  for (int coordinate = -1; coordinate <= std::ssize(info().coordinates); ++coordinate) {
+    if (can_hold.contains(coordinate)) continue;
+    for (SurveyPlan& plan : test::plans(mechanism(), info().sweeps.front(), 2)) {
+      plan.held = {{.coordinate = coordinate}};
+      EXPECT_THROW(prepare_survey(mechanism(), plan, {}), std::invalid_argument) << coordinate;
+    }
   }
 }
 
 TEST_P(MechanismContract, TakesItsNominalParametersAndRefusesThoseOutOfRange) {
-  EXPECT_EQ(mechanism().refuse(parameters()), "");
+  EXPECT_FALSE(mechanism().refuse(parameters()));
   for (std::size_t i = 0; i < info().parameters.size(); ++i)
     for (const double wrong : {info().parameters[i].lower - 1, info().parameters[i].upper + 1, std::nan("")}) {
       auto p = parameters();
       p[i] = wrong;
-      EXPECT_NE(mechanism().refuse(p).find(info().parameters[i].name), std::string::npos) << wrong;
+      EXPECT_NE(mechanism().refuse(p).value_or("").find(info().parameters[i].name), std::string::npos) << wrong;
     }
 }
 
@@ -120,49 +111,110 @@ TEST_P(MechanismContract, AssemblesWhereTheVoxelMapSaysAndNowhereElse) {
   EXPECT_GT(found.outside.size(), 20u);
   for (const auto& pose : found.inside) {
     const PoseReport report = inspect(pose);
-    EXPECT_TRUE(report.assembles && report.feasible) << text(pose) << ": " << report.reason;
-    EXPECT_TRUE(report.joints) << text(pose);
+    EXPECT_TRUE(report.assembles && report.feasible) << test::words(info(), pose) << ": " << report.reason;
+    ASSERT_TRUE(report.joints) << test::words(info(), pose);
+    EXPECT_EQ(report.joints->size(), info().joints.size());
+    for (const auto& [name, margin] : report.margins) EXPECT_GE(margin, 0) << name;
   }
-  for (const auto& pose : found.outside) EXPECT_FALSE(inspect(pose).feasible) << text(pose);
+  for (const auto& pose : found.outside) {
+    const PoseReport report = inspect(pose);
+    EXPECT_FALSE(report.feasible) << test::words(info(), pose);
+    EXPECT_NE(report.reason, "") << test::words(info(), pose);
+  }
+}
+
+TEST_P(MechanismContract, MarginsHaveTheSameNamesAtEveryPoseThatAssembles) {
+  const auto names = [](const PoseReport& report) {
+    std::vector<std::string> all;
+    for (const auto& named : report.margins) all.push_back(named.first);
+    return all;
+  };
+  const auto expected = names(inspect(test::usual_pose(mechanism())));
+  EXPECT_FALSE(expected.empty());
+  const Found found = centres();
+  for (const auto& poses : {found.inside, found.outside})
+    for (const auto& pose : poses) {
+      const PoseReport report = inspect(pose);
+      if (report.assembles) {
+        ASSERT_EQ(names(report), expected) << test::words(info(), pose);
+      }
+    }
+}
+
+/// What a mechanism has that is faster finds what testing every cell finds.
+TEST_P(MechanismContract, SurveysOfVoxelsAreThoseOfEveryCell) {
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    SCOPED_TRACE(test::words(info(), sweep));
+    SurveyPlan plan = test::voxels(info(), sweep, 11);
+    plan.limits = survey_limits(info(), plan.limits);
+    const VoxelMap map = voxel_map(mechanism(), parameters(), plan);
+    VoxelOptions voxels = *plan.voxels();
+    voxels.box.emplace();
+    for (std::size_t i = 0; i < 3; ++i) (*voxels.box)[i] = {map.lower[i], map.upper[i]};
+    EXPECT_EQ(plain_voxel_map(mechanism(), parameters(), plan, voxels).feasible, map.feasible);
+    const Demand demand = test::all_fields(mechanism());
+    const Survey<double> fast = survey(mechanism(), parameters(), plan, demand);
+    Survey<double> plain;
+    survey_once<double>(*prepare_plain_voxels(mechanism(), plan, voxels, demand), parameters(), plain);
+    EXPECT_EQ(plain.cells, fast.cells);
+    EXPECT_EQ(plain.feasible_cells, fast.feasible_cells);
+    EXPECT_NEAR(plain.volume / fast.volume, 1, 1e-12);
+    const auto expect_same_mean = [&](const std::vector<double>& a, const std::vector<double>& b) {
+      EXPECT_NEAR(weighted_mean(plain.weight, a), weighted_mean(fast.weight, b), 1e-9);
+    };
+    if (demand.conditioning) expect_same_mean(plain.conditioning, fast.conditioning);
+    if (!demand.dci) continue;
+    for (std::size_t joint = 0; joint < info().joints.size(); ++joint)
+      expect_same_mean(plain.dci[joint], fast.dci[joint]);
+    expect_same_mean(plain.inertia_condition, fast.inertia_condition);
+  }
 }
 
 TEST_P(MechanismContract, ForwardOfInverseContainsThePose) {
+  if (!mechanism().forward()) GTEST_SKIP() << "no forward kinematics";
   constexpr double kRoundoff = 1e-7;  // of the square roots near the ends of a stroke
   for (const auto& pose : centres().inside) {
     const PoseReport report = inspect(pose);
-    ASSERT_TRUE(report.joints) << text(pose);
+    ASSERT_TRUE(report.joints) << test::words(info(), pose);
     bool contained = false;
-    for (const AssemblyMode& mode : mechanism().forward(parameters(), *report.joints)) {
-      const Pose<double>& p = mode.pose;
-      const double turn = std::remainder(p.angle - pose.angle, 2 * std::numbers::pi);
-      contained = contained || (std::fabs(p.x - pose.x) < kRoundoff && std::fabs(p.y - pose.y) < kRoundoff &&
-                                std::fabs(p.z - pose.z) < kRoundoff && std::fabs(turn) < kRoundoff);
+    for (const AssemblyMode& mode : mechanism().forward()->assemblies(parameters(), *report.joints)) {
+      ASSERT_EQ(mode.pose.size(), pose.size());
+      double worst = 0;
+      for (std::size_t i = 0; i < pose.size(); ++i) {
+        const double way = mode.pose[i] - pose[i];
+        worst = std::fmax(worst,
+                          std::fabs(info().coordinates[i].turns() ? std::remainder(way, 2 * std::numbers::pi) : way));
+      }
+      contained = contained || worst < kRoundoff;
     }
-    EXPECT_TRUE(contained) << text(pose);
+    EXPECT_TRUE(contained) << test::words(info(), pose);
+    EXPECT_EQ(mechanism().forward()->status(parameters(), *report.joints).word, "OK");
   }
 }
 
 TEST_P(MechanismContract, JacobianEqualsDifferencesOfTheJoints) {
+  if (!inspect(test::usual_pose(mechanism())).J) GTEST_SKIP() << "no Jacobian";
   constexpr double kStep = 1e-5;
   int compared = 0;
   for (const auto& pose : centres().inside) {
     const PoseReport here = inspect(pose);
     // Close to a singularity the third derivative, and with it the error of the differences, grows without bound.
-    if (!here.J || here.J->cwiseAbs().maxCoeff() > 10) continue;
-    for (int c = 0; c < 4; ++c) {
+    if (!here.J || std::ranges::any_of(*here.J, [](double slope) { return std::fabs(slope) > 10; })) continue;
+    ASSERT_EQ(here.J->rows(), info().joints.size());
+    ASSERT_EQ(here.J->cols(), info().coordinates.size());
+    for (std::size_t c = 0; c < pose.size(); ++c) {
       const auto moved = [&](double by) {
         Pose<double> p = pose;
-        (c == 0 ? p.x : c == 1 ? p.y : c == 2 ? p.z : p.angle) += by;
+        p[c] += by;
         return inspect(p).joints;
       };
       const auto before = moved(-kStep), after = moved(kStep);
       if (!before || !after) continue;
       ++compared;
-      for (int joint = 0; joint < 4; ++joint) {
-        const auto at = static_cast<std::size_t>(joint);
+      for (std::size_t joint = 0; joint < info().joints.size(); ++joint) {
         const double scale = std::fmax(1, std::fabs((*here.J)(joint, c)));
-        EXPECT_NEAR(((*after)[at] - (*before)[at]) / (2 * kStep), (*here.J)(joint, c), 1e-5 * scale)
-            << text(pose) << ", " << c;
+        EXPECT_NEAR(((*after)[joint] - (*before)[joint]) / (2 * kStep), (*here.J)(joint, c), 1e-5 * scale)
+            << test::words(info(), pose) << ", " << c;
       }
     }
   }
@@ -170,12 +222,13 @@ TEST_P(MechanismContract, JacobianEqualsDifferencesOfTheJoints) {
 }
 
 TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
-  for (const Sweep& sweep : sweeps_of(info())) {
-    SCOPED_TRACE("held coordinate " + std::to_string(sweep.held));
-    const double exact = survey(mechanism(), parameters(), plan(info(), sweep, Method::columns)).volume;
+  if (!mechanism().columns()) GTEST_SKIP() << "no columns";
+  for (const Sweep& sweep : info().sweeps) {
+    SCOPED_TRACE(test::words(info(), sweep));
+    const double exact = survey(mechanism(), parameters(), test::columns(info(), sweep)).volume;
     ASSERT_GT(exact, 0);
     const auto voxels = [&](std::int64_t cells) {
-      return survey(mechanism(), parameters(), plan(info(), sweep, Method::voxels, cells)).volume;
+      return survey(mechanism(), parameters(), test::voxels(info(), sweep, cells)).volume;
     };
     EXPECT_NEAR(voxels(30) / exact, 1, 0.05);
     EXPECT_NEAR(voxels(240) / exact, 1, 0.005);
@@ -183,9 +236,9 @@ TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
 }
 
 TEST_P(MechanismContract, InactiveLimitsLieInTheirRangeAndCutNothing) {
-  for (const Sweep& sweep : sweeps_of(info()))
-    for (const auto method : {Method::voxels, Method::columns}) {
-      SurveyPlan p = plan(info(), sweep, method, method == Method::voxels ? 30 : 0);
+  for (const Sweep& sweep : test::sweeps(mechanism()))
+    for (SurveyPlan& p : test::plans(mechanism(), sweep, 30)) {
+      if (info().limits.empty()) continue;
       const auto free = survey(mechanism(), parameters(), p);
       for (std::size_t i = 0; i < info().limits.size(); ++i) {
         const LimitInfo& limit = info().limits[i];
@@ -201,13 +254,11 @@ TEST_P(MechanismContract, InactiveLimitsLieInTheirRangeAndCutNothing) {
 }
 
 TEST_P(MechanismContract, AbsurdLimitsLeaveAnEmptyWorkspace) {
-  for (const Sweep& sweep : sweeps_of(info()))
-    for (const auto method : {Method::voxels, Method::columns}) {
-      SurveyPlan p = plan(info(), sweep, method, method == Method::voxels ? 10 : 0);
+  if (info().limits.empty()) GTEST_SKIP() << "no limits";
+  for (const Sweep& sweep : test::sweeps(mechanism()))
+    for (SurveyPlan& p : test::plans(mechanism(), sweep, 10)) {
       p.limits = test::absurd_limits(mechanism(), p);
-      Demand demand;
-      demand.conditioning = !info().characteristic_length.empty();
-      const auto empty = survey(mechanism(), parameters(), p, demand);
+      const auto empty = survey(mechanism(), parameters(), p, {.conditioning = !info().characteristic_length.empty()});
       EXPECT_EQ(empty.volume, 0);
       EXPECT_EQ(empty.feasible_cells, 0);
       EXPECT_FALSE(empty.touches_box);
@@ -222,16 +273,19 @@ int metres(const std::string& unit) {
 }
 
 TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeAsItsUnitSays) {
+  constexpr double kScale = 4;  // a power of two: no cell's centre comes to lie on another side of a limit by rounding
   auto larger = parameters();
   for (std::size_t i = 0; i < larger.size(); ++i)
-    if (info().parameters[i].unit == "m") larger[i] *= 3;
-  EXPECT_NEAR(mechanism().size(larger) / mechanism().size(parameters()), std::pow(3, metres(info().size_unit)), 1e-12);
-  for (const Sweep& sweep : sweeps_of(info())) {
-    const SurveyPlan p = plan(info(), sweep, Method::columns);
-    Demand demand;
-    demand.conditioning = !info().characteristic_length.empty();
+    if (info().parameters[i].unit == "m") larger[i] *= kScale;
+  if (const Size* const size = mechanism().size()) {
+    EXPECT_NEAR(size->of(larger) / size->of(parameters()), std::pow(kScale, metres(size->unit())), 1e-12);
+  }
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    SCOPED_TRACE(test::words(info(), sweep));
+    const SurveyPlan p = test::best_plan(mechanism(), sweep);
+    const Demand demand = {.conditioning = !info().characteristic_length.empty()};
     const auto small = survey(mechanism(), parameters(), p, demand), large = survey(mechanism(), larger, p, demand);
-    EXPECT_NEAR(large.volume / small.volume, std::pow(3, metres(sweep.volume_unit)), 1e-7);
+    EXPECT_NEAR(large.volume / small.volume, std::pow(kScale, metres(volume_unit(info(), p))), 1e-7);
     ASSERT_EQ(large.conditioning.size(), small.conditioning.size());
     for (std::size_t i = 0; i < small.conditioning.size(); ++i)
       EXPECT_NEAR(large.conditioning[i], small.conditioning[i], 1e-7) << i;
@@ -239,11 +293,10 @@ TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeAsItsUnitSays) {
 }
 
 TEST_P(MechanismContract, ExpressionsKnowItsNumbersByDistinctNames) {
-  const SurveyPlan p = plan(info(), Method::columns);
+  const SurveyPlan p = test::best_plan(mechanism());
   const auto design = parameters();
-  const auto names = expression_names(info(), p);
   std::set<std::string> distinct;
-  for (const ExpressionName& known : names) {
+  for (const ExpressionName& known : expression_names(mechanism(), p)) {
     SCOPED_TRACE(known.name);
     EXPECT_TRUE(distinct.insert(known.name).second) << "twice";
     EXPECT_NE(known.unit, "");
@@ -255,19 +308,20 @@ TEST_P(MechanismContract, ExpressionsKnowItsNumbersByDistinctNames) {
     Demand demand;
     expression.add_demand(context, demand);
     const auto found = survey(mechanism(), design, p, demand);
+    Scratch scratch;
     std::vector<double> thresholds(info().limits.size());
     mechanism().thresholds(design, p.limits, thresholds);
     using Origin = ExpressionName::Origin;
     EXPECT_EQ(expression.needs_survey(), known.origin == Origin::survey);
     const double expected = known.origin == Origin::parameter   ? design[known.index]
                             : known.origin == Origin::threshold ? thresholds[known.index]
-                            : known.origin == Origin::size      ? mechanism().size(design)
-                                                                : survey_results()[known.index].value(found);
-    EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found}), expected);
+                            : known.origin == Origin::size      ? mechanism().size()->of(design)
+                                                                : survey_results()[known.index].value(found, scratch);
+    EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found, scratch}), expected);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, MechanismContract, testing::ValuesIn(all_mechanisms()),
+INSTANTIATE_TEST_SUITE_P(All, MechanismContract, testing::ValuesIn(test::mechanisms()),
                          [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
 
 }  // namespace

@@ -14,29 +14,36 @@
 namespace pkm {
 namespace {
 
+using test::best_plan;
 using test::nominal;
-using test::plan;
 using testing::HasSubstr;
 
-/// A mechanism that can do nothing beyond being surveyed.
-MechanismInfo stripped(const MechanismInfo& info) {
-  MechanismInfo bare = info;
-  bare.name = "bare-machine";
-  bare.limits.clear();
-  bare.design_margins.clear();
-  bare.size_unit = bare.size_meaning = bare.characteristic_length = "";
-  bare.has_dynamics = bare.has_reactions = false;
-  return bare;
-}
+/// A mechanism that can do nothing beyond being surveyed, with the parameters and coordinates of another.
+class Bare final : public Mechanism {
+ public:
+  explicit Bare(const Mechanism& of) : info_(of.info()) {
+    info_.name = "bare-machine";
+    info_.limits.clear();
+    info_.characteristic_length = "";
+  }
+  const MechanismInfo& info() const override { return info_; }
+  PoseReport inspect(std::span<const double>, const Pose<double>&, const std::string&,
+                     const LimitSpec&) const override {
+    return {};
+  }
+
+ private:
+  MechanismInfo info_;
+};
 
 /// All pairs of an entry and a mechanism that it serves.
 template <class List, class Do>
 void for_all_served(const List& entries, const Do& action) {
   for (const auto& entry : entries) {
     int served = 0;
-    for (const auto& mechanism : all_mechanisms()) {
+    for (const auto& mechanism : test::mechanisms()) {
       SCOPED_TRACE(entry.name + " of " + mechanism->info().name);
-      if (!entry.refusal(mechanism->info()).empty()) continue;
+      if (!entry.refusal(*mechanism).empty()) continue;
       ++served;
       action(entry, *mechanism);
     }
@@ -67,18 +74,19 @@ Options some_options(const ConstraintEntry& entry, const MechanismInfo& info) {
 
 double value(const ObjectiveEntry& entry, const Mechanism& mechanism, const SurveyPlan& plan) {
   const Options options = some_options(entry, mechanism.info());
-  const auto motions = test::motions(mechanism.info());
+  const auto motions = test::motions(mechanism);
   const EntryContext context{mechanism, plan, options, {}, motions};
   Demand demand;
   entry.demand(context, demand);
   const auto parameters = nominal(mechanism.info());
   const auto survey = test::survey(mechanism, parameters, plan, demand);
-  return entry.make(context)->value({mechanism, parameters, &survey});
+  Scratch scratch;
+  return entry.make(context)->value({mechanism, parameters, &survey, scratch});
 }
 
 TEST(ObjectiveContract, IsDescribed) {
   for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
-    const SurveyPlan p = plan(mechanism.info(), Method::columns);
+    const SurveyPlan p = best_plan(mechanism);
     const Options options = some_options(entry, mechanism.info());
     EXPECT_NE(entry.name, "");
     EXPECT_NE(entry.meaning, "");
@@ -88,19 +96,18 @@ TEST(ObjectiveContract, IsDescribed) {
   });
 }
 
-TEST(ObjectiveContract, VoxelsAndColumnsAgreeWithinTheGridsError) {
+TEST(ObjectiveContract, VoxelsAgreeWithColumnsOrFinerOnesWithinTheGridsError) {
   for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
-    const double columns = value(entry, mechanism, plan(mechanism.info(), Method::columns));
-    const double voxels = value(entry, mechanism, plan(mechanism.info(), Method::voxels, 40));
-    EXPECT_TRUE(std::isfinite(columns) && columns != 0);
-    EXPECT_NEAR(voxels / columns, 1, 0.05);
+    const double fine = value(entry, mechanism, best_plan(mechanism, 30));
+    const double voxels = value(entry, mechanism, test::voxels(mechanism.info(), mechanism.columns() ? 40 : 19));
+    EXPECT_TRUE(std::isfinite(fine) && fine != 0);
+    EXPECT_NEAR(voxels / fine, 1, 0.05);
   });
 }
 
 TEST(ObjectiveContract, IsDefinedOnAnEmptyWorkspace) {
   for_all_served(all_objectives(), [](const ObjectiveEntry& entry, const Mechanism& mechanism) {
-    for (const auto method : {Method::voxels, Method::columns}) {
-      SurveyPlan p = plan(mechanism.info(), method, method == Method::voxels ? 10 : 0);
+    for (SurveyPlan& p : test::plans(mechanism, mechanism.info().sweeps.front(), 10)) {
       p.limits = test::absurd_limits(mechanism, p);
       EXPECT_TRUE(std::isfinite(value(entry, mechanism, p)));
     }
@@ -110,7 +117,7 @@ TEST(ObjectiveContract, IsDefinedOnAnEmptyWorkspace) {
 /// Either the entry serves a bare mechanism too, or it says in one sentence who lacks what.
 template <class Entry>
 void expect_both_sides_named(const Entry& entry, const Mechanism& mechanism) {
-  const std::string refusal = entry.refusal(stripped(mechanism.info()));
+  const std::string refusal = entry.refusal(Bare(mechanism));
   if (refusal.empty()) return;
   EXPECT_THAT(refusal, HasSubstr(entry.name));
   EXPECT_THAT(refusal, HasSubstr("bare-machine"));
@@ -119,7 +126,7 @@ void expect_both_sides_named(const Entry& entry, const Mechanism& mechanism) {
 TEST(ObjectiveContract, RefusalNamesBothSides) {
   for_all_served(all_objectives(),
                  [](const auto& entry, const auto& mechanism) { expect_both_sides_named(entry, mechanism); });
-  const MechanismInfo bare = stripped(all_mechanisms()[0]->info());
+  const Bare bare(*all_mechanisms()[0]);
   EXPECT_NE(find_named(all_objectives(), "workspace-ratio")->refusal(bare), "");
   EXPECT_NE(find_named(all_objectives(), "conditioning")->refusal(bare), "");
 }
@@ -127,15 +134,16 @@ TEST(ObjectiveContract, RefusalNamesBothSides) {
 TEST(ConstraintContract, RefusalNamesBothSides) {
   for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
     expect_both_sides_named(entry, mechanism);
-    EXPECT_TRUE(!entry.pose_level || !entry.refusal(stripped(mechanism.info())).empty());
+    EXPECT_TRUE(!entry.pose_level || !entry.refusal(Bare(mechanism)).empty());
   });
 }
 
 double margin(const ConstraintEntry& entry, const Mechanism& mechanism, const std::vector<double>& parameters) {
-  const SurveyPlan p = plan(mechanism.info(), Method::columns);
+  const SurveyPlan p = best_plan(mechanism);
   const Options options = some_options(entry, mechanism.info());
-  const std::vector<Region> regions = {test::task(mechanism.info())};
-  return entry.make({mechanism, p, options, regions})->value({mechanism, parameters, nullptr});
+  const std::vector<Region> regions = {test::task(mechanism)};
+  Scratch scratch;
+  return entry.make({mechanism, p, options, regions})->value({mechanism, parameters, nullptr, scratch});
 }
 
 TEST(ConstraintContract, IsDescribed) {
@@ -143,7 +151,7 @@ TEST(ConstraintContract, IsDescribed) {
     EXPECT_NE(entry.name, "");
     EXPECT_NE(entry.meaning, "");
     for (const OptionSpec& option : entry.options(mechanism.info())) EXPECT_NE(option.meaning, "") << option.name;
-    const SurveyPlan p = plan(mechanism.info(), Method::columns);
+    const SurveyPlan p = best_plan(mechanism);
     const Options options = some_options(entry, mechanism.info());
     EXPECT_TRUE(entry.pose_level || !entry.unit({mechanism, p, options}).empty());
     EXPECT_TRUE(!entry.detail || !entry.detail({mechanism, p, options}).empty());
@@ -193,17 +201,15 @@ TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
   for_all_served(all_constraints(), [](const ConstraintEntry& entry, const Mechanism& mechanism) {
     if (!entry.pose_level) return;
     const MechanismInfo& info = mechanism.info();
-    const auto volume = [&](const Sweep& sweep, const Options& options) {
-      SurveyPlan p = plan(info, sweep, Method::columns);
+    const auto volume = [&](SurveyPlan p, const Options& options) {
       p.limits = entry.limits(info, options);
       return test::survey(mechanism, nominal(info), p).volume;
     };
-    const auto sweeps = sweeps_of(info);
-    const auto uncut = [&](const Sweep& sweep) {
-      return test::survey(mechanism, nominal(info), plan(info, sweep, Method::columns)).volume;
-    };
+    const auto uncut = [&](const SurveyPlan& p) { return test::survey(mechanism, nominal(info), p).volume; };
+    std::vector<SurveyPlan> plans;
+    for (const Sweep& sweep : test::sweeps(mechanism)) plans.push_back(best_plan(mechanism, sweep, 20));
     const auto specs = entry.options(info);
-    EXPECT_TRUE(!specs.empty() || volume(sweeps[0], {}) < uncut(sweeps[0]));
+    EXPECT_TRUE(!specs.empty() || volume(plans[0], {}) < uncut(plans[0]));
     for (const OptionSpec& spec : specs) {
       const LimitInfo* limit = find_named(info.limits, spec.name);
       if (!limit) continue;
@@ -211,14 +217,14 @@ TEST(ConstraintContract, PoseLevelOnesOnlyEverCut) {
       const auto index = static_cast<std::size_t>(limit - info.limits.data());
       const double end = std::min(*test::absurd_limits(info).given[index], 1.0);
       double least_left = 1;  // a limit may cut nothing of a sweep that holds the very coordinate that it bounds
-      for (const Sweep& sweep : sweeps) {
-        const double free = uncut(sweep);
+      for (const SurveyPlan& p : plans) {
+        const double free = uncut(p);
         double before = free;
         for (const double share : {0.25, 0.5, 0.75, 1.0}) {
           Options options = default_options(specs);
           options.set(spec.name, (1 - share) * limit->inactive + share * end);
-          const double cut = volume(sweep, options);
-          EXPECT_LE(cut, before * (1 + 1e-8)) << spec.name << ", " << share << ", " << sweep.held;
+          const double cut = volume(p, options);
+          EXPECT_LE(cut, before * (1 + 1e-8)) << spec.name << ", " << share << ", " << volume_unit(info, p);
           before = cut;
         }
         least_left = std::min(least_left, before / free);

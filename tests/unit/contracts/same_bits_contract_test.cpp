@@ -44,30 +44,39 @@ class SameBitsContract : public testing::TestWithParam<std::shared_ptr<const Mec
     for (int i = 0; i < 3; ++i) {
       const std::vector<double> design = i == 0 ? test::nominal(info()) : test::random_design(info(), random);
       const LimitSpec limits = i == 0 ? no_limits(info()) : test::random_limits(info(), random);
-      for (const Sweep& sweep : sweeps_of(info()))
-        for (const Method method : {Method::voxels, Method::columns}) {
-          SurveyPlan plan = test::plan(info(), sweep, method, 13);
+      for (const Sweep& sweep : test::sweeps(mechanism()))
+        for (SurveyPlan& plan : test::plans(mechanism(), sweep, mechanism().voxels() ? 13 : 6)) {
           plan.limits = limits;
-          Demand demand;
-          demand.conditioning = true;
-          demand.dci = demand.inertia_condition = method == Method::voxels && !info().mass_models.empty();
+          Demand demand = test::all_fields(mechanism());
+          if (plan.columns()) demand.dci = demand.inertia_condition = false;
           add(bits, test::survey(mechanism(), design, plan, demand));
-          if (method == Method::columns) continue;
-          for (const std::uint8_t cell : mechanism().voxel_map(design, plan).feasible) bits.push_back(cell);
+          if (plan.columns()) continue;
+          for (const std::uint8_t cell : voxel_map(mechanism(), design, plan).feasible) bits.push_back(cell);
         }
     }
     return bits;
   }
 
-  /// Slopes of all quantities by all parameters at random designs.
+  bool has_slopes() const {
+    return mechanism().columns() && prepare_survey(mechanism(), test::columns(info()), {})->slopes();
+  }
+  /// Slopes of all quantities by all parameters at random designs; none where surveys have none.
   Bits slopes() const {
     Bits bits;
+    if (!has_slopes()) return bits;
+    // The poses to be feasible for which bits were frozen.
+    static const std::map<std::string, Pose<double>> poses = {{"4ppa-2par", {0.3, 0.85, -0.8, 0.1}},
+                                                              {"3crr-r-cru", {0.2, 0.17, 0.22, 0.1}},
+                                                              {"quadrupteron", {0.2, 0.17, 0.22, 0.1}},
+                                                              {"2t1r-p-hybrid", {0, 0.01, 0.23, 0.1}}};
+    const auto known = poses.find(info().name);
+    const Pose<double> centre = known == poses.end() ? test::usual_pose(mechanism()) : known->second;
     Stream random(8, 0, 0, Stream::Use::start);
-    SurveyPlan plan = test::plan(info(), Method::columns);
+    SurveyPlan plan = test::columns(info());
     for (int i = 0; i < 2; ++i) {
       const std::vector<double> design = test::random_design(info(), random);
       plan.limits = test::random_limits(info(), random);
-      const DesignProblem problem = test::everything(GetParam(), plan);
+      const DesignProblem problem = test::everything(GetParam(), plan, test::Of::kinematics, centre);
       add(bits, problem.slopes(design, problem.parts().varies));
     }
     return bits;
@@ -89,6 +98,7 @@ TEST_P(SameBitsContract, SurveysOnEveryInstructionSet) {
   same_on_every_set([&] { return surveys(); });
 }
 TEST_P(SameBitsContract, SlopesOnEveryInstructionSet) {
+  if (!has_slopes()) GTEST_SKIP() << "no derivatives";
   same_on_every_set([&] { return slopes(); });
 }
 
@@ -114,13 +124,13 @@ TEST_P(SameBitsContract, FrozenForEveryBuild) {
 
 TEST_P(SameBitsContract, SurveysAndSlopesByATeam) {
   const Bits alone = surveys(), slopes_alone = slopes();
-  Team team(3);
-  const LentTeam lent(team);
-  EXPECT_TRUE(surveys() == alone);
-  EXPECT_TRUE(slopes() == slopes_alone);
+  with_team(3, [&] {
+    EXPECT_TRUE(surveys() == alone);
+    EXPECT_TRUE(slopes() == slopes_alone);
+  });
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SameBitsContract, testing::ValuesIn(all_mechanisms()),
+INSTANTIATE_TEST_SUITE_P(All, SameBitsContract, testing::ValuesIn(test::mechanisms()),
                          [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
 
 }  // namespace

@@ -13,16 +13,12 @@ constexpr unsigned kDesigns = 1000;
 class SlopeContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
  protected:
   void SetUp() override {
-    const std::string reason = GetParam()->prepare(plan(), {})->no_derivatives();
-    if (!reason.empty()) GTEST_SKIP() << reason;
+    if (!GetParam()->columns()) GTEST_SKIP() << "voxels have no derivatives";
+    const auto surveyor = prepare_survey(*GetParam(), plan(), {});
+    if (!surveyor->slopes()) GTEST_SKIP() << surveyor->why_no_slopes();
   }
   const MechanismInfo& info() const { return GetParam()->info(); }
-  SurveyPlan plan() const { return test::plan(info(), Method::columns); }
-  Demand all_fields() const {
-    Demand demand;
-    demand.conditioning = !info().characteristic_length.empty();
-    return demand;
-  }
+  SurveyPlan plan(const ColumnOptions& columns = {}) const { return test::columns(info(), columns); }
 
   /// Compares random designs with a workspace under random limits.
   void compare(SurveyPlan p, test::Of of, double excluded, unsigned designs = kDesigns, double exact = 1e-7) const {
@@ -44,25 +40,20 @@ class SlopeContract : public testing::TestWithParam<std::shared_ptr<const Mechan
 };
 
 TEST_P(SlopeContract, VolumesAndMarginsEqualDifferencesOfTheExactRule) {
-  SurveyPlan p = plan();
-  p.tolerance = 1e-13;  // what is left changes with the number of nodes
-  compare(p, test::Of::volume, 0.005);
+  compare(plan({.tolerance = 1e-13}), test::Of::volume, 0.005);  // what is left changes with the number of nodes
 }
 
 /// To 3e-7: where two breaks of the workspace nearly coincide, differences may agree and still see both at once.
 TEST_P(SlopeContract, EveryQuantityEqualsDifferencesOfARuleWithFixedNodes) {
-  SurveyPlan p = plan();
-  p.nodes = {6, 6};  // fewer samples, fewer kinks
-  compare(p, test::Of::kinematics, 0.02, kDesigns, 3e-7);
+  // fewer samples, fewer kinks
+  compare(plan({.nodes = {6, 6}}), test::Of::kinematics, 0.02, kDesigns, 3e-7);
 }
 
 /// Coupling indices have kinks wherever an off-diagonal element of M_q passes 0 at a sample, and there are hundreds of
 /// samples. To 5e-6, because a break at which the integrand only changes its formula is not followed: the slope of the
 /// integral is the same, that of a rule with few nodes differs by its error.
 TEST_P(SlopeContract, QuantitiesOfInertiaEqualDifferences) {
-  SurveyPlan p = plan();
-  p.nodes = {8, 8};
-  compare(p, test::Of::inertia, 0.6, 12, 5e-6);
+  compare(plan({.nodes = {8, 8}}), test::Of::inertia, 0.6, 12, 5e-6);
 }
 
 /// Designs and limits far beyond what is sensible, among them many without a workspace.
@@ -71,8 +62,7 @@ TEST_P(SlopeContract, AreFiniteEverywhereAndZeroWithoutAWorkspace) {
   for (unsigned k = 0; k < 2 * kDesigns; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
     Stream random(2, 0, k, Stream::Use::start);
-    SurveyPlan p = plan();
-    p.nodes = {3, 3};
+    SurveyPlan p = plan({.nodes = {3, 3}});
     p.limits = test::random_limits(info(), random);
     const LimitSpec absurd = test::absurd_limits(info());
     for (std::size_t i = 0; i < info().limits.size(); ++i)  // some at one end of their range or the other
@@ -104,17 +94,17 @@ TEST_P(SlopeContract, SurveysWithDerivativesHaveTheBitsOfThoseWithout) {
   for (unsigned k = 0; k < 100; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
     Stream random(3, 0, k, Stream::Use::start);
-    SurveyPlan p = plan();
+    SurveyPlan p = k % 4 == 3 ? plan({.nodes = {5, 7}}) : plan();
     p.limits = test::random_limits(info(), random);
-    if (k % 4 == 3) p.nodes = {5, 7};
     const std::vector<double> design = test::random_design(info(), random);
-    const auto surveyor = GetParam()->prepare(p, all_fields());
+    const auto surveyor = prepare_survey(*GetParam(), p, {.conditioning = !info().characteristic_length.empty()});
+    Scratch scratch;
     Survey<double> plain, values;
-    surveyor->survey(design, plain);
+    surveyor->survey(design, scratch, plain);
     std::vector<Dual4> moving(design.begin(), design.end());
     for (int i = 0; i < 4; ++i) moving[static_cast<std::size_t>(i)].v[i] = 1;
     Survey<Dual4> survey;
-    surveyor->survey(moving, survey);
+    surveyor->slopes()->survey(moving, scratch, survey);
     copy_values(survey, values);
     EXPECT_EQ(values.volume, plain.volume);
     EXPECT_EQ(values.columns, plain.columns);
@@ -128,15 +118,15 @@ TEST_P(SlopeContract, SurveysWithDerivativesHaveTheBitsOfThoseWithout) {
 TEST_P(SlopeContract, EvaluationsWithSlopesHaveTheBitsOfThoseWithout) {
   for (unsigned k = 0; k < 30; ++k) {
     Stream random(4, 0, k, Stream::Use::start);
-    SurveyPlan p = plan();
-    p.nodes = {4, 4};
+    SurveyPlan p = plan({.nodes = {4, 4}});
     p.limits = test::random_limits(info(), random);
     const DesignProblem problem = test::everything(GetParam(), p);
     const std::vector<double> design = test::random_design(info(), random);
     EvaluationTable plain(problem.shape(Detail::complete)), sloped(problem.shape(Detail::derivatives));
+    Scratch scratch;
     for (EvaluationTable* table : {&plain, &sloped}) {
       table->extend(1);
-      problem.evaluate(design, table->slot(0));
+      problem.evaluate(design, scratch, table->slot(0));
     }
     EXPECT_EQ(sloped.status, plain.status);
     EXPECT_EQ(sloped.objectives, plain.objectives);
@@ -154,7 +144,7 @@ TEST_P(SlopeContract, EvaluationsWithSlopesHaveTheBitsOfThoseWithout) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SlopeContract, testing::ValuesIn(all_mechanisms()),
+INSTANTIATE_TEST_SUITE_P(All, SlopeContract, testing::ValuesIn(test::mechanisms()),
                          [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
 
 }  // namespace

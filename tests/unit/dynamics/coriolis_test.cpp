@@ -9,8 +9,8 @@ namespace {
 TEST(Coriolis, APointOnAnArmOfVariableLength) {
   // Polar coordinates: M = diag(m, m r^2), C = m r [0 -thetad; thetad rd/r], with r = x and theta the fourth one.
   const double m = 2, r = 0.7, r_rate = 0.3, turning = 1.9;
-  const MotionState<double> state{{r, 0, 0, 0.4}, {{r_rate, 0, 0, turning}}};
-  const MotionState<Dual4> at = pose_variables(state);
+  const MotionState<double, 4> state{{r, 0, 0, 0.4}, {{r_rate, 0, 0, turning}}};
+  const MotionState<Dual4, 4> at = pose_variables(state);
   Matrix<Dual4, 4, 4> M = Matrix<Dual4, 4, 4>::identity() * Dual4(m);
   M(3, 3) = at.pose.x * at.pose.x * m;
   const Matrix<double, 4, 4> C = coriolis_matrix(M, state.velocity);

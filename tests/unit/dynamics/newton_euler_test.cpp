@@ -124,7 +124,7 @@ TEST(NewtonEuler, ASquareClosureNeedsAsManyUnknownsAsEquations) {
 }
 
 TEST(NewtonEuler, BodiesUniteByParallelAxes) {
-  PlacedBody a{"a", kX, {}}, b{"b", kX * -1.0, {}};
+  PlacedBody<4> a{"a", kX, {}}, b{"b", kX * -1.0, {}};
   a.body.mass = 1;
   b.body.mass = 3;
   a.body.inertia = b.body.inertia = Matrix<double, 3, 3>::identity();
@@ -132,14 +132,14 @@ TEST(NewtonEuler, BodiesUniteByParallelAxes) {
   a.body.J_v(1, 3) = 1;  // both turn about z with the fourth coordinate
   b.body.J_v(1, 3) = -1;
   a.body.J_omega(2, 3) = b.body.J_omega(2, 3) = 1;
-  const PlacedBody both = unite("both", a, b);
+  const PlacedBody<4> both = unite("both", a, b);
   EXPECT_EQ(both.body.mass, 4);
   EXPECT_EQ(both.centre[0], -0.5);
   EXPECT_EQ(both.body.J_v(1, 3), -0.5);
   EXPECT_EQ(both.body.inertia(0, 0), 2);
   EXPECT_EQ(both.body.inertia(1, 1), 2 + 1 * 2.25 + 3 * 0.25);
   // the same equations of motion as the two
-  PoseDynamics<double> apart, together;
+  PoseDynamics<double, 4> apart, together;
   const Vector<double, 4> velocity{{1, 2, 3, 4}};
   add_body(apart, a.body, velocity);
   add_body(apart, b.body, velocity);

@@ -11,14 +11,14 @@
 namespace pkm::testing::crr {
 namespace {
 
-using X = Vector<double, 4>;
+using X = AxisVector<double>;
 using ::testing::HasSubstr;
 
 SimulationSetup setup_of(const std::string& name, const X& forces, double duration, double step) {
   SimulationSetup setup;
   setup.dynamics = [&m = mechanism(name), p = nominal()](const MotionState<double>& state) {
     PoseDynamics<double> d;
-    m.dynamics(std::span<const double>(p), m.info().modes[0], {&state, 1}, {&d, 1});
+    m.dynamics()->equations(std::span<const double>(p), m.info().modes[0], {&state, 1}, {&d, 1});
     return d;
   };
   setup.forces = [forces](double) { return forces; };
@@ -27,11 +27,11 @@ SimulationSetup setup_of(const std::string& name, const X& forces, double durati
   return setup;
 }
 
-const X kPose{{0.2, 0.17, 0.22, 0.3}}, kVelocity{{0.3, -0.2, 0.4, 2}};
+const X kPose{0.2, 0.17, 0.22, 0.3}, kVelocity{0.3, -0.2, 0.4, 2}, kAtRest(4), kNone(4);
 
 TEST(Simulation, ConservesEnergy) {
   for (const std::string& name : both()) {
-    SimulationSetup setup = setup_of(name, {{0.5, 0, 8, -0.2}}, 0.2, 1e-3);
+    SimulationSetup setup = setup_of(name, {0.5, 0, 8, -0.2}, 0.2, 1e-3);
     setup.wrench = {{0.2, -0.1, 0.3, 0, 0, 0.01}};
     const Simulation run = simulate(setup, kPose, kVelocity);
     ASSERT_EQ(run.stopped, "");
@@ -45,7 +45,7 @@ TEST(Simulation, ConservesEnergy) {
 /// The work of the weight depends on the ends of the way alone: the same along the straight line between them.
 TEST(Simulation, TheWorkOfTheWeightIsAPotential) {
   for (const std::string& name : both()) {
-    const SimulationSetup setup = setup_of(name, {{0.5, 0, 8, -0.2}}, 0.2, 1e-3);
+    const SimulationSetup setup = setup_of(name, {0.5, 0, 8, -0.2}, 0.2, 1e-3);
     const SimulationState last = simulate(setup, kPose, kVelocity).states.back();
     const X way = last.pose - kPose;
     double work = 0;
@@ -53,7 +53,7 @@ TEST(Simulation, TheWorkOfTheWeightIsAPotential) {
     for (int k = 0; k < kPieces; ++k)
       for (const double root : {-1.0, 1.0}) {  // Gauss' rule of two points
         const X x = kPose + way * ((k + 0.5 + root / (2 * std::sqrt(3.0))) / kPieces);
-        work -= dot(setup.dynamics({{x[0], x[1], x[2], x[3]}, {}}).G_X, way) / (2 * kPieces);
+        work -= dot(setup.dynamics({x, kAtRest}).G_X, way) / (2 * kPieces);
       }
     EXPECT_NEAR(last.work_of_weight, work, 1e-9 * std::fabs(work));
   }
@@ -61,7 +61,7 @@ TEST(Simulation, TheWorkOfTheWeightIsAPotential) {
 
 TEST(Simulation, ReturnsWhenTimeRunsBackwards) {
   for (const std::string& name : both()) {
-    const SimulationSetup setup = setup_of(name, {{0.5, 0, 8, -0.2}}, 0.2, 1e-3);
+    const SimulationSetup setup = setup_of(name, {0.5, 0, 8, -0.2}, 0.2, 1e-3);
     const SimulationState there = simulate(setup, kPose, kVelocity).states.back();
     const SimulationState back = simulate(setup, there.pose, there.velocity * -1.0).states.back();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -73,7 +73,7 @@ TEST(Simulation, ReturnsWhenTimeRunsBackwards) {
 
 TEST(Simulation, HasOrderSix) {
   const auto end = [](double step) {
-    SimulationSetup setup = setup_of("3crr-r-cru", {{0.5, 0, 8, -0.2}}, 0.16, step);
+    SimulationSetup setup = setup_of("3crr-r-cru", {0.5, 0, 8, -0.2}, 0.16, step);
     setup.tolerance = 1;
     return simulate(setup, kPose, kVelocity).states.back().pose;
   };
@@ -89,24 +89,26 @@ TEST(Simulation, HasOrderSix) {
 /// The forces that a motion needs, found by inverse dynamics, make the simulation follow the motion.
 TEST(Simulation, FollowsTheMotionWhoseForcesItIsGiven) {
   PickAndPlace cycle;
-  cycle.start = {{0.06, 0.17, 0.2, -0.4}};
+  cycle.start = {0.06, 0.17, 0.2, -0.4};
+  cycle.axes = space_axes(mechanism("3crr-r-cru").info().coordinates);
   cycle.reach = 0.1;
   cycle.turn = 0.5;
   cycle.overlap = 0.05;
   const auto motion = pick_and_place(cycle);
   for (const std::string& name : both()) {
     const Mechanism& m = mechanism(name);
-    SimulationSetup setup = setup_of(name, {}, motion->duration(), 1e-3);
+    SimulationSetup setup = setup_of(name, kNone, motion->duration(), 1e-3);
     const std::vector<double> p = nominal();
     setup.tolerance = 1e-6;  // the forces have corners in time where pieces of the motion begin
     setup.forces = [&](double time) {
       const MotionSample at = motion->at(time);
       X tau;
-      drive_along<double>(m, p, m.info().modes[0], {&at, 1}, {},
+      DriveScratch<double> scratch;
+      drive_along<double>(*m.dynamics(), p, m.info().modes[0], {&at, 1}, {}, scratch,
                           [&](std::size_t, const Drive<double>& drive) { tau = drive.forces; });
       return tau;
     };
-    const Simulation run = simulate(setup, cycle.start, {});
+    const Simulation run = simulate(setup, cycle.start, kAtRest);
     ASSERT_EQ(run.stopped, "");
     for (std::size_t k = 0; k < run.states.size(); k += 25)
       for (std::size_t i = 0; i < 4; ++i)
@@ -115,27 +117,28 @@ TEST(Simulation, FollowsTheMotionWhoseForcesItIsGiven) {
 }
 
 TEST(Simulation, RestsWhereTheForcesCarryTheWeight) {
-  SimulationSetup setup = setup_of("3crr-r-cru", {}, 0.05, 1e-2);
-  const MotionSample at{0, kPose, {}, {}};
+  SimulationSetup setup = setup_of("3crr-r-cru", kNone, 0.05, 1e-2);
+  const MotionSample at{0, kPose, kAtRest, kAtRest, {}};
+  DriveScratch<double> scratch;
   drive_along<double>(
-      mechanism("3crr-r-cru"), nominal(), mechanism("3crr-r-cru").info().modes[0], {&at, 1}, {},
+      *mechanism("3crr-r-cru").dynamics(), nominal(), mechanism("3crr-r-cru").info().modes[0], {&at, 1}, {}, scratch,
       [&](std::size_t, const Drive<double>& drive) { setup.forces = [tau = drive.forces](double) { return tau; }; });
-  const Simulation run = simulate(setup, kPose, {});
+  const Simulation run = simulate(setup, kPose, kAtRest);
   ASSERT_EQ(run.stopped, "");
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.states.back().pose[i], kPose[i], 1e-12);
 }
 
 TEST(Simulation, SaysWhyItStops) {
-  const SimulationSetup falls = setup_of("3crr-r-cru", {}, 2, 1e-3);
-  const Simulation run = simulate(falls, kPose, {});
+  const SimulationSetup falls = setup_of("3crr-r-cru", kNone, 2, 1e-3);
+  const Simulation run = simulate(falls, kPose, kAtRest);
   EXPECT_THAT(run.stopped, HasSubstr("at t = 0."));
   EXPECT_LT(run.states.back().time, 0.5);
   EXPECT_GT(run.states.size(), 50u);
   SimulationSetup limited = falls;
-  limited.refuse = [](const Pose<double>& pose) { return pose.z < 0.2 ? std::string("the floor is met") : ""; };
-  EXPECT_THAT(simulate(limited, kPose, {}).stopped, HasSubstr("s the floor is met"));
-  EXPECT_EQ(simulate(falls, {{2, 2, 2, 0}}, {}).stopped, "at t = 0 s the mechanism leaves its reach");
-  const Simulation coarse = simulate(setup_of("3crr-r-cru", {{20, 20, 20, 20}}, 2, 0.5), kPose, kVelocity);
+  limited.refuse = [](const pkm::Pose<double>& pose) { return pose[2] < 0.2 ? std::string("the floor is met") : ""; };
+  EXPECT_THAT(simulate(limited, kPose, kAtRest).stopped, HasSubstr("s the floor is met"));
+  EXPECT_EQ(simulate(falls, {2, 2, 2, 0}, kAtRest).stopped, "at t = 0 s the mechanism leaves its reach");
+  const Simulation coarse = simulate(setup_of("3crr-r-cru", {20, 20, 20, 20}, 2, 0.5), kPose, kVelocity);
   EXPECT_NE(coarse.stopped, "");
 }
 

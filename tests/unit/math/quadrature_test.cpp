@@ -20,23 +20,43 @@ TEST(Quadrature, GaussRulesAreExactForPolynomials) {
   }
 }
 
-TEST(Quadrature, KronrodRuleHoldsItsGaussRule) {
-  const KronrodRule& rule = kronrod_15();
-  for (int degree = 0; degree <= 22; ++degree) {
-    double kronrod = 0, gauss = 0;
-    for (std::size_t i = 0; i < KronrodRule::kNodes; ++i) {
-      kronrod += rule.weight[i] * std::pow(rule.node[i], degree);
-      gauss += rule.gauss_weight[i] * std::pow(rule.node[i], degree);
+TEST(Quadrature, EachNestedRuleIsExactToItsDegree) {
+  const auto exact_to = [](const NestedRule& rule, const auto& weight) {  // even powers of 2 x - 1: odd ones are 0
+    int degree = 0;
+    for (double error = 0; error < 1e-14; degree += 2) {
+      error = -1.0 / (degree + 1);
+      for (std::size_t i = 0; i < weight.size(); ++i) error += weight[i] * std::pow(2 * rule.node[i] - 1, degree);
+      error = std::fabs(error);
     }
-    EXPECT_NEAR(kronrod, 1.0 / (degree + 1), 1e-14) << degree;
-    if (degree <= 13) {
-      EXPECT_NEAR(gauss, 1.0 / (degree + 1), 1e-14) << degree;
-    }
+    return degree - 3;
+  };
+  const NestedRule &kronrod = kronrod_rule(), &patterson = patterson_rule();
+  EXPECT_EQ(exact_to(kronrod, kronrod.level[0].weight), 23);
+  EXPECT_EQ(exact_to(kronrod, kronrod.level[0].fewer), 13);
+  EXPECT_EQ(exact_to(patterson, patterson.level[0].fewer), 5);
+  EXPECT_EQ(exact_to(patterson, patterson.level[0].weight), 11);
+  EXPECT_EQ(exact_to(patterson, patterson.level[1].fewer), 11);
+  EXPECT_EQ(exact_to(patterson, patterson.level[1].weight), 23);
+}
+
+TEST(Quadrature, AsksForNoMoreNodesThanItTakes) {
+  std::vector<QuadraturePart<double>> scratch;
+  const auto wave = [&](double length) {
+    return integrate<double>([](double x) { return portable::exp(x); }, {{0, length}}, 1e-10, 0, scratch,
+                             {.rule = patterson_rule()});
+  };
+  EXPECT_EQ(wave(0.1).evaluations, 7);
+  EXPECT_EQ(wave(4).evaluations, 15);
+  EXPECT_GT(wave(40).evaluations, 15);
+  for (const double length : {0.1, 4.0, 40.0}) {
+    const double exact = portable::exp(length) - 1;
+    EXPECT_NEAR(wave(length).value, exact, 1e-10 * exact);
+    EXPECT_LE(wave(length).error, 1e-10 * exact);
   }
 }
 
 TEST(Quadrature, RootLikeEndsBecomeSmooth) {
-  std::vector<Integral<double>> scratch;
+  std::vector<QuadraturePart<double>> scratch;
   const auto half_disc = [](double x) { return std::sqrt(std::fmax(0.0, 1 - x * x)); };
   const auto mapped = integrate<double>(half_disc, {{-1, 1, true, true}}, 1e-12, 0, scratch);
   EXPECT_NEAR(mapped.value, kPi / 2, 1e-12);
@@ -45,14 +65,17 @@ TEST(Quadrature, RootLikeEndsBecomeSmooth) {
 }
 
 TEST(Quadrature, AKinkIsFoundByHalving) {
-  std::vector<Integral<double>> scratch;
-  const auto result = integrate<double>([](double x) { return std::fabs(x - 0.3); }, {{0, 1}}, 1e-8, 0, scratch);
-  EXPECT_NEAR(result.value, 0.5 * (0.09 + 0.49), 1e-8);
-  EXPECT_LE(result.error, 1e-8);
+  std::vector<QuadraturePart<double>> scratch;
+  for (const NestedRule* rule : {&kronrod_rule(), &patterson_rule()}) {
+    const auto result =
+        integrate<double>([](double x) { return std::fabs(x - 0.3); }, {{0, 1}}, 1e-8, 0, scratch, {.rule = *rule});
+    EXPECT_NEAR(result.value, 0.5 * (0.09 + 0.49), 1e-8);
+    EXPECT_LE(result.error, 1e-8);
+  }
 }
 
 TEST(Quadrature, HalvingStopsAtTheFloorOfRounding) {
-  std::vector<Integral<double>> scratch;
+  std::vector<QuadraturePart<double>> scratch;
   const auto noisy = [](double x) { return ((1e4 + x * x) - 1e4 - x * x) + 1e-9; };  // rounding of 1e-12
   const auto endless = integrate<double>(noisy, {{0, 1}}, 1e-8, 0, scratch);
   const auto result = integrate<double>(noisy, {{0, 1}}, 1e-8, 1e-10, scratch);
@@ -64,12 +87,16 @@ TEST(Quadrature, HalvingStopsAtTheFloorOfRounding) {
 TEST(Quadrature, DerivativesMoveWithTheEnds) {
   using Scalar = Dual<1>;
   const Scalar end = Scalar::variable(0.7, 0);
-  std::vector<Integral<Scalar>> scratch;
+  std::vector<QuadraturePart<Scalar>> scratch;
   // integral of sqrt(end - x) over [0, end] is (2/3) end^(3/2); its derivative is sqrt(end)
   const auto result = integrate<Scalar>([&](const Scalar& x) { return root_or_zero(Scalar(end - x)); },
                                         {{Scalar(0.0), end, false, true}}, 1e-12, 0, scratch);
   EXPECT_NEAR(result.value.a, 2.0 / 3 * std::pow(0.7, 1.5), 1e-13);
   EXPECT_NEAR(result.value.v[0], std::sqrt(0.7), 1e-12);
+  const auto sum = integrate<Scalar>([](const Scalar& x) { return x * x; }, {{Scalar(0.0), end}, {end, Scalar(1.0)}},
+                                     1e-12, 0, scratch, {.rule = patterson_rule()});
+  EXPECT_NEAR(sum.value.a, 1.0 / 3, 1e-15);
+  EXPECT_NEAR(sum.value.v[0], 0, 1e-14);
 }
 
 TEST(Statistics, OfWeightedSamplesAndOfNone) {

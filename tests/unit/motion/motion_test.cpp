@@ -8,12 +8,14 @@
 namespace pkm {
 namespace {
 
-using X = Vector<double, 4>;
+using X = Pose<double>;
 
-const X kStart{{0.03, 0.17, 0.2, -0.5}};
+const std::vector<AxisInfo> kCoordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"phi", "rad"}};
+const X kStart{0.03, 0.17, 0.2, -0.5};
 
 PickAndPlace handling(double overlap, TimeLaw law = TimeLaw::quintic) {
   PickAndPlace cycle;
+  cycle.axes = space_axes(kCoordinates);
   cycle.start = kStart;
   cycle.lift_time = 0.12;
   cycle.reach_time = 0.4;
@@ -32,7 +34,7 @@ std::vector<NamedMotion> every_kind() {
   const std::vector<Move> moves = {{0.2, {{0.1, 0.2, 0.2, 0.3}}, 0.4}, {0, {{0.1, 0.2, 0.25, 0.3}}, 0.1}};
   return {{"quintic", point_to_point(kStart, moves, 0.05, TimeLaw::quintic)},
           {"cycloid", point_to_point(kStart, moves, 0.05, TimeLaw::cycloid)},
-          {"oscillation", oscillation(kStart, 0.01, 1.0, 2.0)},
+          {"oscillation", oscillation(space_axes(kCoordinates), kStart, 0.01, 1.0, 2.0)},
           {"half", pick_and_place(handling(0))},
           {"half, cycloid", pick_and_place(handling(0.05, TimeLaw::cycloid))},
           {"whole", pick_and_place(whole)},
@@ -82,13 +84,13 @@ TEST(Motions, MovesRestAtTheirPointsAndPause) {
   expect_rest(0.1, kStart);
   expect_rest(0.2 + 0.4, {{0.1, 0.2, 0.2, 0.3}});
   expect_rest(0.72, {{0.1, 0.2, 0.25, 0.3}});
-  EXPECT_EQ(motion->at(motion->duration()).pose.m, (X{{0.1, 0.2, 0.25, 0.3}}).m);
+  EXPECT_EQ(motion->at(motion->duration()).pose, (X{0.1, 0.2, 0.25, 0.3}));
 }
 
 TEST(Motions, TimesFollowFromPeakAccelerations) {
   for (const TimeLaw law : {TimeLaw::quintic, TimeLaw::cycloid}) {
-    const X to = kStart + X{{0.03, -0.04, 0, 0.2}};
-    const double T = time_within(law, kStart, to, 3, INFINITY);
+    const X to = kStart + X{0.03, -0.04, 0, 0.2};
+    const double T = time_within(law, kCoordinates, kStart, to, 3, INFINITY);
     const auto motion = point_to_point(kStart, {{0, to, T}}, 0, law);
     double peak = 0, speed = 0;
     for (const MotionSample& at : sample(*motion, 100'001)) {
@@ -98,7 +100,8 @@ TEST(Motions, TimesFollowFromPeakAccelerations) {
     EXPECT_NEAR(peak, 3, 1e-8);
     EXPECT_NEAR(speed, (law == TimeLaw::quintic ? 1.875 : 2.0) * 0.05 / T, 1e-12);
     // The turn asks for more time than the way.
-    EXPECT_NEAR(time_within(law, kStart, to, 3, 0.1), std::sqrt(peak_acceleration(law) * 0.2 / 0.1), 1e-12);
+    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, 3, 0.1), std::sqrt(peak_acceleration(law) * 0.2 / 0.1),
+                1e-12);
   }
   // Section 11 of the model's document: T = sqrt(10 S/(sqrt(3) a)).
   EXPECT_NEAR(time_of_move(TimeLaw::quintic, 0.0906, 3), std::sqrt(10 * 0.0906 / (std::sqrt(3.0) * 3)), 1e-15);
@@ -117,7 +120,7 @@ TEST(Motions, TheHandlingCycle) {
   // Without overlap it stops at the corners.
   const auto stops = pick_and_place(handling(0));
   for (const double corner : {0.12, 0.52})
-    for (const double v : stops->at(corner).velocity.m) EXPECT_NEAR(v, 0, 1e-12);
+    for (const double v : stops->at(corner).velocity) EXPECT_NEAR(v, 0, 1e-12);
   // The way back takes the same path the other way round.
   PickAndPlace cycle = handling(0.06);
   cycle.back = true;
@@ -128,12 +131,36 @@ TEST(Motions, TheHandlingCycle) {
       EXPECT_NEAR(whole->at(whole->duration() - t).pose[i], whole->at(t).pose[i], 1e-14);
 }
 
+TEST(Motions, OfOtherCoordinates) {
+  // A planar platform whose turn comes first: the cycle's reach and turn find their coordinates by name and unit.
+  const std::vector<AxisInfo> planar = {{"phi", "rad"}, {"y", "m"}, {"x", "m"}};
+  const SpaceAxes axes = space_axes(planar);
+  EXPECT_EQ(axes.turn, 0u);
+  EXPECT_EQ(axes.x, 2u);
+  EXPECT_EQ(axes.y, 1u);
+  EXPECT_EQ(axes.z, std::nullopt);
+  PickAndPlace cycle = handling(0.06);
+  cycle.axes = axes;
+  cycle.start = {0.1, 0.2, 0.3};
+  cycle.lift = 0;
+  const auto motion = pick_and_place(cycle);
+  const MotionSample end = motion->at(motion->duration());
+  const auto [s, c] = sincos(0.6);
+  EXPECT_NEAR(end.pose[0], 1.1, 1e-15);
+  EXPECT_NEAR(end.pose[1], 0.2 + 0.305 * s, 1e-15);
+  EXPECT_NEAR(end.pose[2], 0.3 + 0.305 * c, 1e-15);
+  // Two angles: each keeps its own peak.
+  const std::vector<AxisInfo> angles = {{"alpha", "rad"}, {"beta", "rad"}};
+  EXPECT_EQ(time_within(TimeLaw::quintic, angles, {0, 0}, {0.1, -0.3}, 1, 2),
+            std::fmax(time_of_move(TimeLaw::quintic, 0.1, 2), time_of_move(TimeLaw::quintic, -0.3, 2)));
+}
+
 TEST(Motions, WhichOnesEndAsTheyBegin) {
   for (const auto& [name, motion] : every_kind())
-    EXPECT_EQ(is_periodic(*motion), name == "oscillation" || name == "whole") << name;
+    EXPECT_EQ(is_periodic(*motion, kCoordinates), name == "oscillation" || name == "whole") << name;
   const auto formula = [](const char* text) { return Formula(text, time_name()); };
   const auto turn = formulas_of_time({formula("0"), formula("cos(2*pi*t)"), formula("0"), formula("2*pi*t")}, 1);
-  EXPECT_TRUE(is_periodic(*turn)) << "a full turn";
+  EXPECT_TRUE(is_periodic(*turn, kCoordinates)) << "a full turn";
 }
 
 }  // namespace

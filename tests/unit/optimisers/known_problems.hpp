@@ -43,7 +43,7 @@ class FunctionProblem final : public Problem {
   const std::vector<MarginInfo>& margins() const override { return margins_; }
   const std::vector<ReportInfo>& reports() const override { return reports_; }
 
-  void evaluate(std::span<const double> design, EvaluationSlot result) const override {
+  void evaluate(std::span<const double> design, Scratch&, EvaluationSlot result) const override {
     function_(design, result.objectives, result.margins);
     result.status = Status::feasible;
     for (const double margin : result.margins)
@@ -59,7 +59,7 @@ class FunctionProblem final : public Problem {
       for (std::size_t i = 0; i < design.size(); ++i) result.slopes[at++] = value.v[static_cast<int>(i)];
     }
   }
-  std::string no_derivatives() const override { return slopes_ ? "" : "the function has none"; }
+  Refusal no_derivatives() const override { return slopes_ ? Refusal() : "the function has none"; }
 
   /// The same with the only objective twice, without derivatives: a trade-off that shrinks to the optimum.
   FunctionProblem twice() const {

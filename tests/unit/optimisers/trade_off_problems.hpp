@@ -50,10 +50,11 @@ using Designs = std::vector<std::vector<double>>;
 
 /// The objectives of those designs that are feasible but for rounding and that no other one dominates.
 inline TradeOff with_front(const std::string& name, FunctionProblem problem, const Designs& designs) {
+  Scratch scratch;
   EvaluationTable table(problem.shape(Detail::complete));
   for (const auto& design : designs) {
     const std::size_t row = table.extend(1);
-    problem.evaluate(design, table.slot(row));
+    problem.evaluate(design, scratch, table.slot(row));
     if (violation(table.margin_row(row)) > 1e-12) table.truncate(row);
   }
   std::vector<double> front;

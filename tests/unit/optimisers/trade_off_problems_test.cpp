@@ -54,13 +54,14 @@ TEST(TradeOffProblems, NoDesignDominatesAFront) {
     const std::vector<double> reference = reference_point(known);
     const double front = hypervolume(known.front, objectives, reference);
     std::vector<double> with_designs = known.front;
+    Scratch scratch;
     EvaluationTable table(known.problem.shape());
     table.extend(1);
     for (std::uint32_t i = 0; i < 20000; ++i) {
       Stream stream(1, 0, i, Stream::Use::start);
       std::vector<double> design(known.problem.space().dimension());
       for (std::size_t k = 0; k < design.size(); ++k) design[k] = known.problem.space().from_unit(k, stream.u01());
-      known.problem.evaluate(design, table.slot(0));
+      known.problem.evaluate(design, scratch, table.slot(0));
       if (table.status[0] != Status::feasible) continue;
       for (std::size_t at = 0; at < known.front.size(); at += objectives) {
         bool dominated = true;

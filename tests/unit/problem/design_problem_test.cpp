@@ -19,7 +19,7 @@ DesignProblem with_slope(double slope) {
   parts.parameters = test::nominal(parts.mechanism->info());
   parts.space = DesignSpace({{p.name, p.unit, p.lower, p.upper}});
   parts.varies = {0};
-  parts.plan = test::plan(parts.mechanism->info(), Method::columns);
+  parts.plan = SurveyPlan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(parts.mechanism->info())};
   parts.objectives.push_back({.name = "first",
                               .unit = p.unit,
                               .meaning = p.meaning,
@@ -35,9 +35,10 @@ DesignProblem with_slope(double slope) {
 
 TEST(DesignProblem, ValuesAreTheQuantitysAndSlopesTheStandInsOwn) {
   const DesignProblem problem = with_slope(3);
+  Scratch scratch;
   EvaluationTable table(problem.shape(Detail::derivatives));
   table.extend(1);
-  problem.evaluate(std::vector{0.5}, table.slot(0));
+  problem.evaluate(std::vector{0.5}, scratch, table.slot(0));
   EXPECT_EQ(table.status[0], Status::feasible);
   EXPECT_EQ(table.objectives[0], 0.5);
   EXPECT_EQ(table.slopes, (std::vector{1.0, 3.0}));
@@ -47,9 +48,10 @@ TEST(DesignProblem, ASlopeThatIsNoNumberFailsTheDesignThatAskedForIt) {
   for (const double slope : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const DesignProblem problem = with_slope(slope);
     for (const Detail detail : {Detail::complete, Detail::derivatives}) {
+      Scratch scratch;
       EvaluationTable table(problem.shape(detail));
       table.extend(1);
-      problem.evaluate(std::vector{0.5}, table.slot(0));
+      problem.evaluate(std::vector{0.5}, scratch, table.slot(0));
       EXPECT_EQ(table.status[0], detail == Detail::derivatives ? Status::failed : Status::feasible);
     }
   }

@@ -9,6 +9,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 
@@ -178,7 +179,8 @@ TEST(Expression, IsComputedBeforeTheSurveyWhereItCanBe) {
   EvaluationTable table(study.problem->shape());
   table.extend(1);
   const std::vector<double> design = {0.2, 0.8, 0.2, 0.2, 2.5, 0.01};  // size = 0.32 pi < 0.8 * pi / 2
-  study.problem->evaluate(design, {{&table.objectives[0], 1}, {&table.margins[0], 2}, {}, table.status[0]});
+  Scratch scratch;
+  study.problem->evaluate(design, scratch, {{&table.objectives[0], 1}, {&table.margins[0], 2}, {}, table.status[0]});
   EXPECT_EQ(table.status[0], Status::rejected);
   EXPECT_LT(table.margins[0], 0);
   EXPECT_TRUE(std::isnan(table.margins[1]) && std::isnan(table.objectives[0]));
@@ -255,11 +257,21 @@ TEST(Expression, BoundsOfAConstraint) {
 }
 
 TEST(Expression, OfAMechanismWithoutAJacobianKnowsNoConditioning) {
-  MechanismInfo info = all_mechanisms()[0]->info();
-  const auto known = [&] { return names_of(expression_names(info, {})); };
-  EXPECT_THAT(known(), ::testing::IsSupersetOf({"size", "volume", "conditioning_mean", "conditioning_min"}));
-  info.characteristic_length = info.size_unit = "";
-  EXPECT_THAT(known(), ::testing::Not(::testing::Contains(::testing::AnyOf("size", "conditioning_mean"))));
+  const auto known = [&](const Mechanism& mechanism) { return names_of(expression_names(mechanism, {})); };
+  EXPECT_THAT(known(*all_mechanisms()[0]),
+              ::testing::IsSupersetOf({"size", "volume", "conditioning_mean", "conditioning_min"}));
+  struct Bare final : Mechanism {
+    MechanismInfo own;
+    const MechanismInfo& info() const override { return own; }
+    PoseReport inspect(std::span<const double>, const Pose<double>&, const std::string&,
+                       const LimitSpec&) const override {
+      return {};
+    }
+  } bare;
+  bare.own.coordinates = {{"x", "m"}};
+  bare.own.sweeps = all_sweeps(bare.own.coordinates, {0});
+  EXPECT_THAT(known(bare), ::testing::Contains("volume"));
+  EXPECT_THAT(known(bare), ::testing::Not(::testing::Contains(::testing::AnyOf("size", "conditioning_mean"))));
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ template <class Margin>
 WorkspaceFields made_up(std::int64_t cells, const Margin& margin) {
   WorkspaceFields made;
   const char* const names[] = {"x", "y", "z"};
-  for (std::size_t i = 0; i < 3; ++i) made.axes[i] = {static_cast<int>(i), names[i], "m", -1, 1, cells};
-  made.held = {3, "phi", "rad", 0, 0, 0};
+  for (int i = 0; i < 3; ++i) made.axes.push_back({i, names[i], "m", -1, 1, cells});
+  made.held = {{3, "phi", "rad", 0, 0, 0}};
   made.fields = {{"feasible", "1", "", {}}, {"margin", "m", "", {}}};
   const VoxelGrid grid = made.grid();
   for (std::int64_t i = 0; i < cells; ++i)
@@ -53,6 +53,14 @@ TEST(Isosurface, OfNothingIsEmpty) {
   EXPECT_TRUE(none.triangles.empty());
   EXPECT_TRUE(none.vertices.empty());
   EXPECT_EQ(none.volume(), 0);
+}
+
+TEST(Isosurface, IsRefusedWhereLessThanThreeCoordinatesAreSwept) {
+  WorkspaceFields plane = made_up(2, [](double, double, double) { return 1.0; });
+  EXPECT_FALSE(refuse_surface(plane));
+  plane.axes.pop_back();
+  EXPECT_EQ(refuse_surface(plane), "a surface needs three swept coordinates, and this workspace sweeps x, y");
+  EXPECT_THROW(isosurface(plane), std::invalid_argument);
 }
 
 TEST(Isosurface, OfASingleCellIsClosedAroundIt) {

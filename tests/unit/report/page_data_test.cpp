@@ -158,11 +158,11 @@ TEST(PageData, TheFilesOwnMapServesWhereTheTextCannotBeRead) {
 TEST(PageData, ADesignHasAWorkspaceItsLinksAndItsCoupling) {
   const auto mechanism = mechanism_called("3crr-r-cru");
   const std::vector<double> nominal = test::nominal(mechanism->info());
-  const Views views =
-      views_of(*mechanism, test::plan(mechanism->info(), Method::voxels, 6), "", {}, {"nominal", nominal});
+  const Views views = views_of(*mechanism, test::voxels(mechanism->info(), 6), "", {}, {"nominal", nominal});
   ASSERT_EQ(views.designs[0].problem, "");
-  EXPECT_LT(views.designs[0].held_range[0], 0);  // it can turn both ways
-  EXPECT_GT(views.designs[0].held_range[1], 0);
+  const auto [lower, upper] = views.designs[0].held_range[0];
+  EXPECT_LT(lower, 0);  // it can turn both ways
+  EXPECT_GT(upper, 0);
   const json study = json::parse(page_data(views, "pkmopt"))["studies"][0];
   EXPECT_EQ(study["design"]["parameters"].size(), nominal.size());
   EXPECT_EQ(study["workspace"]["designs"][0]["volume"], views.designs[0].workspace->volume);
@@ -181,10 +181,10 @@ TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
   const auto motion =
       with_input(formulas_of_time({formula("-0.01*t"), formula("0.01*t"), formula("0.25"), formula("0.1*sin(t)")}, 5),
                  formula("t"));
-  const Views views = views_of(*mechanism, test::plan(info, Method::voxels, 6), info.modes.front(), {{"turns", motion}},
+  const Views views = views_of(*mechanism, test::voxels(info, 6), info.modes.front(), {{"turns", motion}},
                                {"nominal", test::nominal(info)});
   const json page = json::parse(motions_data(views)), &chain = page["motions"][0]["designs"][0]["chain"];
-  EXPECT_EQ(page["chain"], json({info.chain_input, info.chain_output}));
+  EXPECT_EQ(page["chain"], json({mechanism->chain()->input(), mechanism->chain()->output()}));
 
   const Trajectory found =
       follow(*mechanism, views.designs[0].parameters, views.mode, views.limits, *motion, page["motions"][0]["samples"]);
@@ -199,17 +199,16 @@ TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
 
   const auto without = mechanism_called("3crr-r-cru");
   const auto rest = formulas_of_time({formula("0.15"), formula("0.2"), formula("0.21"), formula("0.1*sin(t)")}, 5);
-  const json none = json::parse(
-      motions_data(views_of(*without, test::plan(without->info(), Method::voxels, 6), without->info().modes.front(),
-                            {{"turns", rest}}, {"nominal", test::nominal(without->info())})));
+  const json none =
+      json::parse(motions_data(views_of(*without, test::voxels(without->info(), 6), without->info().modes.front(),
+                                        {{"turns", rest}}, {"nominal", test::nominal(without->info())})));
   EXPECT_TRUE(none["motions"][0]["designs"][0]["chain"].is_null());
 }
 
 TEST(PageData, ADesignThatIsNoneIsSaidSo) {
   const auto mechanism = mechanism_called("4ppa-2par");
   std::vector<double> parameters(mechanism->info().parameters.size(), 0.0);
-  const Views views =
-      views_of(*mechanism, test::plan(mechanism->info(), Method::columns), "", {}, {"nothing", parameters});
+  const Views views = views_of(*mechanism, test::columns(mechanism->info()), "", {}, {"nothing", parameters});
   const json workspace = json::parse(workspace_data(views));
   EXPECT_THAT(workspace["designs"], IsEmpty());
   EXPECT_THAT(workspace["problems"][0].get<std::string>(), HasSubstr("“nothing” is not shown: "));

@@ -3,6 +3,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/core/error.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 

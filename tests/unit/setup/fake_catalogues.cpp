@@ -5,10 +5,12 @@
 namespace pkm::testing {
 namespace {
 
+int surveyors = 0;
+
 class IdleSurveyor final : public Surveyor {
  public:
   explicit IdleSurveyor(double plane) : plane_(plane) {}
-  void survey(std::span<const double>, Survey<double>& survey) const override {
+  void survey(std::span<const double>, Scratch&, Survey<double>& survey) const override {
     survey.clear();
     // The made-up rail ends at y = 2 m.
     survey.volume = plane_ <= 2 ? 1 : 0;
@@ -18,7 +20,7 @@ class IdleSurveyor final : public Surveyor {
   double plane_;
 };
 
-class Slider final : public Mechanism {
+class Slider final : public Mechanism, Voxels, Columns {
  public:
   Slider() {
     info_.name = "slider";
@@ -27,42 +29,48 @@ class Slider final : public Mechanism {
                         {"b", "m", 0.8, 0.1, 3, "distance"},
                         {"tilt", "rad", 0.5, -1, 1, "tilt"},
                         {"mass", "kg", 2, 0, 100, "mass"}};
-    info_.coordinates = {"x", "y", "z", "theta"};
-    info_.joints = {"q1", "q2", "q3", "q4"};
+    info_.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"theta", "rad"}};
+    info_.joints = {{"q1", "m"}, {"q2", "m"}, {"q3", "m"}, {"q4", "m"}};
     info_.modes = {"lower"};
-    info_.swept = {0, 2, 3};
-    info_.held = 1;
-    info_.held_can_integrate = true;
+    info_.sweeps = {{.swept = {0, 2, 3}, .held = {1}, .column = 2, .integrates = true}};
     info_.limits = {{"gap_min", "m", 0, 0, 1, "gap", "2 a", "least gap"},
                     {"angle_max", "rad", 1.5, 0, 1.5, "gap", "", "greatest angle"}};
   }
   const MechanismInfo& info() const override { return info_; }
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const Demand&) const override {
-    if (plan.held.kind == HeldCoordinate::Kind::integrated && plan.box)
-      throw std::invalid_argument("the slider cannot integrate inside a given box");
-    return std::make_unique<IdleSurveyor>(plan.held.value);
-  }
-  VoxelMap voxel_map(std::span<const double>, const SurveyPlan&) const override { return {}; }
-  void design_margins(std::span<const double>, const LimitSpec&, std::span<double>) const override {}
-  NamedValues facts(std::span<const double>, const LimitSpec&) const override { return {}; }
-  double size(std::span<const double>) const override { return 1; }
-  std::string refuse(std::span<const double> parameters) const override {
-    return parameters[0] > 0 ? "" : "the half width a must be > 0";
+  const Voxels* voxels() const override { return this; }
+  const Columns* columns() const override { return this; }
+  Refusal refuse(std::span<const double> parameters) const override {
+    if (parameters[0] > 0) return {};
+    return "the half width a must be > 0";
   }
   PoseReport inspect(std::span<const double>, const Pose<double>&, const std::string&,
                      const LimitSpec&) const override {
     return {};
   }
-  std::vector<AssemblyMode> forward(std::span<const double>, const std::array<double, 4>&) const override { return {}; }
 
  private:
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions&, const Demand&) const override {
+    return prepare(plan);
+  }
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions&, const Demand&) const override {
+    return prepare(plan);
+  }
+  static std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan) {
+    const HeldCoordinate held = how_held(plan, 1);
+    if (held.kind == HeldCoordinate::Kind::integrated && plan.box())
+      throw std::invalid_argument("the slider cannot integrate inside a given box");
+    ++surveyors;
+    return std::make_unique<IdleSurveyor>(held.value);
+  }
+  VoxelMap map(std::span<const double>, const SurveyPlan&, const VoxelOptions&) const override { return {}; }
+
   MechanismInfo info_;
 };
 
 std::string volume_unit(const EntryContext&) { return "m^2 rad"; }
 std::string no_unit(const EntryContext&) { return "1"; }
 std::string metre(const EntryContext&) { return "m"; }
-std::string serves_all(const MechanismInfo&) { return ""; }
+std::string serves_all(const Mechanism&) { return ""; }
 void needs_nothing(const EntryContext&, Demand&) {}
 void needs_conditioning(const EntryContext& context, Demand& demand) {
   demand.conditioning = true;
@@ -80,8 +88,8 @@ std::vector<ObjectiveEntry> make_objectives() {
   options[3] = {"statistic", OptionKind::word, "1", "mean", false, 0, 0, {"mean", "min"}, "which"};
   options[4] = {"weights", OptionKind::named_numbers, "1", {}, false, 0, 1, {}, "weights"};
   options[5] = {"note", OptionKind::word, "1", {}, false, 0, 0, {}, "any text"};
-  const auto lacks_force = [](const MechanismInfo& info) {
-    return "force needs bodies, which the mechanism " + info.name + " does not describe";
+  const auto lacks_force = [](const Mechanism& mechanism) {
+    return "force needs bodies, which the mechanism " + mechanism.info().name + " does not describe";
   };
   return {
       {"volume", "size of the workspace", Direction::maximise, {}, volume_unit, serves_all, needs_nothing, make_zero},
@@ -169,6 +177,8 @@ std::vector<OptimiserEntry> make_optimisers() {
 }
 
 }  // namespace
+
+int prepared_surveyors() { return surveyors; }
 
 Catalogues fake_catalogues() {
   static const MechanismList mechanisms{std::make_shared<const Slider>()};

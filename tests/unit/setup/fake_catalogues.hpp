@@ -10,4 +10,7 @@ namespace pkm::testing {
 /// lacks it). Constraints: gap (pose level), reach, linear. Optimisers: ga, simple, newton, sweep, broken.
 Catalogues fake_catalogues();
 
+/// How often the slider has prepared a survey so far.
+int prepared_surveyors();
+
 }  // namespace pkm::testing

@@ -11,12 +11,14 @@
 namespace pkm::testing {
 namespace {
 
-std::shared_ptr<const Motion> read(const std::string& text, const MotionNames& names = {{"x", "y", "z", "phi"}}) {
+const MotionNames kNames = {{{"x", "m"}, {"y", "m"}, {"z", "m"}, {"phi", "rad"}}};
+
+std::shared_ptr<const Motion> read(const std::string& text, const MotionNames& names = kNames) {
   const TomlValue document = parse_toml(text, "m.toml");
   return read_motion(ConfigValue(document, "m.toml", ""), names);
 }
 
-std::string complaint(const std::string& text, const MotionNames& names = {{"x", "y", "z", "phi"}}) {
+std::string complaint(const std::string& text, const MotionNames& names = kNames) {
   try {
     read(text, names);
   } catch (const ConfigError& error) {
@@ -40,7 +42,7 @@ back = true
 )");
   const double first = time_of_move(TimeLaw::quintic, 0.1, 3), turn = time_of_move(TimeLaw::quintic, kPi / 2, 20);
   EXPECT_NEAR(motion->duration(), 2 * (first + turn + 0.2 + 0.3) + 0.1, 1e-14);
-  EXPECT_TRUE(is_periodic(*motion));
+  EXPECT_TRUE(is_periodic(*motion, kNames.coordinates));
   const MotionSample turned = motion->at(0.1 + first + turn + 0.1);
   EXPECT_NEAR(turned.pose[0], 0.2, 1e-15);
   EXPECT_NEAR(turned.pose[3], kPi / 2, 1e-15);
@@ -58,8 +60,8 @@ TEST(MotionSection, PickAndPlace) {
   const MotionSample end = half->at(half->duration());
   EXPECT_NEAR(end.pose[1], 0.17 + 0.305, 1e-15);
   EXPECT_NEAR(end.pose[3], 1 - kPi / 6, 1e-15);
-  EXPECT_FALSE(is_periodic(*half));
-  EXPECT_TRUE(is_periodic(*whole));
+  EXPECT_FALSE(is_periodic(*half, kNames.coordinates));
+  EXPECT_TRUE(is_periodic(*whole, kNames.coordinates));
 }
 
 TEST(MotionSection, OscillationAndFormulas) {
@@ -151,18 +153,18 @@ TEST(MotionSection, AsATableOfAStudy) {
 }
 
 TEST(MotionSection, InputOfAnAuxiliaryChain) {
-  const MotionNames with_chain = {{"x", "y", "z", "phi"}, "theta"};
+  const MotionNames with_chain = {kNames.coordinates, "theta"};
   const std::string swing = "type = \"oscillation\"\n" + kPose + "amplitude = 0.01\nperiod = 1\n";
   const auto motion = read(swing + "theta = \"0.3 + t^2\"\n", with_chain);
   const MotionSample at = motion->at(0.5), still = read(swing, with_chain)->at(0.5);
   EXPECT_NEAR(at.input.angle, 0.55, 1e-15);
   EXPECT_NEAR(at.input.speed, 1, 1e-15);
   EXPECT_NEAR(at.input.acceleration, 2, 1e-15);
-  EXPECT_EQ(at.pose.m, still.pose.m);
+  EXPECT_EQ(at.pose, still.pose);
   EXPECT_EQ(still.input.angle, 0);
   EXPECT_EQ(read(swing + "theta = \"90 deg\"\n", with_chain)->at(1).input.angle, kPi / 2);
-  EXPECT_FALSE(is_periodic(*motion));
-  EXPECT_TRUE(is_periodic(*read(swing + "theta = \"sin(2*pi*t)\"\n", with_chain)));
+  EXPECT_FALSE(is_periodic(*motion, kNames.coordinates));
+  EXPECT_TRUE(is_periodic(*read(swing + "theta = \"sin(2*pi*t)\"\n", with_chain), kNames.coordinates));
   EXPECT_EQ(complaint(swing + "theta = 1\n"),
             "m.toml:8: theta: found an unknown key; expected one of type, x, y, z, phi, amplitude, period, cycles");
   EXPECT_EQ(complaint(swing + "theta = [1]\n", with_chain),
@@ -171,7 +173,7 @@ TEST(MotionSection, InputOfAnAuxiliaryChain) {
 
 TEST(MotionSection, FilesThatCannotBeRead) {
   try {
-    load_motion_toml("/no/such/motion.toml", {{"x", "y", "z", "phi"}});
+    load_motion_toml("/no/such/motion.toml", kNames);
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(),

@@ -5,7 +5,9 @@
 #include "constraints/all.hpp"
 #include "engine/core/error.hpp"
 #include "engine/math/portable.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
+#include "engine/survey/survey_set.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm {
@@ -100,17 +102,18 @@ std::string quadrupteron_message(const std::string& workspace) {
 
 TEST(RealCatalogue, TheHeldCoordinateIsTheOneThatIsGiven) {
   const auto plan = [](const std::string& workspace) { return read_quadrupteron(workspace).problem->parts().plan; };
-  EXPECT_EQ(plan("").held.coordinate, std::nullopt);
-  EXPECT_EQ(plan("phi = \"30 deg\"").held.coordinate, 3);
-  EXPECT_EQ(plan("phi = \"30 deg\"").held.value, kPi / 6);
-  EXPECT_EQ(plan("x = \"200 mm\"").held.coordinate, 0);
-  EXPECT_EQ(plan("z = \"middle\"").held.coordinate, 2);
-  EXPECT_EQ(plan("z = \"middle\"").held.kind, HeldCoordinate::Kind::middle);
+  EXPECT_TRUE(plan("").held.empty());
+  EXPECT_EQ(plan("phi = \"30 deg\"").held.at(0).coordinate, 3);
+  EXPECT_EQ(plan("phi = \"30 deg\"").held.at(0).value, kPi / 6);
+  EXPECT_EQ(plan("x = \"200 mm\"").held.at(0).coordinate, 0);
+  EXPECT_EQ(plan("z = \"middle\"").held.at(0).coordinate, 2);
+  EXPECT_EQ(plan("z = \"middle\"").held.at(0).kind, HeldCoordinate::Kind::middle);
   // cells, box and nodes are those of the coordinates that are left
-  EXPECT_THAT(plan("method = \"voxels\"\ny = 0.2\ncells = { x = 4, z = 5, phi = 6 }").cells, ElementsAre(4, 5, 6));
-  EXPECT_THAT(plan("y = 0.2\nnodes = { phi = 6, x = 4 }").nodes, ElementsAre(4, 6));
-  EXPECT_THAT(plan("z = 0.2\nnodes = { phi = 6, x = 4 }").nodes, ElementsAre(4, 6)) << "columns along y";
-  EXPECT_THAT(plan("nodes = { y = 6, x = 4 }").nodes, ElementsAre(4, 6));
+  EXPECT_THAT(plan("method = \"voxels\"\ny = 0.2\ncells = { x = 4, z = 5, phi = 6 }").voxels()->cells,
+              ElementsAre(4, 5, 6));
+  EXPECT_THAT(plan("y = 0.2\nnodes = { phi = 6, x = 4 }").columns()->nodes, ElementsAre(4, 6));
+  EXPECT_THAT(plan("z = 0.2\nnodes = { phi = 6, x = 4 }").columns()->nodes, ElementsAre(4, 6)) << "columns along y";
+  EXPECT_THAT(plan("nodes = { y = 6, x = 4 }").columns()->nodes, ElementsAre(4, 6));
   EXPECT_EQ(read_quadrupteron("x = 0.2").problem->objectives()[0].unit, "m^2 rad");
   EXPECT_EQ(read_quadrupteron("phi = 0").problem->objectives()[0].unit, "m^3");
   EXPECT_THAT(describe(read_quadrupteron("x = 0.2")), HasSubstr("  x          0.2 m\n"));
@@ -137,7 +140,7 @@ TEST(RealCatalogue, ClearanceCutsTheWorkspaceByBothMethods) {
     const Study study = read(more);
     Survey<double> survey;
     const ProblemParts& parts = study.problem->parts();
-    parts.mechanism->prepare(parts.plan, parts.demand)->survey(parts.parameters, survey);
+    survey_once<double>(*prepare_survey(*parts.mechanism, parts.plan, parts.demand), parts.parameters, survey);
     return survey.volume;
   };
   const std::string columns = "[workspace]\nmethod = \"columns\"\n", voxels = "[workspace]\nmethod = \"voxels\"\n";

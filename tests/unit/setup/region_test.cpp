@@ -5,6 +5,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/core/error.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
 #include "objectives/all.hpp"
 
@@ -76,7 +77,9 @@ TEST(Regions, MistakesAreNamed) {
   EXPECT_EQ(message_of(objective + "mode = \"-,-,-,*\"\n"),
             "s.toml:13: objective[1]: mechanism 3crr-r-cru has no working mode '-,-,-,*'; did you mean '-,-,-,-'?");
   EXPECT_EQ(message_of(objective + "limb = 5\n"),
-            "s.toml:15: objective[1].limb: found 5; expected one of 1, 2, 3, 4, worst, mean");
+            "s.toml:13: objective[1]: mechanism 3crr-r-cru has 4 joints, so none has the number 5");
+  EXPECT_EQ(message_of(objective + "limb = 9\n"),
+            "s.toml:15: objective[1].limb: found 9; expected one of 1, 2, 3, 4, 5, 6, 7, 8, worst, mean");
   EXPECT_EQ(message_of(objective + "limb = 4\n"), "accepted");
   EXPECT_EQ(message_of(objective + "[[region]]\nname = \"task\"\n"),
             "s.toml:16: region[2].name: there is already a region called 'task'");

@@ -26,9 +26,9 @@ TEST(Study, SmallestStudyGetsDefaults) {
   EXPECT_EQ(study.text, kSmallest);
   EXPECT_FALSE(study.baseline || study.round || study.checkpoint_every);
   EXPECT_THAT(parts.parameters, ElementsAre(0.2, 0.8, 0.5, 2));
-  EXPECT_EQ(parts.plan.method, Method::columns);
-  EXPECT_EQ(parts.plan.tolerance, 1e-8);
-  EXPECT_EQ(parts.plan.held.kind, HeldCoordinate::Kind::middle);
+  ASSERT_TRUE(parts.plan.columns());
+  EXPECT_EQ(parts.plan.columns()->tolerance, 1e-8);
+  EXPECT_TRUE(parts.plan.held.empty()) << "the usual coordinate is in the middle";
   EXPECT_THAT(parts.plan.limits.given, ElementsAre(std::nullopt, std::nullopt));
   EXPECT_EQ(study.problem->objectives()[0].direction, Direction::maximise);
   ASSERT_EQ(study.stages.size(), 1U);
@@ -37,6 +37,12 @@ TEST(Study, SmallestStudyGetsDefaults) {
   EXPECT_FALSE(study.stages[0].options.has("target"));
   EXPECT_EQ(study.stages[0].line, 7);
   EXPECT_THAT(study.warnings, ElementsAre());
+}
+
+TEST(Study, PreparesItsSurveyOnce) {
+  const int before = testing::prepared_surveyors();
+  read_right(kSmallest);
+  EXPECT_EQ(testing::prepared_surveyors(), before + 1);
 }
 
 TEST(Study, ReadsParametersVariablesAndBaseline) {
@@ -115,12 +121,14 @@ seconds = "2 min"
 TEST(Study, ReadsWorkspaceAndMergesLimits) {
   const Study study = read_right(kFull);
   const SurveyPlan& plan = study.problem->parts().plan;
-  EXPECT_EQ(plan.method, Method::voxels);
-  EXPECT_THAT(plan.cells, ElementsAre(32, 34, 60));
-  ASSERT_TRUE(plan.box);
-  EXPECT_THAT(*plan.box, ElementsAre(ElementsAre(0, 0.8), ElementsAre(-1, 1), ElementsAre(-kPi / 2, 1.5)));
-  EXPECT_EQ(plan.held.kind, HeldCoordinate::Kind::value);
-  EXPECT_EQ(plan.held.value, 0.2);
+  ASSERT_TRUE(plan.voxels());
+  EXPECT_THAT(plan.voxels()->cells, ElementsAre(32, 34, 60));
+  ASSERT_TRUE(plan.box());
+  EXPECT_THAT(*plan.box(), ElementsAre(ElementsAre(0, 0.8), ElementsAre(-1, 1), ElementsAre(-kPi / 2, 1.5)));
+  ASSERT_EQ(plan.held.size(), 1u);
+  EXPECT_EQ(plan.held[0].coordinate, 1);
+  EXPECT_EQ(plan.held[0].kind, HeldCoordinate::Kind::value);
+  EXPECT_EQ(plan.held[0].value, 0.2);
   EXPECT_THAT(plan.limits.given, ElementsAre(std::nullopt, kPi / 4));
   EXPECT_THAT(plan.limits.derived, ElementsAre(true, false));
   EXPECT_THAT(study.limit_origins, ElementsAre("constraint[1] gap (line 23)", "workspace.limits (line 19)"));
@@ -130,14 +138,15 @@ TEST(Study, WorkspaceVariants) {
   const auto plan = [](const std::string& workspace) {
     return read_right(kSmallest + "[workspace]\n" + workspace).problem->parts().plan;
   };
-  EXPECT_THAT(plan("method = \"voxels\"").cells, ElementsAre(32, 34, 60)) << "the paper's grid";
-  EXPECT_FALSE(plan("method = \"voxels\"").box);
-  EXPECT_EQ(plan("y = \"integrated\"").held.kind, HeldCoordinate::Kind::integrated);
-  EXPECT_EQ(plan("y = \"middle\"").held.kind, HeldCoordinate::Kind::middle);
-  EXPECT_EQ(plan("method = \"voxels\"\ny = \"integrated\"").held_cells, 32);
-  EXPECT_EQ(plan("method = \"voxels\"\ny = \"integrated\"\ncells = { x = 1, y = 9, z = 1, theta = 1 }").held_cells, 9);
-  EXPECT_THAT(plan("nodes = { theta = 9, x = 12 }").nodes, ElementsAre(12, 9));
-  EXPECT_THAT(plan("method = \"voxels\"\ncells = { x = 512, z = 512, theta = 1024 }").cells,
+  EXPECT_THAT(plan("method = \"voxels\"").voxels()->cells, ElementsAre(32, 34, 60)) << "the paper's grid";
+  EXPECT_FALSE(plan("method = \"voxels\"").box());
+  EXPECT_EQ(plan("y = \"integrated\"").held.at(0).kind, HeldCoordinate::Kind::integrated);
+  EXPECT_EQ(plan("y = \"middle\"").held.at(0).kind, HeldCoordinate::Kind::middle);
+  EXPECT_EQ(plan("method = \"voxels\"\ny = \"integrated\"").held.at(0).cells, 32);
+  EXPECT_EQ(
+      plan("method = \"voxels\"\ny = \"integrated\"\ncells = { x = 1, y = 9, z = 1, theta = 1 }").held.at(0).cells, 9);
+  EXPECT_THAT(plan("nodes = { theta = 9, x = 12 }").columns()->nodes, ElementsAre(12, 9));
+  EXPECT_THAT(plan("method = \"voxels\"\ncells = { x = 512, z = 512, theta = 1024 }").voxels()->cells,
               ElementsAre(512, 512, 1024));
   EXPECT_THAT(plan("limits = { gap_min = \"10 mm\" }").limits.given, ElementsAre(0.01, std::nullopt));
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "constraints/all.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm {

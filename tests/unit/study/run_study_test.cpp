@@ -10,6 +10,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/core/instruction_set.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/storage/study_file.hpp"
 #include "objectives/all.hpp"
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "constraints/all.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
 #include "engine/study/starts.hpp"

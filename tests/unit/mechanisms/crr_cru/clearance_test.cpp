@@ -176,11 +176,12 @@ TEST(CrrCruClearance, VoxelsAreThePosesThatAreClear) {
     for (const int held : {3, 0, 2}) {
       const auto p = with_radii(0.008, 0.006, 0.012);
       const LimitSpec limits = limit_spec(0.1, 0.1, 0.002);
-      SurveyPlan with = plan(Method::voxels, held, held == 3 ? 0.4 : 0.2, limits);
-      with.cells = {11, 12, 13};
+      const double value = held == 3 ? 0.4 : 0.2;
+      const VoxelOptions grid{.cells = {11, 12, 13}};
+      const SurveyPlan with = plan(grid, held, value, limits);
       SurveyPlan without = with;
       without.limits = limit_spec(0.1, 0.1);
-      const VoxelMap map = mechanism(name).voxel_map(p, with), all = mechanism(name).voxel_map(p, without);
+      const VoxelMap map = voxel_map(mechanism(name), p, with), all = voxel_map(mechanism(name), p, without);
       std::int64_t count = 0;
       for (std::size_t i = 0; i < map.feasible.size(); ++i) {
         EXPECT_LE(map.feasible[i], all.feasible[i]);
@@ -188,10 +189,10 @@ TEST(CrrCruClearance, VoxelsAreThePosesThatAreClear) {
         const auto at = static_cast<std::int64_t>(i);
         const std::array<std::int64_t, 3> cell = {at / (12 * 13), at / 13 % 12, at % 13};
         std::array<double, 4> x{};
-        x[static_cast<std::size_t>(held)] = with.held.value;
+        x[static_cast<std::size_t>(held)] = value;
         for (std::size_t k = 0, axis = 0; k < 4; ++k) {
           if (static_cast<int>(k) == held) continue;
-          const double step = (map.upper[axis] - map.lower[axis]) / static_cast<double>(with.cells[axis]);
+          const double step = (map.upper[axis] - map.lower[axis]) / static_cast<double>(grid.cells[axis]);
           x[k] = map.lower[axis] + (static_cast<double>(cell[axis]) + 0.5) * step;
           ++axis;
         }
@@ -212,33 +213,31 @@ TEST(CrrCruClearance, VoxelsAreThePosesThatAreClear) {
 TEST(CrrCruClearance, ColumnsAndOtherModesAreRefused) {
   const auto message = [](const SurveyPlan& plan, const Demand& demand) {
     try {
-      mechanism("quadrupteron").prepare(plan, demand);
+      prepare_survey(mechanism("quadrupteron"), plan, demand);
     } catch (const std::invalid_argument& error) {
       return std::string(error.what());
     }
     return std::string("accepted");
   };
-  const auto under = [](Method method, double least) {
-    SurveyPlan p = plan(method, 3, 0, limit_spec(0, 0, least));
-    p.cells = {4, 4, 4};
-    return p;
-  };
-  EXPECT_EQ(message(under(Method::columns, 0), {}),
+  const auto under = [](const auto& method, double least) { return plan(method, 3, 0, limit_spec(0, 0, least)); };
+  const ColumnOptions columns{.tolerance = 1e-10};
+  const VoxelOptions grid{.cells = {4, 4, 4}};
+  EXPECT_EQ(message(under(columns, 0), {}),
             "mechanism quadrupteron has no column surveys under a clearance (clearance_min), because rods that meet "
             "end columns where no formula says; take workspace.method = \"voxels\"");
-  EXPECT_EQ(message(under(Method::columns, -2), {}), "accepted") << "it cuts nothing";
-  EXPECT_EQ(message(under(Method::voxels, 0), {.dci = true, .mode = "-,-,+,-"}), "accepted");
-  EXPECT_EQ(message(under(Method::voxels, 0), {.dci = true, .mode = "+,+,+,+"}),
+  EXPECT_EQ(message(under(columns, -2), {}), "accepted") << "it cuts nothing";
+  EXPECT_EQ(message(under(grid, 0), {.dci = true, .mode = "-,-,+,-"}), "accepted");
+  EXPECT_EQ(message(under(grid, 0), {.dci = true, .mode = "+,+,+,+"}),
             "mechanism quadrupteron surveys a clearance (clearance_min) in the mode -,-,+,- only, so inertia is not "
             "surveyed in the mode +,+,+,+ beside it");
 }
 
 TEST(CrrCruClearance, IsAMarginOfPosesWithDerivatives) {
   Uniform uniform(5);
-  const auto margin = [](const std::string& name, const auto& p, const Pose<double>& pose) {
+  const auto margin = [](const std::string& name, const auto& p, const pkm::Pose<double>& pose) {
     using S = typename std::remove_cvref_t<decltype(p)>::value_type;
     std::vector<S> margins;
-    mechanism(name).pose_margins(std::span<const S>(p), limit_spec(0, 0, 0.003), {&pose, 1}, margins);
+    append_pose_margins<S>(mechanism(name), p, limit_spec(0, 0, 0.003), {&pose, 1}, margins);
     EXPECT_EQ(margins.size(), 18u);
     return margins.back();
   };

@@ -21,26 +21,25 @@ Demand coupling(const std::string& mode = "") {
 }
 
 /// M_q by the general way, from the equations of motion.
-Matrix<double, 4, 4> reference(const std::string& name, const std::vector<double>& p, const Pose<double>& pose,
+Matrix<double, 4, 4> reference(const std::string& name, const std::vector<double>& p, const pkm::Pose<double>& pose,
                                const WorkingMode& mode) {
-  const MotionState<double> state{pose, {}};
-  PoseDynamics<double> d;
-  mechanism(name).dynamics(std::span<const double>(p), mode_name(mode), {&state, 1}, {&d, 1});
-  return joint_inertia(d);
+  const pkm::MotionState<double> state{pose, {0, 0, 0, 0}};
+  pkm::PoseDynamics<double> d;
+  mechanism(name).dynamics()->equations(std::span<const double>(p), mode_name(mode), {&state, 1}, {&d, 1});
+  return fixed<4, 4>(joint_inertia(d));
 }
 
-SurveyPlan voxels(int held, double value, const std::array<std::int64_t, 3>& cells) {
-  SurveyPlan voxels = plan(Method::voxels, held, value, limit_spec(0.2, 0.1));
-  voxels.cells = cells;
-  return voxels;
+SurveyPlan voxels(int held, double value, const std::array<std::int64_t, 3>& cells,
+                  const std::optional<Box>& box = {}) {
+  return plan(VoxelOptions{.cells = cells, .box = box}, held, value, limit_spec(0.2, 0.1));
 }
 
 TEST(CrrCruCoupling, GoldenStatistics) {
   for (const auto& entry : golden()["dci_stats"]) {
-    SurveyPlan p = voxels(3, entry["phi"], {entry["n"][0], entry["n"][1], entry["n"][2]});
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k) box[k] = {entry["lo"][k].get<double>(), entry["hi"][k].get<double>()};
+    SurveyPlan p = voxels(3, entry["phi"], {entry["n"][0], entry["n"][1], entry["n"][2]}, box);
     p.limits = limit_spec(entry["smin"], entry["cmin"]);
-    p.box.emplace();
-    for (std::size_t k = 0; k < 3; ++k) (*p.box)[k] = {entry["lo"][k].get<double>(), entry["hi"][k].get<double>()};
     const auto s = survey(entry["mechanism"], nominal(), p, coupling(mode_name(mode_of(entry["sigma"]))));
     ASSERT_EQ(s.feasible_cells, entry["feasible"].get<std::int64_t>());
     for (std::size_t i = 0; i < 4; ++i) {
@@ -56,12 +55,11 @@ TEST(CrrCruCoupling, SamplesEqualTheEquationsOfMotion) {
   Uniform uniform(5);
   for (const std::string& name : both())
     for (const int held : {3, 0, 1, 2})
-      for (const Method method : {Method::voxels, Method::columns}) {
+      for (const bool by_columns : {false, true}) {
         const auto p = random_design(uniform, 0.1);
         const WorkingMode mode = {1, -1, -1, 1};
-        SurveyPlan sweep = plan(method, held, held == 3 ? 0.2 : 0.19, limit_spec(0.2, 0.1));
-        sweep.cells = {5, 6, 7};
-        if (method == Method::columns) sweep.nodes = {2, 2};
+        SurveyPlan sweep = voxels(held, held == 3 ? 0.2 : 0.19, {5, 6, 7});
+        if (by_columns) sweep.method = ColumnOptions{.tolerance = 1e-10, .nodes = {2, 2}};
         const auto s = survey(name, p, sweep, coupling(mode_name(mode)));
         ASSERT_GT(s.weight.size(), 10u);
         for (std::size_t k = 0; k < s.weight.size(); k += 7) {
@@ -75,10 +73,9 @@ TEST(CrrCruCoupling, SamplesEqualTheEquationsOfMotion) {
 
 TEST(CrrCruCoupling, ColumnsAgreeWithFineVoxelsInABox) {
   for (const std::string& name : both()) {
-    SurveyPlan fine = voxels(3, 0.35, {40, 40, 40});
-    fine.box = {{{0.05, 0.25}, {0.06, 0.30}, {0.12, 0.30}}};
-    SurveyPlan exact = plan(Method::columns, 3, 0.35, limit_spec(0.2, 0.1));
-    exact.box = fine.box;
+    const Box box = {{{0.05, 0.25}, {0.06, 0.30}, {0.12, 0.30}}};
+    const SurveyPlan fine = voxels(3, 0.35, {40, 40, 40}, box);
+    const SurveyPlan exact = plan(ColumnOptions{.tolerance = 1e-10, .box = box}, 3, 0.35, limit_spec(0.2, 0.1));
     const auto coarse = survey(name, nominal(), fine, coupling()), columns = survey(name, nominal(), exact, coupling());
     EXPECT_NEAR(coarse.volume / columns.volume, 1, 2e-3);
     double sum = 0;
@@ -95,9 +92,9 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
   for (const std::string& name : both())
     for (int round = 0; round < 4; ++round) {
       const auto p = random_design(uniform, 0.03);
-      SurveyPlan region = plan(Method::columns, 3, 0.3, limit_spec(0.2, 0.1));
-      region.box = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
-      region.held_values = {-0.6, 0.1, 0.5};
+      const SurveyPlan region = {ColumnOptions{.tolerance = 1e-10, .box = {{{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}}}},
+                                 {{.coordinate = 3, .kind = HeldCoordinate::Kind::listed, .values = {-0.6, 0.1, 0.5}}},
+                                 limit_spec(0.2, 0.1)};
       const auto surveyor = prepare_survey(mechanism(name), region, coupling());
       const std::array<std::size_t, 4> by = {kL11, kL42, kL, kRodMass + 3};
       const auto statistics = [](const auto& s) {
@@ -108,7 +105,7 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
       std::vector<Dual4> dual(p.begin(), p.end());
       for (std::size_t k = 0; k < 4; ++k) dual[by[k]].v[static_cast<int>(k)] = 1;
       Survey<Dual4> derived;
-      surveyor->survey(std::span<const Dual4>(dual), derived);
+      survey_once<Dual4>(*surveyor, dual, derived);
       const auto slopes = statistics(derived);
       for (std::size_t k = 0; k < 4; ++k) {
         const double step = 1e-5 * p[by[k]];
@@ -116,7 +113,7 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
           auto moved = p;
           moved[by[k]] += shift;
           Survey<double> s;
-          surveyor->survey(std::span<const double>(moved), s);
+          survey_once<double>(*surveyor, moved, s);
           return statistics(s);
         };
         const auto up = at(step), down = at(-step), up2 = at(2 * step), down2 = at(-2 * step);

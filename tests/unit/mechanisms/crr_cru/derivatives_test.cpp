@@ -30,9 +30,8 @@ std::vector<Case> random_cases(int count, int seed, double tolerance) {
     const auto p = random_design(uniform, 0.2);
     const double value = held == 3 ? uniform(-0.8, 0.8) : uniform(0.08, 0.32);
     const auto limits = i % 3 == 0 ? limit_spec(0, 0) : limit_spec(uniform(0.1, 0.4), uniform(0.05, 0.4));
-    Case c{both()[static_cast<std::size_t>(i / 4 % 2)], p, plan(Method::columns, held, value, limits)};
-    c.plan.tolerance = tolerance;
-    cases.push_back(c);
+    cases.push_back({both()[static_cast<std::size_t>(i / 4 % 2)], p,
+                     plan(ColumnOptions{.tolerance = tolerance}, held, value, limits)});
   }
   return cases;
 }
@@ -40,14 +39,15 @@ std::vector<Case> random_cases(int count, int seed, double tolerance) {
 /// Value and slopes by all parameters of a function of a survey.
 template <class Function>
 std::vector<double> slopes_of(const Case& c, const Demand& demand, const Function& f) {
-  const auto surveyor = mechanism(c.name).prepare(c.plan, demand);
+  const auto surveyor = prepare_survey(mechanism(c.name), c.plan, demand);
+  Scratch scratch;
   std::vector<double> slopes;
   for (std::size_t first = 0; first < kParameters; first += 4) {
     std::vector<Dual4> p(c.p.begin(), c.p.end());
     for (std::size_t k = first; k < std::min<std::size_t>(first + 4, kParameters); ++k)
       p[k].v[static_cast<int>(k - first)] = 1;
     Survey<Dual4> survey;
-    surveyor->survey(p, survey);
+    surveyor->slopes()->survey(p, scratch, survey);
     const Dual4 value = f(survey);
     for (std::size_t k = first; k < std::min<std::size_t>(first + 4, kParameters); ++k)
       slopes.push_back(value.v[static_cast<int>(k - first)]);
@@ -63,11 +63,12 @@ template <class Function>
 Agreement compare(const std::vector<Case>& cases, const Demand& demand, double tolerance, const Function& f) {
   Agreement agreement;
   for (const Case& c : cases) {
-    const auto surveyor = mechanism(c.name).prepare(c.plan, demand);
+    const auto surveyor = prepare_survey(mechanism(c.name), c.plan, demand);
+    Scratch scratch;
     const auto value = [&](std::vector<double> p, std::size_t k, double by) {
       p[k] += by;
       Survey<double> survey;
-      surveyor->survey(p, survey);
+      surveyor->survey(p, scratch, survey);
       return f(survey);
     };
     const double here = value(c.p, 0, 0);
@@ -85,7 +86,7 @@ Agreement compare(const std::vector<Case>& cases, const Demand& demand, double t
       }
       ++agreement.compared;
       EXPECT_NEAR(slopes[k], near, tolerance * scale)
-          << c.name << ", held " << *c.plan.held.coordinate << " at " << c.plan.held.value << ", "
+          << c.name << ", held " << c.plan.held[0].coordinate << " at " << c.plan.held[0].value << ", "
           << mechanism(c.name).info().parameters[k].name << ", far " << far << ", V " << here;
     }
   }

@@ -48,7 +48,7 @@ Worst compare_forms(const std::string& name) {
       const Vector<double, 4> tau = drive_forces(d, s.acceleration, s.wrench);
       const double scale = largest_term(d, s);
 
-      const JointSpace<double> q = joint_space(d);
+      const JointSpace<double, 4> q = joint_space(d);
       const Vector<double, 4> q_acceleration = d.J * s.acceleration + d.J_rate_X;
       const Vector<double, 4> by_joints =
           q.M_q * q_acceleration + q.c_q + q.G_q - at_joints(d, transpose(d.J_wrench) * s.wrench);
@@ -57,11 +57,12 @@ Worst compare_forms(const std::string& name) {
 
       if (k % kNewtonEulerShare) continue;
       const NewtonEuler system = newton_euler(m.g, m.b, m.limbs, s.motion, s.acceleration, s.wrench);
-      worst.square = std::max(worst.square, distance({drive_forces(system, square_closure(system))}, tau) / scale);
+      worst.square =
+          std::max(worst.square, distance(fixed<4>(drive_forces(system, square_closure(system))), tau) / scale);
       if (k % kLeastNormShare) continue;
       const LeastNorm least = least_norm(system);
       EXPECT_EQ(least.rank, name == "3crr-r-cru" ? 60 : 54);
-      worst.least_norm = std::max(worst.least_norm, distance({drive_forces(system, least.x)}, tau) / scale);
+      worst.least_norm = std::max(worst.least_norm, distance(fixed<4>(drive_forces(system, least.x)), tau) / scale);
     }
   return worst;
 }
@@ -200,7 +201,7 @@ TEST(CrrCruEquations, ScaleWithLengthsAndMasses) {
     const double length = 1.7, mass = 0.6;
     const State big = scaled(s, length, mass);
     const PoseDynamics<double> d = dynamics_of(name, s), D = dynamics_of(name, big);
-    const JointSpace<double> q = joint_space(d), Q = joint_space(D);
+    const JointSpace<double, 4> q = joint_space(d), Q = joint_space(D);
     // The inertia that joints feel grows with masses alone, and coupling indices with neither.
     EXPECT_LE(distance(Q.M_q, q.M_q * mass), 1e-12 * largest(Q.M_q)) << name;
     EXPECT_LE(distance(coupling_indices(Q.M_q), coupling_indices(q.M_q)), 1e-12) << name;

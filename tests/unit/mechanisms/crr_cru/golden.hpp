@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -13,10 +14,12 @@
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/mechanisms/crr_cru/masses.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::testing::crr {
 
 using namespace pkm::crr_cru;
+using crr_cru::Pose;  // not pkm::Pose, to which it converts
 
 inline const nlohmann::json& golden() {
   static const nlohmann::json data =
@@ -112,19 +115,15 @@ inline LimitSpec limit_spec(double s_min, double c_min, std::optional<double> cl
 }
 
 /// The plan that holds coordinate `held` at `value`.
-inline SurveyPlan plan(Method method, int held, double value, const LimitSpec& limits) {
-  SurveyPlan plan;
-  plan.method = method;
-  plan.held = {HeldCoordinate::Kind::value, value, held};
-  plan.limits = limits;
-  plan.tolerance = 1e-10;
-  return plan;
+inline SurveyPlan plan(const std::variant<ColumnOptions, VoxelOptions>& method, int held, double value,
+                       const LimitSpec& limits) {
+  return {method, {{.coordinate = held, .kind = HeldCoordinate::Kind::value, .value = value}}, limits};
 }
 
 template <class S>
 Survey<S> survey(const std::string& name, const std::vector<S>& p, const SurveyPlan& plan, const Demand& demand = {}) {
   Survey<S> result;
-  mechanism(name).prepare(plan, demand)->survey(std::span<const S>(p), result);
+  survey_once<S>(*prepare_survey(mechanism(name), plan, demand), p, result);
   return result;
 }
 

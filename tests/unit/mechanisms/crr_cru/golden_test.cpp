@@ -12,6 +12,8 @@
 namespace pkm::testing::crr {
 namespace {
 
+using crr_cru::Influence;
+
 constexpr double kRoundoff = 1e-12;
 
 TEST(CrrCruGolden, PosesOfEveryCase) {
@@ -49,11 +51,11 @@ TEST(CrrCruGolden, RatesOfEveryCase) {
     const auto g = geometry_of(entry["mechanism"], design_of(entry));
     const Limbs<double> limbs = inverse(g, pose_of(entry["X"]), mode_of(entry["sigma"]));
     const auto &V = entry["Xd"], &W = entry["Xdd"];
-    const Eigen::Vector4d v(V[0], V[1], V[2], V[3]), w(W[0], W[1], W[2], W[3]);
-    const Eigen::Matrix4d J = jacobian(limbs.arm), rate = jacobian_rate(limbs.arm, v[3]);
-    const Eigen::Vector4d speed = J * v, acceleration = J * w + rate * v;
-    for (int i = 0; i < 4; ++i) {
-      const auto limb = static_cast<std::size_t>(i);
+    const Vector<double, 4> v{{V[0], V[1], V[2], V[3]}}, w{{W[0], W[1], W[2], W[3]}};
+    const Influence<double> q = influence(limbs.arm);
+    const Vector<double, 4> speed = q.G * v, acceleration = accelerations(q, v, w);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t limb = i;
       EXPECT_NEAR(speed[i], entry["qd"][i].get<double>(), kRoundoff * 10);
       EXPECT_NEAR(acceleration[i], entry["qdd"][i].get<double>(), kRoundoff * 100);
       const auto& arm = limbs.arm[limb];
@@ -101,27 +103,28 @@ TEST(CrrCruGolden, BothBranchesOfEveryForwardCase) {
   for (const auto& entry : golden()["forward"]) {
     SCOPED_TRACE(entry["id"].dump());
     const auto& q = entry["q"];
-    const auto modes = mechanism(entry["mechanism"]).forward(design_of(entry), {q[0], q[1], q[2], q[3]});
+    const auto modes = mechanism(entry["mechanism"]).forward()->assemblies(design_of(entry), {q[0], q[1], q[2], q[3]});
     ASSERT_EQ(modes.size(), entry["solutions"].size());
     for (std::size_t i = 0; i < modes.size(); ++i) {
       const Pose<double> expected = pose_of(entry["solutions"][i]);
       EXPECT_EQ(modes[i].mode, i == 0 ? "+" : "-");
-      EXPECT_NEAR(modes[i].pose.x, expected.x, kRoundoff);
-      EXPECT_NEAR(modes[i].pose.y, expected.y, kRoundoff);
-      EXPECT_NEAR(modes[i].pose.z, expected.z, kRoundoff);
-      EXPECT_NEAR(modes[i].pose.angle, expected.angle, kRoundoff);
+      const Pose<double> found = schoenflies(modes[i].pose);
+      EXPECT_NEAR(found.x, expected.x, kRoundoff);
+      EXPECT_NEAR(found.y, expected.y, kRoundoff);
+      EXPECT_NEAR(found.z, expected.z, kRoundoff);
+      EXPECT_NEAR(found.angle, expected.angle, kRoundoff);
     }
   }
 }
 
 TEST(CrrCruGolden, FeasibleVoxelsOfEveryRegion) {
   for (const auto& entry : golden()["dci_stats"]) {
-    SurveyPlan p = plan(Method::voxels, 3, entry["phi"], limit_spec(entry["smin"], entry["cmin"]));
-    p.box.emplace();
+    VoxelOptions grid{.box = Box{}};
     for (std::size_t k = 0; k < 3; ++k) {
-      p.cells[k] = entry["n"][k];
-      (*p.box)[k] = {entry["lo"][k], entry["hi"][k]};
+      grid.cells[k] = entry["n"][k];
+      (*grid.box)[k] = {entry["lo"][k], entry["hi"][k]};
     }
+    const SurveyPlan p = plan(grid, 3, entry["phi"], limit_spec(entry["smin"], entry["cmin"]));
     EXPECT_EQ(survey(entry["mechanism"], design_of(entry), p).feasible_cells, entry["feasible"].get<std::int64_t>());
   }
 }

@@ -13,6 +13,8 @@
 namespace pkm::testing::crr {
 namespace {
 
+using crr_cru::Influence;
+
 WorkingMode mode_number(int bits) {
   return {bits & 8 ? 1 : -1, bits & 4 ? 1 : -1, bits & 2 ? 1 : -1, bits & 1 ? 1 : -1};
 }
@@ -69,17 +71,18 @@ TEST(CrrCruKinematics, ForwardAfterInverseIsThePoseInAllWorkingModes) {
       const double kappa = r.indices[1].second;
       if (std::fabs(kappa) < 1e-3) continue;  // the two branches meet: phi follows from an arc sine near 1
       ++compared;
-      const auto branches = mechanism(name).forward(p, *r.joints);
+      const auto branches = mechanism(name).forward()->assemblies(p, *r.joints);
       ASSERT_EQ(branches.size(), 2u);
       const AssemblyMode& own = branches[kappa > 0 ? 0 : 1];
       EXPECT_EQ(own.mode, kappa > 0 ? "+" : "-");
-      EXPECT_NEAR(own.pose.x, pose.x, 1e-12);
-      EXPECT_NEAR(own.pose.y, pose.y, 1e-12);
-      EXPECT_NEAR(own.pose.z, pose.z, 1e-12);
-      EXPECT_NEAR(own.pose.angle, pose.angle, 1e-12);
+      const Pose<double> found = schoenflies(own.pose);
+      EXPECT_NEAR(found.x, pose.x, 1e-12);
+      EXPECT_NEAR(found.y, pose.y, 1e-12);
+      EXPECT_NEAR(found.z, pose.z, 1e-12);
+      EXPECT_NEAR(found.angle, pose.angle, 1e-12);
       // the other branch has the same slides
       const AssemblyMode& other = branches[kappa > 0 ? 1 : 0];
-      const Limbs<double> limbs = inverse(geometry_of(name, p), other.pose, {1, 1, 1, 1});
+      const Limbs<double> limbs = inverse(geometry_of(name, p), schoenflies(other.pose), {1, 1, 1, 1});
       for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(limbs.limb[i].rho, (*r.joints)[i], 1e-12);
     }
   });
@@ -114,7 +117,10 @@ TEST(CrrCruKinematics, JacobianRateIsItsDifference) {
       return arms(g, s, c);
     };
     const Eigen::Matrix4d difference = (jacobian(at(kStep)) - jacobian(at(-kStep))) / (2 * kStep);
-    EXPECT_LT((jacobian_rate(at(0), rate) - difference).cwiseAbs().maxCoeff(), 1e-10);
+    const Influence<double> q = influence(at(0));
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_NEAR(q.H[i](k, 3) * rate, difference(static_cast<int>(i), static_cast<int>(k)), 1e-10);
   });
 }
 
@@ -195,7 +201,7 @@ TEST(CrrCruKinematics, SingularAndCollinearPoses) {
   p = nominal();
   p[kL32] = p[kL31];
   const auto limb = limb_at(geometry_of("3crr-r-cru", p), 2, {0, 0, 0.2}, 1);
-  EXPECT_GE(limb.reach, 0);
+  EXPECT_TRUE(limb.reaches);
   EXPECT_EQ(limb.sin_2, 0);
   for (const double value : {limb.u1[0], limb.u1[1], limb.u2[0], limb.u2[1], limb.B[0]})
     EXPECT_TRUE(std::isfinite(value));
@@ -206,11 +212,11 @@ TEST(CrrCruKinematics, BranchesMeetAndEnd) {
   for (const std::string& name : both()) {
     const auto y = yaw(geometry_of(name, p));
     const double end = 0.1 + y.a_0 + y.R;
-    EXPECT_EQ(mechanism(name).forward(p, {0.2, 0.1, 0.2, end - 1e-6}).size(), 2u);
-    EXPECT_EQ(mechanism(name).forward(p, {0.2, 0.1, 0.2, end + 1e-6}).size(), 0u);
-    const auto meeting = mechanism(name).forward(p, {0.2, 0.1, 0.2, end + 1e-15});
+    EXPECT_EQ(mechanism(name).forward()->assemblies(p, {0.2, 0.1, 0.2, end - 1e-6}).size(), 2u);
+    EXPECT_EQ(mechanism(name).forward()->assemblies(p, {0.2, 0.1, 0.2, end + 1e-6}).size(), 0u);
+    const auto meeting = mechanism(name).forward()->assemblies(p, {0.2, 0.1, 0.2, end + 1e-15});
     ASSERT_EQ(meeting.size(), 1u);
-    EXPECT_NEAR(meeting[0].pose.angle, kPi / 2 - offset(y), 1e-7);
+    EXPECT_NEAR(schoenflies(meeting[0].pose).angle, kPi / 2 - offset(y), 1e-7);
   }
 }
 
@@ -228,7 +234,7 @@ TEST(CrrCruKinematics, ReasonsAndRefusals) {
   EXPECT_EQ(off_rail.reason, "limit stroke_1 is broken");
   EXPECT_EQ(m.inspect(p, {0.2, 0.17, 0.22, 1.5}, "-,-,+,-", limit_spec(0, 0.1)).reason, "limit c_min is broken");
   EXPECT_EQ(m.inspect(p, {0.2, 0.17, 0.22, 0}, "-,-,+,-", limit_spec(0.99, 0)).reason, "limit s_min is broken");
-  EXPECT_THROW(m.inspect(p, {}, "lower,lower", none), std::invalid_argument);
+  EXPECT_THROW(m.inspect(p, {0, 0, 0, 0}, "lower,lower", none), std::invalid_argument);
 
   auto q = p;
   q[kRhoMin] = 0.5;
@@ -237,7 +243,7 @@ TEST(CrrCruKinematics, ReasonsAndRefusals) {
   q[kR] = q[kL];
   q[kBeta2] = 0;
   EXPECT_EQ(mechanism("quadrupteron").refuse(q), "with r = l and beta_2 = 0 no slide controls the yaw");
-  EXPECT_EQ(m.refuse(q), "");
+  EXPECT_EQ(m.refuse(q), std::nullopt);
 }
 
 }  // namespace

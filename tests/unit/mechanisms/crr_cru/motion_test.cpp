@@ -17,14 +17,16 @@ using ::testing::HasSubstr;
 
 constexpr double kAccuracy = 1e-10;  // of the largest entry
 
-Vector<double, 4> vector_of(const Json& list) { return {{list[0], list[1], list[2], list[3]}}; }
+AxisVector<double> vector_of(const Json& list) { return {list[0], list[1], list[2], list[3]}; }
+
+const std::vector<AxisInfo>& coordinates() { return mechanism("quadrupteron").info().coordinates; }  // of both
 
 Trajectory along(const Json& entry, const Motion& motion) {
   const Mechanism& m = mechanism(entry["mechanism"]);
   return follow(m, nominal(), mode_name(mode_of(entry["sigma"])), no_limits(m.info()), motion, entry["n"]);
 }
 
-void expect_close(const Vector<double, 4>& found, const Json& expected, const char* what) {
+void expect_close(const AxisVector<double>& found, const Json& expected, const char* what) {
   double scale = 0;
   for (const double value : expected) scale = std::fmax(scale, std::fabs(value));
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found[i], expected[i].get<double>(), kAccuracy * scale) << what;
@@ -34,8 +36,8 @@ TEST(CrrCruMotion, GoldenQuinticMoves) {
   ASSERT_GT(golden()["quintic"].size(), 10u);
   for (const Json& entry : golden()["quintic"]) {
     SCOPED_TRACE(entry.dump());
-    const Vector<double, 4> from = vector_of(entry["X0"]), to = from + vector_of(entry["dX"]);
-    const double T = time_within(TimeLaw::quintic, from, to, entry["a"], INFINITY);
+    const AxisVector<double> from = vector_of(entry["X0"]), to = from + vector_of(entry["dX"]);
+    const double T = time_within(TimeLaw::quintic, coordinates(), from, to, entry["a"], INFINITY);
     expect_close(along(entry, *point_to_point(from, {{0, to, T}}, 0, TimeLaw::quintic)).summary.peak_force,
                  entry["tau_abs_max"], "peak force");
   }
@@ -44,9 +46,9 @@ TEST(CrrCruMotion, GoldenQuinticMoves) {
 TEST(CrrCruMotion, GoldenOscillation) {
   for (const Json& entry : golden()["eq35"]) {
     SCOPED_TRACE(entry.dump());
-    const Trajectory found = along(entry, *oscillation(vector_of(entry["X0"]), 0.01, 1, 1));
+    const Trajectory found = along(entry, *oscillation(space_axes(coordinates()), vector_of(entry["X0"]), 0.01, 1, 1));
     EXPECT_TRUE(found.periodic);
-    Vector<double, 4> least = *found.points[0].forces, greatest = least;
+    AxisVector<double> least = *found.points[0].forces, greatest = least;
     for (const TrajectoryPoint& p : found.points)
       for (std::size_t i = 0; i < 4; ++i) {
         least[i] = std::fmin(least[i], (*p.forces)[i]);
@@ -61,6 +63,7 @@ TEST(CrrCruMotion, GoldenHandlingCycle) {
   for (const Json& entry : golden()["adept"]) {
     SCOPED_TRACE(entry.dump());
     PickAndPlace cycle;
+    cycle.axes = space_axes(coordinates());
     cycle.start = vector_of(entry["P0"]);
     cycle.lift = entry["lift"];
     cycle.reach = entry["reach"];
@@ -108,7 +111,7 @@ TEST(CrrCruMotion, AccelerationsOfTheJointsAreDerivativesOfTheirSpeeds) {
 
 TEST(CrrCruMotion, InfeasibleSamplesAreMarkedAndLeaveTheOthers) {
   const Mechanism& m = mechanism("3crr-r-cru");
-  const auto motion = point_to_point({{0.2, 0.17, 0.22, 0}}, {{0, {{0.2, 0.17, 0.6, 0}}, 1}}, 0, TimeLaw::quintic);
+  const auto motion = point_to_point({0.2, 0.17, 0.22, 0}, {{0, {0.2, 0.17, 0.6, 0}, 1}}, 0, TimeLaw::quintic);
   const Trajectory found = follow(m, nominal(), m.info().modes[0], no_limits(m.info()), *motion, 101);
   EXPECT_GT(found.summary.infeasible, 0u);
   EXPECT_FALSE(found.summary.has_forces);
@@ -130,7 +133,7 @@ DesignProblem problem_of(const std::string& name, const std::string& objective, 
   parts.mechanism = *std::ranges::find_if(all_mechanisms(), [&](const auto& m) { return m->info().name == name; });
   parts.parameters = nominal();
   parts.plan.limits = no_limits(parts.mechanism->info());
-  parts.plan.nodes = {1, 1};
+  parts.plan.method = ColumnOptions{.nodes = {1, 1}};
   std::vector<Variable> variables;
   for (std::size_t i = 0; i < parts.parameters.size(); ++i) {
     const Parameter& p = parts.mechanism->info().parameters[i];
@@ -145,7 +148,8 @@ DesignProblem problem_of(const std::string& name, const std::string& objective, 
 
 std::shared_ptr<const Motion> turning_cycle() {
   PickAndPlace cycle;
-  cycle.start = {{0.06, 0.17, 0.2, -0.4}};
+  cycle.axes = space_axes(coordinates());
+  cycle.start = {0.06, 0.17, 0.2, -0.4};
   cycle.reach = 0.2;
   cycle.lift_time = 0.12;
   cycle.overlap = 0.05;
@@ -163,9 +167,9 @@ TEST(CrrCruMotion, ObjectivesAreThePeaksOfTheTrajectory) {
       return problem_of(name, objective, joint, motion).report(nominal()).objectives[0];
     };
     EXPECT_EQ(value("peak-force", "3"), s.peak_force[2]);
-    EXPECT_EQ(value("peak-force", "worst"), *std::ranges::max_element(s.peak_force.m));
+    EXPECT_EQ(value("peak-force", "worst"), *std::ranges::max_element(s.peak_force));
     EXPECT_EQ(value("peak-power", "1"), s.peak_power[0]);
-    EXPECT_EQ(value("peak-power", "worst"), *std::ranges::max_element(s.peak_power.m));
+    EXPECT_EQ(value("peak-power", "worst"), *std::ranges::max_element(s.peak_power));
     EXPECT_EQ(value("peak-power", "total"), std::fmax(s.peak_total_power, -s.least_total_power));
   }
 }
@@ -212,7 +216,8 @@ TEST(CrrCruMotion, ADesignThatCannotFollowFailsWithAReason) {
   EvaluationTable table(problem.shape(Detail::derivatives));
   table.extend(1);
   std::ranges::copy(p, table.design(0).begin());
-  problem.evaluate(p, table.slot(0));
+  Scratch scratch;
+  problem.evaluate(p, scratch, table.slot(0));
   EXPECT_EQ(table.status[0], Status::failed);
 }
 

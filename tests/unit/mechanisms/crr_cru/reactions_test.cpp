@@ -15,9 +15,16 @@ using ::testing::HasSubstr;
 
 constexpr double kAccuracy = 1e-12;  // of the largest force
 
-Reactions reactions_of(const Json& entry) {
-  const State s = state_of(entry);
-  return mechanism(entry["mechanism"]).reactions(s.parameters, mode_name(s.mode), s.motion, s.acceleration, s.wrench);
+Reactions reactions_of(const Json& entry, const State& s) {
+  return mechanism(entry["mechanism"])
+      .reactions()
+      ->find(s.parameters, mode_name(s.mode), {s.motion.pose, s.motion.velocity}, s.acceleration, s.wrench);
+}
+Reactions reactions_of(const Json& entry) { return reactions_of(entry, state_of(entry)); }
+
+/// Standing still, without a wrench.
+Reactions reactions_at(const std::string& name, const std::vector<double>& p, const pkm::Pose<double>& pose) {
+  return mechanism(name).reactions()->find(p, "-,-,+,-", {pose, {0, 0, 0, 0}}, {0, 0, 0, 0}, {});
 }
 
 TEST(CrrCruReactions, EveryGoldenCase) {
@@ -110,14 +117,11 @@ TEST(CrrCruReactions, BothClosuresGiveTheSameForcesAndFulfilTheEquations) {
 TEST(CrrCruReactions, SayWhyForcesAreNotDetermined) {
   const std::vector<double> p = nominal();
   for (const std::string& name : both()) {
-    const auto at = [&](const Pose<double>& pose) {
-      return mechanism(name).reactions(p, "-,-,+,-", {pose, {}}, {}, {});
-    };
-    const Reactions far = at({0.9, 0.17, 0.22, 0.3});
+    const Reactions far = reactions_at(name, p, {0.9, 0.17, 0.22, 0.3});
     EXPECT_THAT(far.reason, HasSubstr("out of reach"));
     EXPECT_TRUE(far.joints.empty());
     // the yaw at which limbs 2 and 4 no longer control it
-    const Reactions singular = at({0.2, 0.17, 0.22, kPi / 2});
+    const Reactions singular = reactions_at(name, p, {0.2, 0.17, 0.22, kPi / 2});
     EXPECT_THAT(singular.reason, HasSubstr("at a singularity"));
     EXPECT_THAT(singular.reason, HasSubstr("of rank " + std::to_string(singular.equations - 1)));
     EXPECT_TRUE(singular.joints.empty());
@@ -128,10 +132,9 @@ TEST(CrrCruReactions, ASlidesMassIsTheActuatorsAffair) {
   // The joint between slide and rod carries the same, and the actuator gives m_s (rhoddot - g . e) more.
   for (const Json& entry : golden()["cases"]) {
     State s = state_of(entry);
-    const Mechanism& m = mechanism(entry["mechanism"]);
     const auto at = [&](double mass) {
       s.parameters[kTableExtras] = mass;
-      return m.reactions(s.parameters, mode_name(s.mode), s.motion, s.acceleration, s.wrench);
+      return reactions_of(entry, s);
     };
     const Reactions without = at(0), with = at(0.8);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -152,7 +155,7 @@ TEST(CrrCruReactions, HoldTheWholeWeight) {
     const auto b = masses(MassModel::table, std::span<const double>(p));
     double mass = b.m + b.m_middle + b.payload;
     for (std::size_t i = 0; i < 4; ++i) mass += b.m_1[i] + b.m_2[i];
-    const Reactions found = mechanism(name).reactions(p, "-,-,+,-", {{0.2, 0.17, 0.22, 0.3}, {}}, {}, {});
+    const Reactions found = reactions_at(name, p, {0.2, 0.17, 0.22, 0.3});
     std::array<double, 3> sum{};
     for (const JointReaction& joint : found.joints)
       if (joint.name[0] == 'a')

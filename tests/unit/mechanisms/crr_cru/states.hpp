@@ -3,9 +3,13 @@
 
 #include "engine/mechanisms/crr_cru/bodies.hpp"
 #include "engine/mechanisms/crr_cru/dynamics.hpp"
+#include "engine/mechanisms/crr_cru/margins.hpp"
 #include "tests/unit/mechanisms/crr_cru/golden.hpp"
 
 namespace pkm::testing::crr {
+
+// of four coordinates, not of any number
+using crr_cru::MotionState, crr_cru::PlacedBody, crr_cru::PoseDynamics;
 
 struct State {
   std::vector<double> parameters;
@@ -49,23 +53,15 @@ inline PoseDynamics<double> dynamics_of(const std::string& name, const State& s)
   return pose_dynamics(m.g, m.b, s.motion, s.mode);
 }
 
-/// Slides in range, |sin theta_i2| and kappa_p at least as given.
-inline bool feasible(const Model& m, const State& s, double s_min, double c_min) {
-  if (!m.limbs.assembles) return false;
-  for (const Limb<double>& limb : m.limbs.limb)
-    if (!(limb.rho >= m.g.rho_min && limb.rho <= m.g.rho_max && std::fabs(limb.sin_2) >= s_min)) return false;
-  const auto [sine, cosine] = sincos(s.motion.pose.angle);
-  return parallel_index(yaw(m.g), sine, cosine) >= c_min;
-}
-
 /// A pose of the design with the document's default margins, rates to 1.5 m/s and 4 rad/s, accelerations to 15 m/s^2
 /// and 40 rad/s^2, a wrench of 20 N and 1 N m.
 inline State random_state(Uniform& uniform, const std::string& name, const WorkingMode& mode,
                           const std::vector<double>& design) {
   State s{design, mode, {}, {}, {}};
+  const Design<double> limited = pkm::crr_cru::design(geometry_of(name, design), {.s_min = 0.2, .c_min = 0.1});
   do {
     s.motion.pose = {uniform(0, 0.4), uniform(0, 0.4), uniform(0, 0.4), uniform(-1.4, 1.4)};
-  } while (!feasible(model_of(name, s), s, 0.2, 0.1));
+  } while (!keeps_limits(limited, s.motion.pose));
   for (std::size_t k = 0; k < 4; ++k) {
     const double v = k < 3 ? 1.5 : 4, a = k < 3 ? 15 : 40;
     s.motion.velocity[k] = uniform(-v, v);

@@ -6,6 +6,7 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/crr_cru/columns.hpp"
+#include "engine/mechanisms/crr_cru/margins.hpp"
 #include "engine/mechanisms/crr_cru/voxels.hpp"
 #include "tests/unit/mechanisms/crr_cru/golden.hpp"
 
@@ -42,16 +43,25 @@ Held held_of(const Case& c) { return {static_cast<std::size_t>(c.held), false, c
 
 Design<double> design_of_case(const Case& c) { return design(geometry_of(c.name, c.p), limits(c.limits)); }
 
-SurveyPlan voxels(const Case& c, std::array<std::int64_t, 3> cells) {
-  SurveyPlan p = plan(Method::voxels, c.held, c.value, c.limits);
-  p.cells = cells;
-  return p;
+/// Whether a position is feasible, by the ranges and rings that sections and rows are made of.
+bool in_frame(const Design<double>& d, const Frame<double>& f, const Vector3<double>& at) {
+  if (f.singular) return false;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (at[k] < f.range[k].lower || at[k] > f.range[k].upper) return false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double a = at[kLimbs[i].p] - f.center[i][kLimbs[i].p], b = at[kLimbs[i].q] - f.center[i][kLimbs[i].q];
+    const double distance2 = a * a + b * b;
+    if (distance2 < d.in2[i] || distance2 > d.out2[i]) return false;
+  }
+  return true;
+}
+
+SurveyPlan voxels(const Case& c, std::array<std::int64_t, 3> cells, const std::optional<Box>& box = {}) {
+  return plan(VoxelOptions{.cells = cells, .box = box}, c.held, c.value, c.limits);
 }
 
 SurveyPlan columns(const Case& c, double tolerance = 1e-10) {
-  SurveyPlan p = plan(Method::columns, c.held, c.value, c.limits);
-  p.tolerance = tolerance;
-  return p;
+  return plan(ColumnOptions{.tolerance = tolerance}, c.held, c.value, c.limits);
 }
 
 /// The pose whose swept coordinates are a, b, c in order.
@@ -73,7 +83,7 @@ TEST(CrrCruVoxels, CountsFromRowsEqualThePlainLoop) {
       const VoxelGrid grid(cells, default_box(d, held_of(c)));
       const VoxelMap plain = test_every_cell(grid, [&](double x0, double x1, double x2) {
         const auto at = pose_at(c, x0, x1, x2);
-        return feasible(d, frame(d, at[3]), {at[0], at[1], at[2]});
+        return keeps_limits(d, {at[0], at[1], at[2], at[3]});
       });
       Survey<double> expected;
       summarise(grid, plain, expected);
@@ -81,7 +91,7 @@ TEST(CrrCruVoxels, CountsFromRowsEqualThePlainLoop) {
       EXPECT_EQ(found.feasible_cells, expected.feasible_cells);
       EXPECT_EQ(found.volume, expected.volume);
       EXPECT_EQ(found.touches_box, expected.touches_box);
-      EXPECT_EQ(mechanism(c.name).voxel_map(c.p, p).feasible, plain.feasible);
+      EXPECT_EQ(voxel_map(mechanism(c.name), c.p, p).feasible, plain.feasible);
       total += found.feasible_cells;
     }
   }
@@ -90,39 +100,46 @@ TEST(CrrCruVoxels, CountsFromRowsEqualThePlainLoop) {
 
 TEST(CrrCruVoxels, GivenBoxAndItsTouch) {
   Case c{"3crr-r-cru", nominal(), limit_spec(0, 0), 3, 0};
-  SurveyPlan p = voxels(c, {40, 40, 40});
-  p.box = Box{{{-0.1, 0.5}, {-0.1, 0.5}, {-0.1, 0.5}}};
-  const auto whole = survey(c.name, c.p, p);
+  const auto in = [&](const Box& box) { return survey(c.name, c.p, voxels(c, {40, 40, 40}, box)); };
+  const auto whole = in({{{-0.1, 0.5}, {-0.1, 0.5}, {-0.1, 0.5}}});
   EXPECT_FALSE(whole.touches_box);
   EXPECT_NEAR(whole.volume / survey(c.name, c.p, columns(c)).volume, 1, 0.02);
-  p.box = Box{{{0.1, 0.2}, {-0.1, 0.5}, {-0.1, 0.5}}};
-  EXPECT_TRUE(survey(c.name, c.p, p).touches_box);
+  EXPECT_TRUE(in({{{0.1, 0.2}, {-0.1, 0.5}, {-0.1, 0.5}}}).touches_box);
 }
 
 // A box beyond the branch cos(phi + delta) >= 0 adds no pose.
 TEST(CrrCruVoxels, PosesOfTheOtherBranchDoNotCount) {
   for (const std::string& name : both()) {
     Case c{name, nominal(), limit_spec(0, 0), 0, 0.2};
-    SurveyPlan quarter = voxels(c, {20, 20, 30}), half = voxels(c, {20, 20, 60});
-    quarter.box = Box{{{0, 0.4}, {0, 0.42}, {-kPi / 2, kPi / 2}}};
-    half.box = Box{{{0, 0.4}, {0, 0.42}, {-kPi, kPi}}};
+    const SurveyPlan quarter = voxels(c, {20, 20, 30}, Box{{{0, 0.4}, {0, 0.42}, {-kPi / 2, kPi / 2}}});
+    const SurveyPlan half = voxels(c, {20, 20, 60}, Box{{{0, 0.4}, {0, 0.42}, {-kPi, kPi}}});
     EXPECT_GT(survey(name, c.p, quarter).feasible_cells, 0);
     EXPECT_EQ(survey(name, c.p, half).feasible_cells, survey(name, c.p, quarter).feasible_cells);
   }
 }
 
-TEST(CrrCruVoxels, PoseTestAgreesWithTheInspection) {
+// One statement of the limits, and what else knows of them: the report, which has s_min as a margin of its own, the
+// rings and ranges of one phi, and the reach of the inverse kinematics.
+TEST(CrrCruVoxels, FramesAndInspectionAgreeWithTheStatedMargins) {
   int inside = 0;
   Uniform uniform(3);
   for (const Case& c : random_cases(60, 3)) {
-    const Design<double> d = design_of_case(c);
+    const Design<double> d = design_of_case(c), bare = design(d.g, {});
     for (int i = 0; i < 300; ++i) {
       const Pose<double> pose{uniform(-0.05, 0.45), uniform(-0.05, 0.45), uniform(0, 0.45), uniform(-2, 2)};
+      const bool keeps = keeps_limits(d, pose);
+      inside += keeps;
+      EXPECT_EQ(in_frame(d, frame(d, pose.angle), {pose.x, pose.y, pose.z}), keeps);
+      bool reaches = true;
+      state_margins(bare, pose,
+                    [&](std::size_t which, double margin) { reaches = reaches && (which >= kStroke || margin >= 0); });
       for (const char* mode : {"-,-,+,-", "+,+,-,+"}) {
         const PoseReport r = mechanism(c.name).inspect(c.p, pose, mode, c.limits);
-        EXPECT_EQ(feasible(d, frame(d, pose.angle), {pose.x, pose.y, pose.z}), r.feasible) << r.reason;
+        EXPECT_EQ(r.feasible, keeps) << r.reason;
+        EXPECT_EQ(r.assembles, reaches);
         EXPECT_EQ(r.reason.empty(), r.feasible);
-        inside += r.feasible;
+        for (std::size_t which = 0; which < r.margins.size(); ++which)
+          EXPECT_EQ(r.margins[which].first, kMarginNames[which]);
       }
     }
   }
@@ -150,7 +167,7 @@ TEST(CrrCruColumns, SectionsEqualTheSumOfTheirCells) {
         at[s.cuts.normal] = s.cuts.outer_is_phi ? s.held : outer;
         at[s.cuts.u] = u0 + (u1 - u0) * (i + 0.5) / kSteps;
         at[s.cuts.v] = v0 + (v1 - v0) * (j + 0.5) / kSteps;
-        cells += feasible(s.design, f, at);
+        cells += in_frame(s.design, f, at);
       }
     const double whole = (u1 - u0) * (v1 - v0);
     const double expected = whole * static_cast<double>(cells) / (kSteps * kSteps);
@@ -201,8 +218,7 @@ TEST(CrrCruColumns, VolumesEqualVoxelsAtFourResolutionsAndAQuasiRandomCount) {
       SCOPED_TRACE(text(c));
       const double exact = survey(name, c.p, columns(c)).volume;
       for (const std::int64_t cells : {20, 40, 80, 160}) {
-        SurveyPlan grid = voxels(c, {cells, cells, cells});
-        grid.box = {{{-0.05, 0.45}, {-0.05, 0.45}, {-0.05, 0.45}}};
+        const SurveyPlan grid = voxels(c, {cells, cells, cells}, Box{{{-0.05, 0.45}, {-0.05, 0.45}, {-0.05, 0.45}}});
         const double error = survey(name, c.p, grid).volume / exact - 1;
         EXPECT_LT(std::fabs(error), 1.0 / static_cast<double>(cells)) << cells;
       }
@@ -218,7 +234,7 @@ TEST(CrrCruColumns, VolumesEqualVoxelsAtFourResolutionsAndAQuasiRandomCount) {
           const double share = 0.5 + i * step[k];
           at[k] = -0.05 + 0.5 * (share - std::floor(share));
         }
-        inside += feasible(d, f, at);
+        inside += in_frame(d, f, at);
       }
       EXPECT_NEAR(inside * 0.125 / kPoints / exact, 1, 1e-4);
     }
@@ -248,17 +264,17 @@ TEST(CrrCruColumns, FixedNodesConvergeToTheTolerance) {
   for (const Case& c : random_cases(40, 8)) {
     SCOPED_TRACE(text(c));
     const double best = survey(c.name, c.p, columns(c, 1e-12)).volume;
-    SurveyPlan nodes = columns(c);
-    nodes.nodes = {24, 24};
-    const auto found = survey(c.name, c.p, nodes);
+    const auto with = [&](const std::array<int, 2>& given) {
+      return survey(c.name, c.p, plan(ColumnOptions{.tolerance = 1e-10, .nodes = given}, c.held, c.value, c.limits));
+    };
+    const auto found = with({24, 24});
     EXPECT_NEAR(found.volume, best, 1e-5 * best);
     EXPECT_EQ(found.error, 0);
     // the order of nodes is that of the swept coordinates: 60 columns over the inner one, 2 sections per piece
-    nodes.nodes = c.held == 3 ? std::array<int, 2>{2, 60} : std::array<int, 2>{60, 2};
-    const auto sections = survey(c.name, c.p, nodes);
-    nodes.nodes = {nodes.nodes[1], nodes.nodes[0]};
+    const std::array<int, 2> nodes = c.held == 3 ? std::array<int, 2>{2, 60} : std::array<int, 2>{60, 2};
+    const auto sections = with(nodes);
     if (!(best > 0)) continue;
-    EXPECT_NE(sections.volume, survey(c.name, c.p, nodes).volume);
+    EXPECT_NE(sections.volume, with({nodes[1], nodes[0]}).volume);
   }
 }
 

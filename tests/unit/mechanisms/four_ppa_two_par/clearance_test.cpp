@@ -10,6 +10,7 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
 
@@ -44,12 +45,13 @@ LimitSpec clearance(double least) {
   return spec;
 }
 
-PoseReport report(const std::vector<double>& p, const Pose<double>& pose, const LimitSpec& limits,
+PoseReport report(const std::vector<double>& p, const SchoenfliesPose<double>& pose, const LimitSpec& limits,
                   const std::string& mode = "lower,lower") {
   return four_ppa().inspect(p, pose, mode, limits);
 }
 
-double clearance_at(const std::vector<double>& p, const Pose<double>& pose, const std::string& mode = "lower,lower") {
+double clearance_at(const std::vector<double>& p, const SchoenfliesPose<double>& pose,
+                    const std::string& mode = "lower,lower") {
   const PoseReport r = report(p, pose, no_limits_of_four_ppa(), mode);
   for (const auto& [name, value] : r.angles)
     if (name == "clearance") return value;
@@ -57,7 +59,7 @@ double clearance_at(const std::vector<double>& p, const Pose<double>& pose, cons
 }
 
 /// The pose in the middle at theta = 0 at which both limbs have this half spacing of sliders.
-Pose<double> middle_pose(const std::vector<double>& p, double h) {
+SchoenfliesPose<double> middle_pose(const std::vector<double>& p, double h) {
   const double x = (p[kB] - p[kA]) / 2;
   return {p[kB] / 2, p[kL0] / 2, -std::sqrt(p[kLu] * p[kLu] - h * h) - std::sqrt(p[kLd] * p[kLd] - x * x) - p[kD], 0};
 }
@@ -88,11 +90,11 @@ TEST(FourPpaLinks, BarsHaveTheirLengthsInEveryMode) {
   };
   int compared = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Pose<double> pose{uniform(0, 0.8), 1.25, uniform(-1.3, 0.4), uniform(-1.5, 1.5)};
+    const SchoenfliesPose<double> pose{uniform(0, 0.8), 1.25, uniform(-1.3, 0.4), uniform(-1.5, 1.5)};
     const WorkingMode mode = {i & 1 ? Branch::lower : Branch::upper, i & 2 ? Branch::lower : Branch::upper};
     const auto limb = inverse(g, pose, mode);
     if (!limb.assembles) continue;
-    const auto all = links(g, placement(pose, limb, mode));
+    const auto all = links(g, placement(limb, sincos(pose.angle).sin, mode));
     for (int j = 0; j < 2; ++j) {
       const auto of = [&](LinkGroup group, std::size_t k) { return all[links_of(group_of(j, group)).first + k]; };
       const auto& slider_1 = of(kSliders, 0).axis;
@@ -173,7 +175,7 @@ TEST(FourPpaClearance, WithoutALimitThereIsNoMargin) {
 }
 
 TEST(FourPpaClearance, PairsWhoseDistanceIsTheSameAtEveryPose) {
-  const Pose<double> pose{0.37, 1.25, -0.9, 0.4};
+  const SchoenfliesPose<double> pose{0.37, 1.25, -0.9, 0.4};
   // lower bars over the platform: d - d_d - R_d - R_p
   EXPECT_NEAR(clearance_at(nominal(), pose), 0.15 - 0.08 - 0.01 - 0.02, kRoundoff);
   EXPECT_THAT(report(nominal(), pose, clearance(0.05)).reason, ::testing::HasSubstr("platform and lower bar of limb"));
@@ -193,7 +195,8 @@ TEST(FourPpaClearance, BetweenTheRails) {
   // Turned by 60 deg the limbs are a sin(60 deg) apart along the rails; the sliders are balls of 0.1 m.
   const auto p = with({{kA, 0.3}, {kB, 0.2}, {kD, 0.5}, {kRs, 0.1}, {kD0, 0.09}, {kDu, 0.02}});
   const double x_j = (p[kB] - p[kA] * 0.5) / 2, h = 0.3, apart = 0.3 * std::sqrt(0.75);
-  const Pose<double> pose{0.1, 1.25, -std::sqrt(0.36 - h * h) - std::sqrt(0.55 * 0.55 - x_j * x_j) - 0.5, kPi / 3};
+  const SchoenfliesPose<double> pose{0.1, 1.25, -std::sqrt(0.36 - h * h) - std::sqrt(0.55 * 0.55 - x_j * x_j) - 0.5,
+                                     kPi / 3};
   EXPECT_NEAR(clearance_at(p, pose), std::hypot(0.2, apart) - 0.2, kRoundoff);
   EXPECT_EQ(report(p, pose, clearance(0.15)).reason,
             "limit clearance_min is broken: slider 1 and slider 3 are too near");
@@ -202,7 +205,7 @@ TEST(FourPpaClearance, BetweenTheRails) {
 // A lower joint below the platform: the lower bar passes P_j at (d_d - d) sin(beta_j).
 TEST(FourPpaClearance, LowerBarsBesideThePlatform) {
   const auto p = with({{kD, 0.05}, {kDd, 0.2}, {kRd, 0.001}, {kRp, 0.002}});
-  const Pose<double> pose{0.3, 1.25, -0.8, 0.3};
+  const SchoenfliesPose<double> pose{0.3, 1.25, -0.8, 0.3};
   const auto limb = inverse(geometry(std::span<const double>(p)), pose, {Branch::lower, Branch::lower});
   const double sine = std::fmin(limb.x[0], limb.x[1]) / p[kLd];
   EXPECT_NEAR(clearance_at(p, pose), std::fmin(0.15 * sine, 0.05) - 0.003, kRoundoff);
@@ -218,15 +221,15 @@ TEST(FourPpaClearance, MirroredPosesHaveEqualClearance) {
     p[kRs] = uniform(0, 0.2);
     p[kRu] = uniform(0, 0.3);
     p[kD] = uniform(0, 0.3);
-    const Pose<double> pose{uniform(0, p[kB]), uniform(0, 2.5), uniform(-1.2, 0.2), uniform(-1.5, 1.5)};
+    const SchoenfliesPose<double> pose{uniform(0, p[kB]), uniform(0, 2.5), uniform(-1.2, 0.2), uniform(-1.5, 1.5)};
     const bool first_lower = i & 1, second_lower = i & 2;
     const auto mode = [](bool one, bool two) {
       return std::string(one ? "lower" : "upper") + "," + (two ? "lower" : "upper");
     };
     if (!report(p, pose, no_limits_of_four_ppa(), mode(first_lower, second_lower)).assembles) continue;
     const double here = clearance_at(p, pose, mode(first_lower, second_lower));
-    const Pose<double> in_y{pose.x, 2.5 - pose.y, pose.z, -pose.angle};
-    const Pose<double> in_x{p[kB] - pose.x, pose.y, pose.z, -pose.angle};
+    const SchoenfliesPose<double> in_y{pose.x, 2.5 - pose.y, pose.z, -pose.angle};
+    const SchoenfliesPose<double> in_x{p[kB] - pose.x, pose.y, pose.z, -pose.angle};
     EXPECT_NEAR(clearance_at(p, in_y, mode(first_lower, second_lower)), here, kRoundoff);
     EXPECT_NEAR(clearance_at(p, in_x, mode(second_lower, first_lower)), here, kRoundoff);
     auto big = p;
@@ -245,9 +248,9 @@ TEST(FourPpaClearance, DerivativesEqualDifferences) {
     std::vector<S> all;
     for (const double v : with(p)) all.emplace_back(v);
     const auto g = geometry(std::span<const S>(all));
-    const Pose<S> pose{S(0.13) + step, S(1.25), S(-1.2) + step * 0.5, S(0.7) - step * 2.0};
+    const SchoenfliesPose<S> pose{S(0.13) + step, S(1.25), S(-1.2) + step * 0.5, S(0.7) - step * 2.0};
     const WorkingMode mode = {Branch::lower, Branch::lower};
-    return nearest_links(links(g, placement(pose, inverse(g, pose, mode), mode))).clearance;
+    return nearest_links(links(g, placement(inverse(g, pose, mode), sincos(pose.angle).sin, mode))).clearance;
   };
   const Dual4 exact = at(Dual4::variable(0, 0));
   EXPECT_EQ(exact.a, at(0.0));
@@ -369,17 +372,17 @@ TEST(FourPpaClearance, VoxelsEqualThePlainLoop) {
   for (int i = 0; i < 40; ++i) {
     const Case c = i % 2 ? random_case(uniform) : Case{with(exotics()[i / 2 % 4].changes), exotics()[i / 2 % 4].least};
     const double y = i % 3 == 2 ? c.p[kL0] * uniform(0.2, 0.8) : c.p[kL0] / 2;
-    const SurveyPlan plan = voxels(clearance(c.least), {13, 16, 18}, {HeldCoordinate::Kind::value, y});
+    const SurveyPlan plan = voxels(clearance(c.least), {13, 16, 18}, at_y(y));
     const auto g = geometry(std::span<const double>(c.p));
     const auto l = limits(g, plan.limits);
-    const VoxelGrid grid(plan.cells, default_box(g));
+    const VoxelGrid grid(plan.voxels()->cells, default_box(g));
     const VoxelMap plain = test_every_cell(grid, [&](double x, double z, double theta) {
       const auto [s, co] = sincos(theta);
       return feasible(g, l, x, y, z, s, co);
     });
     Survey<double> expected;
     summarise(grid, plain, expected);
-    const VoxelMap map = four_ppa().voxel_map(c.p, plan);
+    const VoxelMap map = voxel_map(four_ppa(), c.p, plan);
     Demand demand;
     demand.conditioning = true;
     const auto found = survey(c.p, plan, demand);
@@ -405,8 +408,7 @@ TEST(FourPpaClearance, SlidersAloneAreABoundOfTheirSpacing) {
   for (const double least : {0.0, 0.02}) {
     LimitSpec equal = no_limits_of_four_ppa();
     equal.given[kHMin] = 0.03 + 0.08 / 2 + least / 2;
-    for (const HeldCoordinate held :
-         {HeldCoordinate{}, {HeldCoordinate::Kind::value, 0.4}, {HeldCoordinate::Kind::integrated, 0}}) {
+    for (const HeldCoordinate& held : {in_the_middle(), at_y(0.4), over_y()}) {
       const auto found = survey(nominal(), columns(clearance(least), held), demand);
       const auto expected = survey(nominal(), columns(equal, held), demand);
       EXPECT_EQ(found.volume, expected.volume);
@@ -434,7 +436,7 @@ TEST(FourPpaClearance, ALargerClearanceNeverLeavesMore) {
   for (const Exotic& e : exotics()) {
     double before = survey(with(e.changes), columns(no_limits_of_four_ppa())).volume;
     for (const double share : {0.0, 0.8, 1.0, 1.1, 10.0}) {
-      const auto found = survey(with(e.changes), columns(clearance(share * e.least), {}, 1e-2));
+      const auto found = survey(with(e.changes), columns(clearance(share * e.least), in_the_middle(), 1e-2));
       EXPECT_LE(found.volume, before * (1 + 1e-3)) << share;
       before = found.volume;
     }
@@ -450,7 +452,7 @@ TEST(FourPpaClearance, ColumnsAgreeWithFineVoxels) {
     auto l = limits(g, clearance(e.least));
     ASSERT_TRUE(take_clearance(g, l)) << e.least;
     for (const double y : {p[kL0] / 2, 0.45}) {
-      const HeldCoordinate held{HeldCoordinate::Kind::value, y};
+      const HeldCoordinate held = at_y(y);
       LimitSpec folded = no_limits_of_four_ppa();
       folded.given[kHMin] = l.h_min;
       const double uncut = survey(p, columns(folded, held)).volume;
@@ -466,17 +468,17 @@ TEST(FourPpaClearance, ColumnsAgreeWithFineVoxels) {
 TEST(FourPpaClearance, TheErrorIsEstimatedHonestly) {
   for (const Exotic& e : {exotics()[1], exotics()[2]}) {
     const auto p = with(e.changes);
-    const auto best = survey(p, columns(clearance(e.least), {}, kFinestClearTolerance));
+    const auto best = survey(p, columns(clearance(e.least), in_the_middle(), kFinestClearTolerance));
     EXPECT_LE(best.error, 2 * kFinestClearTolerance);
     for (const double tolerance : {1e-2, 1e-3}) {
-      const auto rough = survey(p, columns(clearance(e.least), {}, tolerance));
+      const auto rough = survey(p, columns(clearance(e.least), in_the_middle(), tolerance));
       EXPECT_LE(std::fabs(rough.volume / best.volume - 1), rough.error + best.error);
       EXPECT_LT(rough.columns, best.columns);
     }
-    const auto finer = survey(p, columns(clearance(e.least), {}, 1e-9));
+    const auto finer = survey(p, columns(clearance(e.least), in_the_middle(), 1e-9));
     EXPECT_EQ(finer.volume, best.volume) << "a finer tolerance is not aimed at";
     SurveyPlan nodes = columns(clearance(e.least));
-    nodes.nodes = {40, 40};
+    column_options(nodes).nodes = {40, 40};
     const auto fixed = survey(p, nodes);
     EXPECT_NEAR(fixed.volume / best.volume, 1, 2e-3);
     EXPECT_EQ(fixed.error, 0);
@@ -486,18 +488,16 @@ TEST(FourPpaClearance, TheErrorIsEstimatedHonestly) {
 TEST(FourPpaClearance, IntegratedOverYEqualsTheSumOverPlanes) {
   const Exotic e = exotics()[2];
   const auto p = with(e.changes);
-  const HeldCoordinate over_y{HeldCoordinate::Kind::integrated, 0};
-  const auto found = survey(p, columns(clearance(e.least), over_y, 1e-2));
+  const auto found = survey(p, columns(clearance(e.least), over_y(), 1e-2));
   constexpr int kPlanes = 100;
   double sum = 0;
   for (int i = 0; i < kPlanes; ++i) {
-    SurveyPlan plane = columns(clearance(e.least), {HeldCoordinate::Kind::value, p[kL0] * (i + 0.5) / kPlanes});
-    plane.nodes = {5, 5};
+    SurveyPlan plane = columns(clearance(e.least), at_y(p[kL0] * (i + 0.5) / kPlanes));
+    column_options(plane).nodes = {5, 5};
     sum += survey(p, plane).volume;
   }
   EXPECT_NEAR(found.volume, sum * p[kL0] / kPlanes, 0.01 * found.volume);
-  SurveyPlan cells = voxels(clearance(e.least), {40, 40, 60}, over_y);
-  cells.held_cells = 40;
+  const SurveyPlan cells = voxels(clearance(e.least), {40, 40, 60}, over_y(40));
   EXPECT_NEAR(survey(p, cells).volume, found.volume, 0.02 * found.volume);
   // where the test never cuts, it is the quadrature of closed-form areas
   const auto wide = with({{kA, 0.3}, {kB, 0.305}, {kD, 0.3}});
@@ -506,8 +506,8 @@ TEST(FourPpaClearance, IntegratedOverYEqualsTheSumOverPlanes) {
   ASSERT_TRUE(take_clearance(g, l));
   LimitSpec equal = no_limits_of_four_ppa();
   equal.given[kHMin] = l.h_min;
-  EXPECT_NEAR(survey(wide, columns(clearance(0.005), over_y)).volume / survey(wide, columns(equal, over_y)).volume, 1,
-              1e-4);
+  EXPECT_NEAR(survey(wide, columns(clearance(0.005), over_y())).volume / survey(wide, columns(equal, over_y())).volume,
+              1, 1e-4);
 }
 
 TEST(FourPpaClearance, ConditioningIsThatOfTheClearPoses) {
@@ -515,7 +515,7 @@ TEST(FourPpaClearance, ConditioningIsThatOfTheClearPoses) {
   demand.conditioning = true;
   for (const Exotic& e : {exotics()[0], exotics()[1]}) {
     const auto p = with(e.changes);
-    const auto exact = survey(p, columns(clearance(e.least), {}, 1e-2), demand);
+    const auto exact = survey(p, columns(clearance(e.least), in_the_middle(), 1e-2), demand);
     double sum = 0;
     for (const double w : exact.weight) sum += w;
     EXPECT_NEAR(sum, exact.volume, 0.04 * exact.volume);  // kinks that no node knows of
@@ -528,9 +528,8 @@ TEST(FourPpaClearance, NothingIsLeftWhereAPairIsTooNearAtEveryPose) {
   Demand demand;
   demand.conditioning = true;
   for (const double least : {0.05, 0.19, 100.0})
-    for (const HeldCoordinate held : {HeldCoordinate{}, {HeldCoordinate::Kind::integrated, 0}}) {
-      SurveyPlan cells = voxels(clearance(least), {10, 10, 10}, held);
-      cells.held_cells = 10;
+    for (const HeldCoordinate& held : {in_the_middle(), over_y(10)}) {
+      const SurveyPlan cells = voxels(clearance(least), {10, 10, 10}, held);
       for (const SurveyPlan& plan : {columns(clearance(least), held), cells}) {
         const auto empty = survey(nominal(), plan, demand);
         EXPECT_EQ(empty.volume, 0);
@@ -542,16 +541,13 @@ TEST(FourPpaClearance, NothingIsLeftWhereAPairIsTooNearAtEveryPose) {
 }
 
 TEST(FourPpaClearance, HasNoDerivativesAndSaysWhy) {
-  const auto limited = four_ppa().prepare(columns(clearance(0.01)), {});
-  EXPECT_EQ(limited->no_derivatives(),
+  const auto limited = prepare_survey(four_ppa(), columns(clearance(0.01)), {});
+  EXPECT_EQ(limited->slopes(), nullptr);
+  EXPECT_EQ(limited->why_no_slopes(),
             "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
             "such surveys have no derivatives; take an optimiser without gradients, or keep the sliders apart by "
             "h_min");
-  const auto p = nominal();
-  const std::vector<Dual4> duals(p.begin(), p.end());
-  Survey<Dual4> survey;
-  EXPECT_THROW(limited->survey(duals, survey), std::logic_error);
-  EXPECT_EQ(four_ppa().prepare(columns(no_limits_of_four_ppa()), {})->no_derivatives(), "");
+  EXPECT_NE(prepare_survey(four_ppa(), columns(no_limits_of_four_ppa()), {})->slopes(), nullptr);
 }
 
 }  // namespace

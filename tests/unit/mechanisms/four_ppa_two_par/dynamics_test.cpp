@@ -79,10 +79,10 @@ double potential(const std::vector<double>& p, const Vector4& X, int mode) {
   return sum;
 }
 
-PoseDynamics<double> dynamics(const std::vector<double>& p, const Vector4& X, const Vector4& V, int mode) {
-  const MotionState<double> state{{X[0], X[1], X[2], X[3]}, V};
-  PoseDynamics<double> d;
-  four_ppa().dynamics(std::span<const double>(p), kModes[mode], {&state, 1}, {&d, 1});
+pkm::PoseDynamics<double> dynamics(const std::vector<double>& p, const Vector4& X, const Vector4& V, int mode) {
+  const pkm::MotionState<double> state{X, V};
+  pkm::PoseDynamics<double> d;
+  four_ppa().dynamics()->equations(std::span<const double>(p), kModes[mode], {&state, 1}, {&d, 1});
   return d;
 }
 
@@ -95,7 +95,7 @@ struct Drawn {
 
 bool regular(const Geometry<double>& g, const Vector4& X, int mode) {
   const auto branch = [&](int bit) { return mode & bit ? Branch::upper : Branch::lower; };
-  const auto limb = inverse(g, Pose<double>{X[0], X[1], X[2], X[3]}, {branch(2), branch(1)});
+  const auto limb = inverse(g, SchoenfliesPose<double>{X[0], X[1], X[2], X[3]}, {branch(2), branch(1)});
   bool good = limb.assembles;
   for (std::size_t j = 0; j < 2 && good; ++j)
     good = limb.sigma[j] > 0.2 * g.l_d && limb.h[j] > 0.2 * g.l_u && std::fabs(limb.z_c[j]) > 0.1 * g.l_u;
@@ -148,7 +148,7 @@ TEST(FourPpaDynamics, JointSpeedsAndAccelerations) {
   for (const Drawn& s : random_states(200, 3)) {
     const auto here = dynamics(s.p, s.X, s.V, s.mode), after = dynamics(s.p, s.X + s.V * kStep, s.V, s.mode),
                before = dynamics(s.p, s.X - s.V * kStep, s.V, s.mode);
-    const Vector4 speed = here.J * s.V, rate = (after.J - before.J) * s.V * (1 / (2 * kStep));
+    const auto speed = here.J * s.V, rate = (after.J - before.J) * s.V * (1 / (2 * kStep));
     const PoseReport report =
         four_ppa().inspect(s.p, {s.X[0], s.X[1], s.X[2], s.X[3]}, kModes[s.mode], no_limits(four_ppa().info()));
     for (std::size_t i = 0; i < 4; ++i) {
@@ -156,7 +156,7 @@ TEST(FourPpaDynamics, JointSpeedsAndAccelerations) {
       EXPECT_NEAR(speed[i], (after.q[i] - before.q[i]) / (2 * kStep), 1e-7 * (1 + std::fabs(speed[i])));
       EXPECT_NEAR(here.J_rate_X[i], rate[i], 1e-6 * (1 + std::fabs(rate[i])));
       for (std::size_t c = 0; c < 4; ++c) {
-        const double published = (*report.J)(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c));
+        const double published = (*report.J)(i, c);
         EXPECT_NEAR(here.J(i, c), published, 1e-11 * (1 + std::fabs(published)));
       }
     }
@@ -176,19 +176,20 @@ TEST(FourPpaDynamics, PowerOfAllForcesIsTheRateOfEnergy) {
       return kinetic_energy(dynamics(s.p, X, V, s.mode), V) + potential(s.p, X, s.mode);
     };
     const auto d = dynamics(s.p, s.X, s.V, s.mode);
-    const Vector4 tau = drive_forces(d, A, wrench);
+    const AxisVector<double> tau = drive_forces(d, A, wrench);
     const double by_drives = dot(tau, d.J * s.V), by_wrench = dot(wrench, d.J_wrench * s.V);
     EXPECT_NEAR(by_drives + by_wrench, (energy(kStep) - energy(-kStep)) / (2 * kStep),
                 1e-6 * (10 + std::fabs(by_drives)));
-    const Vector4 back = acceleration(d, tau, wrench);
+    const AxisVector<double> back = acceleration(d, tau, wrench);
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(back[k], A[k], 1e-8);
   }
 }
 
 TEST(FourPpaDynamics, NoStateWhereThePoseDoesNotAssemble) {
   EXPECT_FALSE(dynamics(nominal(), {{0.4, 1.25, -3, 0}}, {}, 0).assembles);
-  EXPECT_THROW(four_ppa().dynamics(std::span<const double>(nominal()), "low", std::span<const MotionState<double>>(),
-                                   std::span<PoseDynamics<double>>()),
+  EXPECT_THROW(four_ppa().dynamics()->equations(std::span<const double>(nominal()), "low",
+                                                std::span<const pkm::MotionState<double>>(),
+                                                std::span<pkm::PoseDynamics<double>>()),
                std::invalid_argument);
 }
 
@@ -197,10 +198,9 @@ TEST(FourPpaDynamics, DerivativesByEveryParameterEqualDifferences) {
     for (std::size_t first = 0; first < s.p.size(); first += 4) {
       std::vector<Dual4> p(s.p.begin(), s.p.end());
       for (std::size_t k = 0; k < 4 && first + k < p.size(); ++k) p[first + k].v[static_cast<int>(k)] = 1;
-      MotionState<Dual4> state{{s.X[0], s.X[1], s.X[2], s.X[3]}, {}};
-      for (std::size_t k = 0; k < 4; ++k) state.velocity[k] = s.V[k];
-      PoseDynamics<Dual4> exact;
-      four_ppa().dynamics(std::span<const Dual4>(p), kModes[s.mode], {&state, 1}, {&exact, 1});
+      const pkm::MotionState<Dual4> state{s.X, s.V};
+      pkm::PoseDynamics<Dual4> exact;
+      four_ppa().dynamics()->equations(std::span<const Dual4>(p), kModes[s.mode], {&state, 1}, {&exact, 1});
       for (std::size_t k = 0; k < 4 && first + k < p.size(); ++k) {
         const double step = 1e-6;
         auto more = s.p, less = s.p;
@@ -212,7 +212,7 @@ TEST(FourPpaDynamics, DerivativesByEveryParameterEqualDifferences) {
           EXPECT_NEAR(slope, (high - low) / (2 * step), 1e-5 * (1 + std::fabs(slope) + std::fabs(found.a)))
               << four_ppa().info().parameters[first + k].name;
         };
-        for (std::size_t i = 0; i < 16; ++i) expect(exact.M_X.m[i], after.M_X.m[i], before.M_X.m[i]);
+        for (std::size_t i = 0; i < 16; ++i) expect(exact.M_X[i], after.M_X[i], before.M_X[i]);
         for (std::size_t i = 0; i < 4; ++i) {
           expect(exact.h_X[i], after.h_X[i], before.h_X[i]);
           expect(exact.G_X[i], after.G_X[i], before.G_X[i]);
@@ -234,7 +234,7 @@ TEST(FourPpaDynamics, ScalingLaws) {
     const Vector4 X = {{2 * s.X[0], 2 * s.X[1], 2 * s.X[2], s.X[3]}};
     const auto M_heavy = joint_inertia(dynamics(heavy, s.X, s.V, s.mode)),
                M_large = joint_inertia(dynamics(large, X, s.V, s.mode));
-    const Vector4 index = coupling_indices(M), index_large = coupling_indices(M_large);
+    const AxisVector<double> index = coupling_indices(M), index_large = coupling_indices(M_large);
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = 0; j < 4; ++j) {
         EXPECT_NEAR(M_heavy(i, j), 3 * M(i, j), 1e-11 * M(i, i));
@@ -261,9 +261,9 @@ TEST(FourPpaDynamics, MassesOfTheNominalDesign) {
               4 * b.slider + 8 * b.upper_bar + 4 * b.lower_bar + 2 * (b.upper_connector + b.lower_connector) +
                   b.platform + b.payload,
               1e-12);
-  EXPECT_EQ(four_ppa().info().mass_models, std::vector<std::string>{"geometry"});
-  EXPECT_EQ(four_ppa().with_masses("table"), nullptr);
-  EXPECT_EQ(four_ppa().with_masses("geometry")->info().parameters.size(), std::size_t{kAllParameters});
+  EXPECT_EQ(four_ppa().dynamics()->mass_models(), std::vector<std::string>{"geometry"});
+  EXPECT_EQ(four_ppa().dynamics()->with_masses("table"), nullptr);
+  EXPECT_EQ(four_ppa().dynamics()->with_masses("geometry")->info().parameters.size(), std::size_t{kAllParameters});
 }
 
 TEST(FourPpaDynamics, LinksWithoutMassAreRefused) {
@@ -296,7 +296,8 @@ TEST(FourPpaCoupling, KernelEqualsTheEquationsOfMotion) {
   for (const Drawn& s : random_states(800, 7)) {
     if (s.mode != 0) continue;
     const auto g = geometry(std::span<const double>(s.p));
-    const auto limb = inverse(g, Pose<double>{s.X[0], s.X[1], s.X[2], s.X[3]}, {Branch::lower, Branch::lower});
+    const auto limb =
+        inverse(g, SchoenfliesPose<double>{s.X[0], s.X[1], s.X[2], s.X[3]}, {Branch::lower, Branch::lower});
     const auto [sine, cosine] = sincos(s.X[3]);
     const auto fast = four_ppa_two_par::joint_inertia(g, masses(std::span<const double>(s.p)), sine, cosine, limb.x,
                                                       limb.sigma, limb.z_c);
@@ -337,7 +338,7 @@ LimitSpec away() {
 const Demand kAll{.conditioning = true, .poses = true, .dci = true, .inertia_condition = true};
 
 void expect_lengths(const Survey<double>& s) {
-  for (const auto& joint : s.dci) EXPECT_EQ(joint.size(), s.weight.size());
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.dci[i].size(), s.weight.size());
   EXPECT_EQ(s.inertia_condition.size(), s.weight.size());
   EXPECT_EQ(s.conditioning.size(), s.weight.size());
   EXPECT_EQ(s.pose.size(), s.weight.size());
@@ -347,9 +348,9 @@ void expect_lengths(const Survey<double>& s) {
 void expect_poses(const std::vector<double>& p, const Survey<double>& s, const LimitSpec& limits) {
   ASSERT_GT(s.pose.size(), 100u);
   for (std::size_t k = 0; k < s.pose.size(); k += 17) {
-    const Pose<double>& at = s.pose[k];
-    const auto M = joint_inertia(dynamics(p, {{at.x, at.y, at.z, at.angle}}, {}, 0));
-    const Vector4 index = coupling_indices(M);
+    const pkm::Pose<double>& at = s.pose[k];
+    const auto M = joint_inertia(dynamics(p, fixed<4>(at), {}, 0));
+    const AxisVector<double> index = coupling_indices(M);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(s.dci[i][k], index[i], 1e-8);
     EXPECT_NEAR(s.inertia_condition[k], inertia_condition(M), 1e-8);
     const PoseReport report = four_ppa().inspect(p, at, "lower,lower", limits);
@@ -370,7 +371,7 @@ void expect_alike(const Survey<double>& exact, const Survey<double>& cells, doub
 TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
   const auto p = lopsided();
   for (const double y : {1.25, 0.55, 1.9}) {  // both limbs free or alike; one or the other short of stroke
-    const HeldCoordinate held{HeldCoordinate::Kind::value, y};
+    const HeldCoordinate held = at_y(y);
     const auto exact = survey(p, columns(away(), held), kAll);
     expect_alike(exact, survey(p, voxels(away(), {50, 56, 60}, held), kAll), 2e-3);
     double sum = 0;
@@ -385,10 +386,8 @@ TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
 TEST(FourPpaCoupling, IntegratedOverY) {
   auto p = lopsided();
   p[kL0] = 1.4;
-  const HeldCoordinate held{HeldCoordinate::Kind::integrated, 0};
-  SurveyPlan cells = voxels(away(), {24, 28, 30}, held);
-  cells.held_cells = 24;
-  const auto exact = survey(p, columns(away(), held, 1e-8), kAll);
+  const SurveyPlan cells = voxels(away(), {24, 28, 30}, over_y(24));
+  const auto exact = survey(p, columns(away(), over_y(), 1e-8), kAll);
   expect_alike(exact, survey(p, cells, kAll), 4e-3);
   double sum = 0;
   for (const double w : exact.weight) sum += w;
@@ -399,7 +398,7 @@ TEST(FourPpaCoupling, ASampleIsWhatThePoseHas) {
   const auto p = lopsided();
   const auto cells = voxels(away(), {9, 10, 11});
   const auto found = survey(p, cells, kAll);
-  const VoxelMap map = four_ppa().voxel_map(p, cells);
+  const VoxelMap map = voxel_map(four_ppa(), p, cells);
   std::size_t sample = 0;
   for (std::int64_t k = 0; k < 11; ++k)
     for (std::int64_t i = 0; i < 9; ++i)
@@ -409,11 +408,11 @@ TEST(FourPpaCoupling, ASampleIsWhatThePoseHas) {
           return map.lower[axis] + (static_cast<double>(index) + 0.5) * (map.upper[axis] - map.lower[axis]) / count;
         };
         const auto M = joint_inertia(dynamics(p, {{centre(0, i, 9), 1.25, centre(1, j, 10), centre(2, k, 11)}}, {}, 0));
-        const Vector4 index = coupling_indices(M);
+        const AxisVector<double> index = coupling_indices(M);
         ASSERT_LT(sample, found.weight.size());
         for (std::size_t joint = 0; joint < 4; ++joint) EXPECT_NEAR(found.dci[joint][sample], index[joint], 1e-9);
         EXPECT_NEAR(found.inertia_condition[sample], inertia_condition(M), 1e-9);
-        EXPECT_NEAR(found.pose[sample].angle, centre(2, k, 11), 1e-12);
+        EXPECT_NEAR(found.pose[sample][3], centre(2, k, 11), 1e-12);
         ++sample;
       }
   EXPECT_EQ(sample, found.weight.size());
@@ -435,9 +434,9 @@ TEST(FourPpaCoupling, OnlyWhatIsDemandedAndTheSameConditioning) {
 
 TEST(FourPpaCoupling, AnotherModeIsRefused) {
   const auto plan = columns(away());
-  EXPECT_NO_THROW(four_ppa().prepare(plan, {.dci = true, .mode = "lower,lower"}));
+  EXPECT_NO_THROW(prepare_survey(four_ppa(), plan, {.dci = true, .mode = "lower,lower"}));
   try {
-    four_ppa().prepare(plan, {.inertia_condition = true, .mode = "upper,upper"});
+    prepare_survey(four_ppa(), plan, {.inertia_condition = true, .mode = "upper,upper"});
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
@@ -454,9 +453,9 @@ TEST(FourPpaCoupling, DerivativesOfMeansEqualDifferences) {
     std::vector<double> direction;
     for (double& value : design) value *= uniform(0.9, 1.1);
     for (const double value : design) direction.push_back(value * uniform(-1, 1));
-    SurveyPlan plan = columns(away(), {HeldCoordinate::Kind::value, k % 2 ? 0.6 : design[kL0] / 2});
-    plan.nodes = {3, 3};
-    const auto surveyor = four_ppa().prepare(plan, kAll);
+    SurveyPlan plan = columns(away(), at_y(k % 2 ? 0.6 : design[kL0] / 2));
+    column_options(plan).nodes = {3, 3};
+    const auto surveyor = prepare_survey(four_ppa(), plan, kAll);
     const auto means = [&](double t) {
       std::vector<Dual4> p;
       for (std::size_t i = 0; i < design.size(); ++i) {
@@ -464,9 +463,9 @@ TEST(FourPpaCoupling, DerivativesOfMeansEqualDifferences) {
         p.back().v[0] = direction[i];
       }
       Survey<Dual4> found;
-      surveyor->survey(p, found);
+      survey_once<Dual4>(*surveyor, p, found);
       std::vector<Dual4> all;
-      for (const auto& joint : found.dci) all.push_back(weighted_mean(found.weight, joint));
+      for (std::size_t i = 0; i < 4; ++i) all.push_back(weighted_mean(found.weight, found.dci[i]));
       all.push_back(weighted_mean(found.weight, found.inertia_condition));
       return all;
     };

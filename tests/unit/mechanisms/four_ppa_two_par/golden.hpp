@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/mechanisms/all.hpp"
+#include "engine/survey/survey_set.hpp"
 
 namespace pkm::testing {
 
@@ -53,27 +54,29 @@ inline LimitSpec limits_of(const nlohmann::json& entry) {
   return spec;
 }
 
-inline SurveyPlan columns(const LimitSpec& limits, HeldCoordinate held = {}, double tolerance = 1e-10) {
-  SurveyPlan plan;
-  plan.method = Method::columns;
-  plan.limits = limits;
-  plan.held = held;
-  plan.tolerance = tolerance;
-  return plan;
+// How y is held: in the middle, at a value, or integrated over (voxels: by so many cells).
+inline HeldCoordinate in_the_middle() { return {.coordinate = 1}; }
+inline HeldCoordinate at_y(double y) { return {.coordinate = 1, .kind = HeldCoordinate::Kind::value, .value = y}; }
+inline HeldCoordinate over_y(std::int64_t cells = 0) {
+  return {.coordinate = 1, .kind = HeldCoordinate::Kind::integrated, .cells = cells};
 }
 
-inline SurveyPlan voxels(const LimitSpec& limits, std::array<std::int64_t, 3> cells, HeldCoordinate held = {}) {
-  SurveyPlan plan;
-  plan.method = Method::voxels;
-  plan.limits = limits;
-  plan.held = held;
-  plan.cells = cells;
-  return plan;
+inline SurveyPlan columns(const LimitSpec& limits, const HeldCoordinate& held = in_the_middle(),
+                          double tolerance = 1e-10) {
+  return {.method = ColumnOptions{.tolerance = tolerance}, .held = {held}, .limits = limits};
 }
+
+inline SurveyPlan voxels(const LimitSpec& limits, std::array<std::int64_t, 3> cells,
+                         const HeldCoordinate& held = in_the_middle()) {
+  return {.method = VoxelOptions{.cells = cells}, .held = {held}, .limits = limits};
+}
+
+inline ColumnOptions& column_options(SurveyPlan& plan) { return std::get<ColumnOptions>(plan.method); }
+inline VoxelOptions& voxel_options(SurveyPlan& plan) { return std::get<VoxelOptions>(plan.method); }
 
 inline Survey<double> survey(const std::vector<double>& p, const SurveyPlan& plan, const Demand& demand = {}) {
   Survey<double> result;
-  four_ppa().prepare(plan, demand)->survey(p, result);
+  survey_once<double>(*prepare_survey(four_ppa(), plan, demand), p, result);
   return result;
 }
 

@@ -13,9 +13,9 @@ namespace {
 
 using namespace four_ppa_two_par;
 
-Pose<double> pose_of(const nlohmann::json& p) { return {p[0], p[1], p[2], p[3]}; }
+SchoenfliesPose<double> pose_of(const nlohmann::json& p) { return {p[0], p[1], p[2], p[3]}; }
 
-double distance(const Pose<double>& a, const Pose<double>& b) {
+double distance(const SchoenfliesPose<double>& a, const SchoenfliesPose<double>& b) {
   return std::max({std::fabs(a.x - b.x), std::fabs(a.y - b.y), std::fabs(a.z - b.z), std::fabs(a.angle - b.angle)});
 }
 
@@ -47,14 +47,14 @@ TEST(FourPpaGolden, KinematicsOfEveryCase) {
     EXPECT_NEAR(*r.det_G, entry["det_G"].get<double>(), kRoundoff);
 
     const auto q = entry["q"];
-    const auto modes = four_ppa().forward(p, {q[0], q[1], q[2], q[3]});
+    const auto modes = four_ppa().forward()->assemblies(p, {q[0], q[1], q[2], q[3]});
     std::size_t usual = 0;
     for (const auto& m : modes) usual += m.usual;
     EXPECT_EQ(usual, entry["fk_all"].size());
     for (const auto& expected : entry["fk_all"]) {
       double nearest = 1;
       for (const auto& m : modes)
-        if (m.usual) nearest = std::min(nearest, distance(m.pose, pose_of(expected)));
+        if (m.usual) nearest = std::min(nearest, distance(schoenflies(m.pose), pose_of(expected)));
       EXPECT_LT(nearest, 1e-12) << expected;
     }
   }
@@ -68,7 +68,7 @@ TEST(FourPpaGolden, VolumesAndGradientsOfEveryCase) {
     const auto p = design_of(entry);
     const LimitSpec limits_spec = limits_of(entry);
     const double exact = entry["volume_exact"];
-    const auto found = survey(p, columns(limits_spec, {HeldCoordinate::Kind::value, entry["y"]}));
+    const auto found = survey(p, columns(limits_spec, at_y(entry["y"])));
     EXPECT_NEAR(found.volume / exact, 1, 1e-9);  // the golden values' own accuracy
     EXPECT_LE(found.error, 1e-10);
 
@@ -98,7 +98,7 @@ TEST(FourPpaGolden, VoxelCountsOfEveryCase) {
 
 TEST(FourPpaGolden, VolumesOffTheMiddlePlane) {
   for (const auto& entry : golden()["off_plane"]) {
-    const auto found = survey(design_of(entry), columns(limits_of(entry), {HeldCoordinate::Kind::value, entry["y"]}));
+    const auto found = survey(design_of(entry), columns(limits_of(entry), at_y(entry["y"])));
     EXPECT_NEAR(found.volume / entry["volume"].get<double>(), 1, entry["tolerance"].get<double>());
   }
 }
@@ -107,12 +107,12 @@ TEST(FourPpaPaper, TwoDesignsWithoutLimits) {
   const auto none = no_limits(four_ppa().info());
   auto p = nominal();
   EXPECT_NEAR(survey(p, columns(none)).volume, 0.550157374606, 1e-12);
-  EXPECT_NEAR(survey(p, columns(none)).volume / four_ppa().size(p), 0.1903484, 5e-8);
+  EXPECT_NEAR(survey(p, columns(none)).volume / four_ppa().size()->of(p), 0.1903484, 5e-8);
   EXPECT_EQ(survey(p, voxels(none, {32, 34, 60})).feasible_cells, 12412);
   EXPECT_NEAR(survey(p, voxels(none, {32, 34, 60})).volume, 0.549540, 5e-7);
   p[kA] = 0.3, p[kB] = 1.0, p[kLu] = 0.7, p[kLd] = 0.7;
   EXPECT_NEAR(survey(p, columns(none)).volume, 0.851292176055, 1e-12);
-  EXPECT_NEAR(survey(p, columns(none)).volume / four_ppa().size(p), 0.1935533683, 5e-11);
+  EXPECT_NEAR(survey(p, columns(none)).volume / four_ppa().size()->of(p), 0.1935533683, 5e-11);
   EXPECT_EQ(survey(p, voxels(none, {32, 34, 60})).feasible_cells, 12564);
 }
 
@@ -120,7 +120,7 @@ TEST(FourPpaPaper, TwoDesignsWithoutLimits) {
 // in our copy, which contradicts its own q2: q1 + q2 = 2 y_1 = 2.8268 gives 0.9035.
 TEST(FourPpaPaper, TableTwo) {
   struct Row {
-    Pose<double> pose;
+    SchoenfliesPose<double> pose;
     const char* mode;
     std::array<double, 4> q;
   };
@@ -146,8 +146,8 @@ TEST(FourPpaPaper, TableTwo) {
 // Table 3: forward kinematics from the printed q (4 digits), so poses agree to the printed digits only.
 TEST(FourPpaPaper, TableThree) {
   struct Row {
-    std::array<double, 4> q;
-    std::vector<Pose<double>> poses;
+    AxisVector<double> q;
+    std::vector<SchoenfliesPose<double>> poses;
   };
   const Row rows[] = {
       {{0.9355, 1.5645, 0.9355, 1.5645},
@@ -166,8 +166,8 @@ TEST(FourPpaPaper, TableThree) {
   for (const Row& row : rows)
     for (const auto& expected : row.poses) {
       double nearest = 1;
-      for (const auto& m : four_ppa().forward(nominal(), row.q))
-        if (m.usual) nearest = std::min(nearest, distance(m.pose, expected));
+      for (const auto& m : four_ppa().forward()->assemblies(nominal(), row.q))
+        if (m.usual) nearest = std::min(nearest, distance(schoenflies(m.pose), expected));
       EXPECT_LT(nearest, 1.5e-4) << expected.x << " " << expected.z << " " << expected.angle;
     }
 }

@@ -96,8 +96,9 @@ void compare(unsigned designs, HeldCoordinate::Kind kind, std::array<int, 2> nod
   for (unsigned k = 0; compared < designs && k < 4 * designs; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
     const Drawn drawn = draw(k);
-    SurveyPlan plan = columns(drawn.limits, {kind, drawn.plane * drawn.design[kL0]}, tolerance);
-    plan.nodes = nodes;
+    const HeldCoordinate held{.coordinate = 1, .kind = kind, .value = drawn.plane * drawn.design[kL0]};
+    SurveyPlan plan = columns(drawn.limits, held, tolerance);
+    column_options(plan).nodes = nodes;
     if (!(survey(drawn.design, plan).volume > 0)) continue;
     comparison.compare(test::everything(machine(), plan, volume_only ? test::Of::volume : test::Of::kinematics),
                        drawn.design, drawn.direction);
@@ -127,8 +128,7 @@ TEST(FourPpaSlopes, SamplesIntegratedOverY) {
   for (unsigned k = 0; compared < 3 && k < 10; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
     const Drawn drawn = draw(k);
-    const auto surveyor =
-        four_ppa().prepare(columns(drawn.limits, {HeldCoordinate::Kind::integrated, 0}, 1e-8), demand);
+    const auto surveyor = prepare_survey(four_ppa(), columns(drawn.limits, over_y(), 1e-8), demand);
     const auto sums = [&](double t) {
       std::vector<Dual4> p;
       for (std::size_t i = 0; i < drawn.design.size(); ++i) {
@@ -137,7 +137,7 @@ TEST(FourPpaSlopes, SamplesIntegratedOverY) {
         p.back().v[0] = step;
       }
       Survey<Dual4> survey;
-      surveyor->survey(p, survey);
+      survey_once<Dual4>(*surveyor, p, survey);
       Dual4 total;
       for (const Dual4& weight : survey.weight) total += weight;
       return std::array{survey.volume, total, weighted_mean(survey.weight, survey.conditioning)};

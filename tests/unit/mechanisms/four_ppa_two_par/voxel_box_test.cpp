@@ -11,46 +11,40 @@
 namespace pkm::testing {
 namespace {
 
-Survey<double> surveyed(const SurveyPlan& plan) {
-  Survey<double> survey;
-  four_ppa().prepare(plan, {})->survey(nominal(), survey);
-  return survey;
-}
+Survey<double> surveyed(const SurveyPlan& plan) { return survey(nominal(), plan); }
 
 TEST(FourPpaVoxelBox, PosesBeyondAQuarterTurnDoNotCount) {
-  SurveyPlan quarter = voxels(no_limits(four_ppa().info()), {16, 17, 30}, {}), half = quarter;
-  quarter.box = Box{{{0, 0.8}, {-1.3, -0.15}, {-kPi / 2, kPi / 2}}};
-  half.box = Box{{{0, 0.8}, {-1.3, -0.15}, {-kPi, kPi}}};
-  half.cells[2] = 60;
+  SurveyPlan quarter = voxels(no_limits(four_ppa().info()), {16, 17, 30}), half = quarter;
+  voxel_options(quarter).box = Box{{{0, 0.8}, {-1.3, -0.15}, {-kPi / 2, kPi / 2}}};
+  voxel_options(half).box = Box{{{0, 0.8}, {-1.3, -0.15}, {-kPi, kPi}}};
+  voxel_options(half).cells[2] = 60;
   EXPECT_GT(surveyed(quarter).feasible_cells, 0);
   EXPECT_EQ(surveyed(half).feasible_cells, surveyed(quarter).feasible_cells);
-  half.box = Box{{{0, 0.8}, {-1.3, -0.15}, {kPi / 2 + 0.01, kPi}}};
+  voxel_options(half).box = Box{{{0, 0.8}, {-1.3, -0.15}, {kPi / 2 + 0.01, kPi}}};
   EXPECT_EQ(surveyed(half).feasible_cells, 0);
   std::int64_t in_map = 0;
-  for (const auto cell : four_ppa().voxel_map(nominal(), half).feasible) in_map += cell;
+  for (const auto cell : voxel_map(four_ppa(), nominal(), half).feasible) in_map += cell;
   EXPECT_EQ(in_map, 0);
 }
 
 TEST(FourPpaVoxelBox, ARowOfMoreCellsThan32BitsHold) {
-  SurveyPlan plan = voxels(no_limits(four_ppa().info()), {8, 8, 2}, {});
-  plan.box = Box{{{0.39, 0.41}, {-0.81, -0.80}, {-0.01, 0.01}}};  // inside the workspace
+  SurveyPlan plan = voxels(no_limits(four_ppa().info()), {8, 8, 2});
+  voxel_options(plan).box = Box{{{0.39, 0.41}, {-0.81, -0.80}, {-0.01, 0.01}}};  // inside the workspace
   ASSERT_EQ(surveyed(plan).feasible_cells, 128);
-  plan.cells = {4096, 4096, 2};
+  voxel_options(plan).cells = {4096, 4096, 2};
   EXPECT_EQ(surveyed(plan).feasible_cells, std::int64_t{1} << 25);
-  plan.cells = {65536, 65536, 2};
+  voxel_options(plan).cells = {65536, 65536, 2};
   const Survey<double> survey = surveyed(plan);
   EXPECT_EQ(survey.feasible_cells, std::int64_t{1} << 33);
   EXPECT_NEAR(survey.volume, 0.02 * 0.01 * 0.02, 1e-18);
 }
 
 TEST(FourPpaColumns, NodesDoNotIntegrateOverY) {
-  SurveyPlan plan;
-  plan.limits = no_limits(four_ppa().info());
-  plan.held.kind = HeldCoordinate::Kind::integrated;
-  EXPECT_NO_THROW(four_ppa().prepare(plan, {}));
-  plan.nodes = {12, 12};
+  SurveyPlan plan = columns(no_limits(four_ppa().info()), over_y());
+  EXPECT_NO_THROW(prepare_survey(four_ppa(), plan, {}));
+  column_options(plan).nodes = {12, 12};
   try {
-    four_ppa().prepare(plan, {});
+    prepare_survey(four_ppa(), plan, {});
     FAIL() << "accepted";
   } catch (const std::invalid_argument& refusal) {
     EXPECT_EQ(std::string(refusal.what()),

@@ -6,6 +6,7 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/columns.hpp"
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
 
@@ -55,11 +56,11 @@ double margin_at(const Case& c, double x, double z, double theta) {
 TEST(FourPpaVoxels, CountsFromIntervalsEqualThePlainLoop) {
   std::int64_t total = 0;
   for (const Case& c : random_cases(60, 1)) {
-    const SurveyPlan plan = voxels(c.limits, {13, 16, 18}, {HeldCoordinate::Kind::value, c.y});
-    const VoxelMap map = four_ppa().voxel_map(c.p, plan);
+    const SurveyPlan plan = voxels(c.limits, {13, 16, 18}, at_y(c.y));
+    const VoxelMap map = voxel_map(four_ppa(), c.p, plan);
     const auto g = geometry(std::span<const double>(c.p));
     const auto l = limits(g, c.limits);
-    const VoxelGrid grid(plan.cells, default_box(g));
+    const VoxelGrid grid(plan.voxels()->cells, default_box(g));
     const VoxelMap plain = test_every_cell(grid, [&](double x, double z, double theta) {
       const auto [s, co] = sincos(theta);
       return feasible(g, l, x, c.y, z, s, co);
@@ -85,7 +86,7 @@ TEST(FourPpaVoxels, SymmetryShortcutsCountTheSameCells) {
   for (const Case& c : random_cases(30, 2)) {
     for (const std::array<std::int64_t, 3>& cells : {std::array<std::int64_t, 3>{12, 15, 20}, {13, 15, 21}}) {
       const SurveyPlan plan = voxels(c.limits, cells);
-      const VoxelMap map = four_ppa().voxel_map(c.p, plan);
+      const VoxelMap map = voxel_map(four_ppa(), c.p, plan);
       const std::int64_t counted = std::count(map.feasible.begin(), map.feasible.end(), 1);
       EXPECT_EQ(survey(c.p, plan).feasible_cells, counted);
     }
@@ -111,11 +112,11 @@ TEST(FourPpaVoxels, PoseTestAgreesWithTheInspection) {
 TEST(FourPpaVoxels, GivenBoxAndItsTouch) {
   const auto none = no_limits(four_ppa().info());
   SurveyPlan plan = voxels(none, {30, 30, 30});
-  plan.box = Box{{{-0.2, 1.0}, {-1.5, 0.1}, {-1.7, 1.7}}};
+  voxel_options(plan).box = Box{{{-0.2, 1.0}, {-1.5, 0.1}, {-1.7, 1.7}}};
   const auto inside = survey(nominal(), plan);
   EXPECT_FALSE(inside.touches_box);
   EXPECT_NEAR(inside.volume / 0.550157374606, 1, 0.04);
-  plan.box = Box{{{0.3, 0.5}, {-1.5, 0.1}, {-1.7, 1.7}}};
+  voxel_options(plan).box = Box{{{0.3, 0.5}, {-1.5, 0.1}, {-1.7, 1.7}}};
   EXPECT_TRUE(survey(nominal(), plan).touches_box);
 }
 
@@ -167,7 +168,7 @@ TEST(FourPpaColumns, VolumeEqualsAFineMidpointSum) {
       sum += area(f, section(f, s, co));
     }
     const double expected = 2 * sum * last / kSteps;
-    const auto found = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::value, c.y}));
+    const auto found = survey(c.p, columns(c.limits, at_y(c.y)));
     EXPECT_NEAR(found.volume, expected, 3e-6 * (1 + expected));
   }
 }
@@ -199,7 +200,7 @@ TEST(FourPpaColumns, StrongLimitsTogetherLoseNothing) {
       sum += area(f, section(f, s, co));
     }
     const double expected = 2 * sum * last / kSteps;
-    const auto found = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::value, c.y}));
+    const auto found = survey(c.p, columns(c.limits, at_y(c.y)));
     EXPECT_NEAR(found.volume, expected, 1e-5);
     compared += expected > 1e-3;
   }
@@ -211,7 +212,7 @@ TEST(FourPpaColumns, StrongLimitsTogetherLoseNothing) {
 TEST(FourPpaColumns, NoDesignTakesLong) {
   int nearly_empty = 0;
   for (Case c : random_cases(1000, 12)) {
-    const HeldCoordinate held{HeldCoordinate::Kind::value, c.y};
+    const HeldCoordinate held = at_y(c.y);
     EXPECT_LE(survey(c.p, columns(c.limits, held)).columns, 1000);
     const auto g = geometry(std::span<const double>(c.p));
     ColumnScratch<double> scratch;
@@ -266,27 +267,26 @@ TEST(FourPpaColumns, OnTheMiddlePlaneBothLimbsHaveTheSameBits) {
 
 TEST(FourPpaColumns, ToleranceIsKept) {
   for (const Case& c : random_cases(300, 6)) {
-    const HeldCoordinate held{HeldCoordinate::Kind::value, c.y};
+    const HeldCoordinate held = at_y(c.y);
     const double best = survey(c.p, columns(c.limits, held, 1e-13)).volume;
     EXPECT_NEAR(survey(c.p, columns(c.limits, held, 1e-8)).volume, best, 1e-8 * best);
     EXPECT_NEAR(survey(c.p, columns(c.limits, held, 1e-4)).volume, best, 1e-4 * best);
   }
   for (Case& c : random_cases(60, 15)) {
-    const HeldCoordinate over_y{HeldCoordinate::Kind::integrated, 0};
     c.p[kL0] = std::fmin(c.p[kL0], 1.4 * c.p[kLu]);
-    const double best = survey(c.p, columns(c.limits, over_y, 1e-12)).volume;
-    EXPECT_NEAR(survey(c.p, columns(c.limits, over_y, 1e-8)).volume, best, 1e-8 * best);
+    const double best = survey(c.p, columns(c.limits, over_y(), 1e-12)).volume;
+    EXPECT_NEAR(survey(c.p, columns(c.limits, over_y(), 1e-8)).volume, best, 1e-8 * best);
   }
 }
 
 TEST(FourPpaColumns, MirroredPlaneAndScaling) {
   for (const Case& c : random_cases(40, 7)) {
-    const double v = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::value, c.y})).volume;
-    EXPECT_NEAR(survey(c.p, columns(c.limits, {HeldCoordinate::Kind::value, c.p[kL0] - c.y})).volume, v, 1e-9 * v);
+    const double v = survey(c.p, columns(c.limits, at_y(c.y))).volume;
+    EXPECT_NEAR(survey(c.p, columns(c.limits, at_y(c.p[kL0] - c.y))).volume, v, 1e-9 * v);
     Case big = c;
     for (auto& length : big.p) length *= 3;
     if (big.limits.given[kHMin]) *big.limits.given[kHMin] *= 3;
-    EXPECT_NEAR(survey(big.p, columns(big.limits, {HeldCoordinate::Kind::value, 3 * c.y})).volume, 9 * v, 1e-9 * v);
+    EXPECT_NEAR(survey(big.p, columns(big.limits, at_y(3 * c.y))).volume, 9 * v, 1e-9 * v);
   }
 }
 
@@ -295,9 +295,9 @@ TEST(FourPpaColumns, IntegratedOverYEqualsTheSumOverPlanes) {
     constexpr int kPlanes = 400;
     double sum = 0;
     for (int i = 0; i < kPlanes; ++i)
-      sum += survey(c.p, columns(c.limits, {HeldCoordinate::Kind::value, c.p[kL0] * (i + 0.5) / kPlanes}, 1e-7)).volume;
+      sum += survey(c.p, columns(c.limits, at_y(c.p[kL0] * (i + 0.5) / kPlanes), 1e-7)).volume;
     const double expected = sum * c.p[kL0] / kPlanes;
-    const auto found = survey(c.p, columns(c.limits, {HeldCoordinate::Kind::integrated, 0}, 1e-8));
+    const auto found = survey(c.p, columns(c.limits, over_y(), 1e-8));
     EXPECT_NEAR(found.volume, expected, 2e-4 * (expected + 1e-3));
   }
 }
@@ -327,9 +327,8 @@ TEST(FourPpaColumns, AreasOverYHaveNoKinkInsideAPiece) {
 TEST(FourPpaVoxels, IntegratedOverYConvergesToColumns) {
   const auto none = no_limits(four_ppa().info());
   auto p = nominal();
-  const double exact = survey(p, columns(none, {HeldCoordinate::Kind::integrated, 0})).volume;
-  SurveyPlan plan = voxels(none, {48, 48, 80}, {HeldCoordinate::Kind::integrated, 0});
-  plan.held_cells = 50;
+  const double exact = survey(p, columns(none, over_y())).volume;
+  const SurveyPlan plan = voxels(none, {48, 48, 80}, over_y(50));
   const auto found = survey(p, plan);
   EXPECT_NEAR(found.volume / exact, 1, 0.01);
   EXPECT_EQ(found.cells, 48 * 48 * 80 * 50);
@@ -337,7 +336,7 @@ TEST(FourPpaVoxels, IntegratedOverYConvergesToColumns) {
 
 TEST(FourPpaConditioning, SamplesAddUpAndVoxelsConvergeToThem) {
   for (const Case& c : random_cases(12, 9)) {
-    const HeldCoordinate held{HeldCoordinate::Kind::value, c.y};
+    const HeldCoordinate held = at_y(c.y);
     Demand demand;
     demand.conditioning = true;
     const auto exact = survey(c.p, columns(c.limits, held), demand);
@@ -360,7 +359,8 @@ TEST(FourPpaConditioning, KernelEqualsTheFullJacobian) {
   for (const Case& c : random_cases(60, 10)) {
     const auto g = geometry(std::span<const double>(c.p));
     for (int i = 0; i < 100; ++i) {
-      const Pose<double> pose{uniform(0, c.p[kB]), c.y, uniform(-(c.p[kLu] + c.p[kLd]), 0), uniform(-kPi / 2, kPi / 2)};
+      const SchoenfliesPose<double> pose{uniform(0, c.p[kB]), c.y, uniform(-(c.p[kLu] + c.p[kLd]), 0),
+                                         uniform(-kPi / 2, kPi / 2)};
       const PoseReport r = four_ppa().inspect(c.p, pose, "lower,lower", no_limits(four_ppa().info()));
       if (!r.feasible || !r.J) continue;
       const auto limb = inverse(g, pose, {Branch::lower, Branch::lower});

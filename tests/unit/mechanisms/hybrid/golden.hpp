@@ -51,7 +51,7 @@ inline std::vector<double> nominal() {
 
 inline Geometry<double> geometry_of(const std::vector<double>& p) { return geometry(std::span<const double>(p)); }
 
-inline Pose<double> pose_of(const nlohmann::json& x) { return {x[0], x[1], x[2], x[3]}; }
+inline SchoenfliesPose<double> pose_of(const nlohmann::json& x) { return {x[0], x[1], x[2], x[3]}; }
 
 inline WorkingMode mode_of(const nlohmann::json& wm) { return {wm[0], wm[1], wm[2]}; }
 
@@ -93,7 +93,7 @@ inline std::vector<double> random_design(Uniform& uniform) {
 }
 
 /// A pose whose limbs A and B reach, unless they are much longer or shorter than nominal; any rotation.
-inline Pose<double> random_pose(Uniform& uniform) {
+inline SchoenfliesPose<double> random_pose(Uniform& uniform) {
   return {uniform(-0.3, 0.3), uniform(-0.3, 0.3), uniform(-0.3, 0.3), uniform(-kPi, kPi)};
 }
 

@@ -17,7 +17,7 @@ constexpr double kRoundoff = 1e-12;
 struct Distance {
   double least = 1, product = 1;
 };
-Distance from_singularities(const Geometry<double>& g, const Pose<double>& pose, const Joints<double>& j) {
+Distance from_singularities(const Geometry<double>& g, const SchoenfliesPose<double>& pose, const Joints<double>& j) {
   const Transmission<double> t = transmission(g, pose.z, j);
   Distance d;
   for (const double measure : {t.t_xz, std::fabs(t.t_beta), t.t[0], t.t[1], t.t[2]}) {
@@ -27,8 +27,10 @@ Distance from_singularities(const Geometry<double>& g, const Pose<double>& pose,
   return d;
 }
 
+AxisVector<double> drives_of(const Joints<double>& j) { return {j.s[0], j.s[1], j.s[2], j.s[3]}; }
+
 /// Difference of two poses, of lengths relative to L1.
-double difference(const Geometry<double>& g, const Pose<double>& p, const Pose<double>& q) {
+double difference(const Geometry<double>& g, const SchoenfliesPose<double>& p, const SchoenfliesPose<double>& q) {
   const double turn = std::fabs(std::remainder(p.angle - q.angle, 2 * kPi));
   return std::fmax(std::fmax(std::fabs(p.x - q.x), std::fabs(p.y - q.y)) / g.L1,
                    std::fmax(std::fabs(p.z - q.z) / g.L1, turn));
@@ -43,12 +45,12 @@ TEST(HybridKinematics, ForwardInvertsInverseInEveryMode) {
   double worst = 0, worst_near = 0;
   while (poses < 100000) {
     const auto g = geometry_of(random_design(uniform));
-    const Pose<double> pose = random_pose(uniform);
+    const SchoenfliesPose<double> pose = random_pose(uniform);
     if (!inverse(g, pose, {1, 1, 1}).assembles()) continue;
     ++poses;
     for (const WorkingMode& mode : all_signs()) {
       const Joints<double> j = inverse(g, pose, mode);
-      const Forward found = forward(g, j.s);
+      const Forward found = forward(g, drives_of(j));
       const Distance distance = from_singularities(g, pose, j);
       ASSERT_EQ(found.status, Closure::ok);
       double error = INFINITY;
@@ -83,7 +85,7 @@ TEST(HybridKinematics, EveryAssemblyHasTheDrives) {
   int solved = 0;
   for (int k = 0; k < 20000; ++k) {
     const auto g = geometry_of(random_design(uniform));
-    const std::array<double, 4> s = {uniform(-0.2, 0.2), uniform(-0.2, 0.2), uniform(-0.2, 0.2), uniform(-0.2, 0.2)};
+    const AxisVector<double> s = {uniform(-0.2, 0.2), uniform(-0.2, 0.2), uniform(-0.2, 0.2), uniform(-0.2, 0.2)};
     const Forward found = forward(g, s);
     EXPECT_EQ(found.assemblies.empty(), found.status != Closure::ok);
     for (const Assembly& a : found.assemblies) {
@@ -100,13 +102,13 @@ TEST(HybridKinematics, EveryAssemblyHasTheDrives) {
 
 TEST(HybridKinematics, DegenerateDrivesHaveAStatusAndNoPose) {
   auto p = nominal();
-  const auto status = [&](const std::array<double, 4>& s) {
+  const auto status = [&](const AxisVector<double>& s) {
     const Forward found = forward(geometry_of(p), s);
     EXPECT_TRUE(found.assemblies.empty());
     return found.status;
   };
   // Links A and B parallel: the carriages are as far apart as A' and B'.
-  const std::array<double, 4> parallel = {0.1, 0, 0.1 + 2 * p[kA] - p[kB1] - p[kB2], 0};
+  const AxisVector<double> parallel = {0.1, 0, 0.1 + 2 * p[kA] - p[kB1] - p[kB2], 0};
   EXPECT_EQ(status(parallel), Closure::degenerate_xz);
   p[kL2] = 0.25;
   EXPECT_EQ(status(parallel), Closure::no_xz);
@@ -121,12 +123,12 @@ TEST(HybridKinematics, LinksOfOneLengthInParallelModesAreDegenerateEverywhere) {
     auto p = random_design(uniform);
     p[kL2] = p[kL1];
     const auto g = geometry_of(p);
-    const Pose<double> pose = random_pose(uniform);
+    const SchoenfliesPose<double> pose = random_pose(uniform);
     for (const WorkingMode& mode : all_signs()) {
       const Joints<double> j = inverse(g, pose, mode);
       if (!j.assembles() || mode[0] != mode[1]) continue;
       ++tested;
-      EXPECT_EQ(forward(g, j.s).status, Closure::degenerate_xz);
+      EXPECT_EQ(forward(g, drives_of(j)).status, Closure::degenerate_xz);
       EXPECT_EQ(transmission(g, pose.z, j).t_xz, 0);
     }
   }
@@ -138,7 +140,7 @@ TEST(HybridKinematics, PosesAcrossSingularitiesAreFinite) {
   Uniform uniform(3);
   const LimitSpec none = no_limits(mechanism().info());
   auto p = nominal();
-  const auto test = [&](const Pose<double>& pose) {
+  const auto test = [&](const SchoenfliesPose<double>& pose) {
     const auto g = geometry_of(p);
     for (const WorkingMode& mode : all_signs()) {
       const Joints<double> j = inverse(g, pose, mode);
@@ -152,8 +154,10 @@ TEST(HybridKinematics, PosesAcrossSingularitiesAreFinite) {
       for (const auto& [name, value] : report.angles) EXPECT_TRUE(std::isfinite(value)) << name;
     }
     MotionSample at;
-    at.pose = {{pose.x, pose.y, pose.z, pose.angle}};
-    for (const double zeta : {0.0, 0.3}) EXPECT_TRUE(std::isfinite(mechanism().chain(p, at, zeta).output.angle));
+    at.pose = pose;
+    at.velocity = at.acceleration = AxisVector<double>(4);
+    for (const double zeta : {0.0, 0.3})
+      EXPECT_TRUE(std::isfinite(mechanism().chain()->report(p, at, zeta).output.angle));
   };
   for (int k = 0; k < 1000; ++k) test(random_pose(uniform));
   for (const double z : {0.0, p[kL1], -p[kL1], 0.3, 0.05})
@@ -171,16 +175,16 @@ TEST(HybridKinematics, MarginsWithDerivativesHaveTheSameBitsAndTheSlopesOfDiffer
   int slopes = 0;
   for (int k = 0; k < 200; ++k) {
     const auto p = random_design(uniform);
-    const Pose<double> pose = {uniform(-0.1, 0.1), 0, uniform(0.15, 0.24), uniform(-0.4, 0.4)};
+    const pkm::Pose<double> at = {uniform(-0.1, 0.1), 0, uniform(0.15, 0.24), uniform(-0.4, 0.4)};
     const std::size_t varied = static_cast<std::size_t>(uniform(0, kParameters));
     const auto margins_at = [&](const std::vector<double>& design) {
       std::vector<double> found;
-      mechanism().pose_margins(std::span<const double>(design), none, {&pose, 1}, found);
+      mechanism().pose_margins()->append(design, none, {&at, 1}, found);
       return found;
     };
     std::vector<Dual4> q(p.begin(), p.end()), found;
     q[varied] = Dual4::variable(p[varied], 0);
-    mechanism().pose_margins(std::span<const Dual4>(q), none, {&pose, 1}, found);
+    mechanism().derivatives()->pose_margins(q, none, {&at, 1}, found);
     const auto plain = margins_at(p);
     ASSERT_EQ(found.size(), plain.size());
     auto lower = p, upper = p;
@@ -189,12 +193,12 @@ TEST(HybridKinematics, MarginsWithDerivativesHaveTheSameBitsAndTheSlopesOfDiffer
     upper[varied] += kStep;
     const auto below = margins_at(lower), above = margins_at(upper);
     for (std::size_t i = 0; i < plain.size(); ++i) {
-      EXPECT_EQ(found[i].a, plain[i]) << margin_names()[i];
-      EXPECT_TRUE(std::isfinite(found[i].v[0])) << margin_names()[i];
+      EXPECT_EQ(found[i].a, plain[i]) << kMarginNames[i].name;
+      EXPECT_TRUE(std::isfinite(found[i].v[0])) << kMarginNames[i].name;
       const double ahead = (above[i] - plain[i]) / kStep, behind = (plain[i] - below[i]) / kStep;
       if (std::fabs(ahead - behind) > 1e-3) continue;  // a kink, or the edge of a limb's reach
       ++slopes;
-      EXPECT_NEAR(found[i].v[0], (ahead + behind) / 2, 1e-5 * (1 + std::fabs(ahead))) << margin_names()[i];
+      EXPECT_NEAR(found[i].v[0], (ahead + behind) / 2, 1e-5 * (1 + std::fabs(ahead))) << kMarginNames[i].name;
     }
   }
   EXPECT_GT(slopes, 4000);
@@ -211,7 +215,7 @@ TEST(HybridKinematics, InfluenceCoefficientsAreTheDerivativesOfTheDrives) {
   int compared = 0;
   while (compared < 1000) {
     const auto p = random_design(uniform);
-    const Pose<double> pose = random_pose(uniform);
+    const SchoenfliesPose<double> pose = random_pose(uniform);
     const WorkingMode mode = all_signs()[static_cast<std::size_t>(uniform(0, 8))];
     const auto g = geometry_of(p);
     const Joints<double> j = inverse(g, pose, mode);
@@ -222,11 +226,11 @@ TEST(HybridKinematics, InfluenceCoefficientsAreTheDerivativesOfTheDrives) {
       V[i] = uniform(-1, 1);
       A[i] = uniform(-1, 1);
     }
-    const Pose<Taylor> moving{
+    const SchoenfliesPose<Taylor> moving{
         {pose.x, V[0], A[0]}, {pose.y, V[1], A[1]}, {pose.z, V[2], A[2]}, {pose.angle, V[3], A[3]}};
     const Joints<Taylor> motion = inverse(constant<Taylor>(p), moving, mode);
-    const Influence<double> q = influence(g, pose, j), back = reversed(q);
-    const Vector<double, 4> speeds = q.G * V, drives = accelerations(q, V, A);
+    const pkm::Influence<double, 4> q = influence(g, pose, j), back = reversed(q);
+    const Vector<double, 4> speeds = q.G * V, drives = accelerations<double, 4>(q, V, A);
     const auto scale = [](double value) { return 1 + std::fabs(value); };
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_NEAR(speeds[i], motion.s[i].d, kRoundoff * scale(speeds[i]));
@@ -237,7 +241,7 @@ TEST(HybridKinematics, InfluenceCoefficientsAreTheDerivativesOfTheDrives) {
     constexpr double kStep = 1e-6;
     for (std::size_t c = 0; c < 4; ++c) {
       const auto moved = [&](double by) {
-        Pose<double> at = pose;
+        SchoenfliesPose<double> at = pose;
         (c == 0 ? at.x : c == 1 ? at.y : c == 2 ? at.z : at.angle) += by;
         return influence(g, at, inverse(g, at, mode)).G;
       };
@@ -253,7 +257,7 @@ TEST(HybridKinematics, ChainTurnsBackAndGainsATurnForATurn) {
   int turned = 0;
   while (turned < 2000) {
     const auto g = geometry_of(random_design(uniform));
-    const Pose<double> pose = {uniform(-0.15, 0.15), 0, uniform(0.1, 0.3), uniform(-0.6, 0.6)};
+    const SchoenfliesPose<double> pose = {uniform(-0.15, 0.15), 0, uniform(0.1, 0.3), uniform(-0.6, 0.6)};
     const double zeta = turned % 2 == 0 ? 0 : uniform(-3, 3), theta = uniform(-10, 10);
     const Forks<double> k = forks(shaft(g, pose), pose.angle, zeta);
     if (!k.turns) continue;

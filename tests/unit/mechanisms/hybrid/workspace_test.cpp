@@ -8,6 +8,7 @@
 #include "engine/mechanisms/hybrid/columns.hpp"
 #include "engine/mechanisms/hybrid/survey.hpp"
 #include "engine/mechanisms/hybrid/voxels.hpp"
+#include "engine/survey/survey_set.hpp"
 #include "tests/unit/mechanisms/hybrid/golden.hpp"
 
 namespace pkm::testing::hybrid {
@@ -15,25 +16,35 @@ namespace {
 
 LimitSpec no_thresholds() { return no_limits(mechanism().info()); }
 
-SurveyPlan plan(Method method, std::array<std::int64_t, 3> cells = {}) {
-  SurveyPlan p;
-  p.method = method;
-  p.limits = no_thresholds();
-  p.cells = cells;
-  return p;
+HeldCoordinate held_y(HeldCoordinate::Kind kind, double value = 0) {
+  return {.coordinate = 1, .kind = kind, .value = value};
+}
+
+SurveyPlan columns_plan(double tolerance = ColumnOptions().tolerance) {
+  return {.method = ColumnOptions{.tolerance = tolerance}, .limits = no_thresholds()};
+}
+SurveyPlan voxels_plan(std::array<std::int64_t, 3> cells) {
+  return {.method = VoxelOptions{.cells = cells}, .limits = no_thresholds()};
+}
+
+std::unique_ptr<const Surveyor> surveyor_of(const WorkingMode& mode, int branch, const SurveyPlan& plan,
+                                            const Demand& demand = {}) {
+  if (const VoxelOptions* const voxels = plan.voxels()) return make_voxel_surveyor(mode, branch, plan, *voxels, demand);
+  return make_column_surveyor(mode, branch, plan, *plan.columns(), demand);
 }
 
 template <class S>
 Survey<S> survey(const std::vector<S>& p, const WorkingMode& mode, const SurveyPlan& plan, const Demand& demand = {}) {
   Survey<S> result;
-  make_surveyor(mode, 1, plan, demand)->survey(std::span<const S>(p), result);
+  survey_once<S>(*surveyor_of(mode, 1, plan, demand), p, result);
   return result;
 }
 
 template <class S>
-Frame<S> frame_of(const std::vector<S>& p, const WorkingMode& mode, const LimitSpec& spec = no_thresholds()) {
+Frame<S> frame_of(const std::vector<S>& p, const WorkingMode& mode, const LimitSpec& spec = no_thresholds(),
+                  int branch = 1) {
   const std::span<const S> all(p);
-  return frame(geometry(all), limits(all, spec), mode, 1);
+  return frame(geometry(all), limits(all, spec), mode, branch);
 }
 
 /// Mean of two designs of the golden data, each shifted a little, so that nearly all have a workspace.
@@ -58,6 +69,7 @@ std::vector<Case> random_cases(int count, int seed) {
 struct ColumnOfX {
   double lower = 1, upper = 0, hole = 0;
   bool empty() const { return !(lower <= upper); }
+  bool holds(double x) const { return x >= lower && x <= upper && std::fabs(x) >= hole; }
   double length() const {
     if (empty()) return 0;
     return upper - lower - std::fmax(0, std::fmin(upper, hole) - std::fmax(lower, -hole));
@@ -70,8 +82,8 @@ ColumnOfX column_at(const Frame<double>& f, double z, double beta) {
   if (z < *std::ranges::max_element(s.lower) || z > *std::ranges::min_element(s.upper)) return column;
   column = {-1e9, 1e9, z < s.hole_end ? s.curve[kCurveH].root(z) : 0};
   for (std::uint8_t k = 0; k < kCurveH; ++k) {
-    column.lower = std::fmax(column.lower, edge_at(s, {k, 0}, z));
-    column.upper = std::fmin(column.upper, edge_at(s, {k, 1}, z));
+    column.lower = std::fmax(column.lower, edge_at(s, {k, kLeft}, z));
+    column.upper = std::fmin(column.upper, edge_at(s, {k, kRight}, z));
   }
   return column;
 }
@@ -98,7 +110,7 @@ TEST(HybridColumns, OfZEndWhereThePlainTestChanges) {
   int found = 0;
   for (const auto& entry : golden()["zcolumn"]) {
     SCOPED_TRACE(entry.dump());
-    const VoxelDesign design{frame_of(design_of(entry), {1, -1, -1}), 1, {}};
+    const VoxelDesign design{frame_of(design_of(entry), {1, -1, -1})};
     const double x = entry["x"], beta = entry["beta"];
     const auto at = [&](double z) { return feasible(design, x, z, beta); };
     ASSERT_LE(entry["intervals"].size(), 1u);
@@ -125,14 +137,14 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
     demand.conditioning = true;
     for (const auto& grid : entry["grids"]) {
       SCOPED_TRACE(entry["design"].dump() + " " + grid.dump());
-      SurveyPlan voxels = plan(Method::voxels, {grid["shape"][0], grid["shape"][1], grid["shape"][2]});
+      SurveyPlan voxels = voxels_plan({grid["shape"][0], grid["shape"][1], grid["shape"][2]});
       if (entry["interference"]) voxels.limits.given[kClearanceMin] = 0;
       const auto found = survey(p, mode, voxels, demand);
       EXPECT_EQ(found.feasible_cells, grid["count"].get<std::int64_t>());
       EXPECT_NEAR(found.volume, grid["volume"].get<double>(), 1e-12 * found.volume);
       EXPECT_NEAR(weighted_mean(found.weight, found.conditioning), grid["gci"].get<double>(), 1e-12);
     }
-    const Box box = default_box({frame_of(p, mode), 1, {}});
+    const Box box = default_box({frame_of(p, mode)});
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t end = 0; end < 2; ++end)
         EXPECT_NEAR(box[i][end], entry["box"][i][end].get<double>(), 1e-14) << i << " " << end;
@@ -153,14 +165,13 @@ TEST(HybridColumns, VolumesAreTheGoldenOnes) {
   for (const auto& entry : golden()["workspace"]) {
     if (!entry.contains("analytic")) continue;
     SCOPED_TRACE(entry["design"].dump() + " " + entry["wm"].dump());
-    SurveyPlan columns = plan(Method::columns);
-    columns.tolerance = 1e-10;
+    const SurveyPlan columns = columns_plan(1e-10);
     const double golden = entry["analytic"], error = entry["analytic_rel_err"];
     EXPECT_NEAR(survey(design_of(entry), mode_of(entry["wm"]), columns).volume, golden, error * golden);
     ++compared;
   }
   EXPECT_EQ(compared, 5);
-  const auto volume = [](const WorkingMode& mode) { return survey(nominal(), mode, plan(Method::columns)).volume; };
+  const auto volume = [](const WorkingMode& mode) { return survey(nominal(), mode, columns_plan()).volume; };
   EXPECT_NEAR(volume({1, -1, -1}), 7.629533e-3, 5e-9);  // document, section 8.4
   EXPECT_NEAR(volume({1, -1, 1}), 6.50289e-4, 5e-10);
   EXPECT_NEAR(volume({-1, 1, -1}), 4.09804e-4, 5e-10);
@@ -170,10 +181,10 @@ TEST(HybridColumns, VolumesAreTheGoldenOnes) {
 
 TEST(HybridVoxels, ConvergeToTheColumns) {
   for (const WorkingMode& mode : {WorkingMode{1, -1, -1}, WorkingMode{1, -1, 1}}) {
-    const double exact = survey(nominal(), mode, plan(Method::columns)).volume;
+    const double exact = survey(nominal(), mode, columns_plan()).volume;
     std::printf("mode %s: columns %.9e m^2 rad\n", mode_name(mode).c_str(), exact);
     for (const std::int64_t n : {32, 64, 128, 256}) {
-      const auto found = survey(nominal(), mode, plan(Method::voxels, {n, n, n}));
+      const auto found = survey(nominal(), mode, voxels_plan({n, n, n}));
       std::printf("  %3d^3 voxels: %8d feasible, %.9e, error %+.1e\n", static_cast<int>(n),
                   static_cast<int>(found.feasible_cells), found.volume, found.volume / exact - 1);
       EXPECT_NEAR(found.volume / exact, 1, 2.0 / static_cast<double>(n));  // the document's rms is 0.8 / n
@@ -181,25 +192,28 @@ TEST(HybridVoxels, ConvergeToTheColumns) {
   }
 }
 
-TEST(HybridVoxels, ThePlainTestIsThatOfTheMargins) {
+// The closed forms state the margins once more: they hold the poses whose margins hold, and the pose test the same.
+TEST(HybridColumns, OfXHoldThePosesWhoseMarginsDo) {
   Uniform uniform(7);
   int inside = 0;
-  for (const Case& c : random_cases(60, 8))
-    for (const int branch : {1, -1})
-      for (const bool with_links : {false, true}) {
-        VoxelDesign design{frame_of(c.p, c.mode), branch, {}};
-        if (with_links) design.clearance = 0;
-        const Frame<double>& f = design.frame;
-        for (int i = 0; i < 400; ++i) {
-          const Pose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]), uniform(0.15, 0.3),
-                                  uniform(-0.7, 0.7)};
-          const Margins<double> m = margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), branch);
-          const bool expected = std::all_of(m.begin(), with_links ? m.end() : m.begin() + kCapsules,
-                                            [](double margin) { return margin >= 0; });
-          ASSERT_EQ(feasible(design, pose.x, pose.z, pose.angle), expected);
-          inside += expected;
-        }
+  for (const Case& c : random_cases(120, 8))
+    for (const int branch : {1, -1}) {
+      const VoxelDesign design{frame_of(c.p, c.mode, no_thresholds(), branch)}, with_links{design.frame, true};
+      const Frame<double>& f = design.frame;
+      for (int i = 0; i < 400; ++i) {
+        const SchoenfliesPose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]),
+                                           uniform(0.15, 0.3), uniform(-0.7, 0.7)};
+        const Margins<double> m = margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), branch);
+        const auto holds = [&](std::size_t count) {
+          return std::all_of(m.begin(), m.begin() + count, [](double margin) { return margin >= 0; });
+        };
+        const bool in_range = pose.angle >= f.l.beta_min && pose.angle <= f.l.beta_max;
+        ASSERT_EQ(in_range && column_at(f, pose.z, pose.angle).holds(pose.x), holds(kCapsules));
+        ASSERT_EQ(feasible(design, pose.x, pose.z, pose.angle), holds(kCapsules));
+        ASSERT_EQ(feasible(with_links, pose.x, pose.z, pose.angle), holds(kMargins));
+        inside += holds(kMargins);
       }
+    }
   EXPECT_GT(inside, 3000);
 }
 
@@ -207,13 +221,13 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
   std::int64_t total = 0, clear = 0;
   for (const Case& c : random_cases(24, 1))
     for (const bool with_links : {false, true}) {
-      SurveyPlan voxels = plan(Method::voxels, {19, 17, 23});
+      SurveyPlan voxels = voxels_plan({19, 17, 23});
       if (with_links) voxels.limits.given[kClearanceMin] = 0.004;
-      const VoxelDesign design{frame_of(c.p, c.mode, voxels.limits), 1, voxels.limits.given[kClearanceMin]};
+      const VoxelDesign design{frame_of(c.p, c.mode, voxels.limits), with_links};
       const Box box = default_box(design), wide = {{{-0.3, 0.3}, {0.0, 0.35}, {-1.2, 1.2}}};
       for (const bool given : {false, true}) {
-        if (given) voxels.box = wide;
-        const VoxelGrid grid(voxels.cells, given ? wide : box);
+        if (given) std::get<VoxelOptions>(voxels.method).box = wide;
+        const VoxelGrid grid(voxels.voxels()->cells, given ? wide : box);
         const VoxelMap plain =
             test_every_cell(grid, [&](double x, double z, double beta) { return feasible(design, x, z, beta); });
         Survey<double> expected;
@@ -221,7 +235,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
         const auto found = survey(c.p, c.mode, voxels);
         EXPECT_EQ(found.feasible_cells, expected.feasible_cells);
         EXPECT_EQ(found.touches_box, expected.touches_box);
-        EXPECT_EQ(pkm::hybrid::voxel_map(c.mode, 1, c.p, voxels).feasible, plain.feasible);
+        EXPECT_EQ(pkm::hybrid::voxel_map(c.mode, 1, c.p, voxels, *voxels.voxels()).feasible, plain.feasible);
         (with_links ? clear : total) += found.feasible_cells;
       }
     }
@@ -232,14 +246,14 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
 // The branch N2 < 0 keeps nothing within the range of the universal joint at C'.
 TEST(HybridVoxels, TheOtherBranchIsEmpty) {
   for (const Case& c : random_cases(9, 2)) {
-    const VoxelDesign design{frame_of(c.p, c.mode), -1, {}};
+    const VoxelDesign design{frame_of(c.p, c.mode, no_thresholds(), -1)};
     const VoxelGrid grid({15, 15, 40}, {{{-0.3, 0.3}, {0.05, 0.3}, {-1.5, 1.5}}});
     Survey<double> found;
     summarise(grid,
               test_every_cell(grid, [&](double x, double z, double beta) { return feasible(design, x, z, beta); }),
               found);
     EXPECT_EQ(found.feasible_cells, 0);
-    make_surveyor(c.mode, -1, plan(Method::columns), {})->survey(c.p, found);
+    survey_once<double>(*surveyor_of(c.mode, -1, columns_plan()), c.p, found);
     EXPECT_EQ(found.volume, 0);
   }
 }
@@ -270,12 +284,9 @@ TEST(HybridColumns, SectionsEqualTheSumOfTheirColumns) {
 
 TEST(HybridColumns, ToleranceIsKept) {
   for (const Case& c : random_cases(40, 4)) {
-    SurveyPlan columns = plan(Method::columns);
-    columns.tolerance = 1e-13;
-    const double best = survey(c.p, c.mode, columns).volume;
+    const double best = survey(c.p, c.mode, columns_plan(1e-13)).volume;
     for (const double tolerance : {1e-10, 1e-8, 1e-4}) {
-      columns.tolerance = tolerance;
-      const auto found = survey(c.p, c.mode, columns);
+      const auto found = survey(c.p, c.mode, columns_plan(tolerance));
       EXPECT_NEAR(found.volume, best, tolerance * best);
       EXPECT_LE(found.error, tolerance);
     }
@@ -286,8 +297,8 @@ TEST(HybridColumns, SamplesAddUpAndHaveTheMeanOfTheVoxels) {
   Demand demand;
   demand.conditioning = true;
   for (const Case& c : random_cases(18, 5)) {
-    const auto exact = survey(c.p, c.mode, plan(Method::columns), demand),
-               cells = survey(c.p, c.mode, plan(Method::voxels, {40, 60, 60}), demand);
+    const auto exact = survey(c.p, c.mode, columns_plan(), demand),
+               cells = survey(c.p, c.mode, voxels_plan({40, 60, 60}), demand);
     if (!(exact.volume > 1e-3)) continue;
     double sum = 0;
     for (const double w : exact.weight) sum += w;
@@ -297,23 +308,23 @@ TEST(HybridColumns, SamplesAddUpAndHaveTheMeanOfTheVoxels) {
 }
 
 TEST(HybridWorkspace, TheCarriageMultipliesByItsStroke) {
-  SurveyPlan columns = plan(Method::columns), voxels = plan(Method::voxels, {12, 12, 12});
+  SurveyPlan columns = columns_plan(), voxels = voxels_plan({12, 12, 12});
   for (SurveyPlan* p : {&columns, &voxels}) {
     const double still = survey(nominal(), {1, -1, -1}, *p).volume;
-    p->held = {HeldCoordinate::Kind::value, 0.199, {}};
+    p->held = {held_y(HeldCoordinate::Kind::value, 0.199)};
     EXPECT_EQ(survey(nominal(), {1, -1, -1}, *p).volume, still);
-    p->held.value = 0.201;
+    p->held = {held_y(HeldCoordinate::Kind::value, 0.201)};
     EXPECT_EQ(survey(nominal(), {1, -1, -1}, *p).volume, 0);
-    p->held.kind = HeldCoordinate::Kind::integrated;
+    p->held = {held_y(HeldCoordinate::Kind::integrated)};
     EXPECT_NEAR(survey(nominal(), {1, -1, -1}, *p).volume, 0.4 * still, 1e-15);
   }
 }
 
 TEST(HybridWorkspace, ColumnsRefuseAClearance) {
-  SurveyPlan columns = plan(Method::columns);
+  SurveyPlan columns = columns_plan();
   columns.limits.given[kClearanceMin] = 0;
   try {
-    mechanism().prepare(columns, {});
+    prepare_survey(mechanism(), columns, {});
     FAIL() << "no refusal";
   } catch (const std::invalid_argument& e) {
     EXPECT_STREQ(e.what(),
@@ -325,9 +336,8 @@ TEST(HybridWorkspace, ColumnsRefuseAClearance) {
 // By every parameter that the volume depends on, at designs and modes of all kinds.
 TEST(HybridColumns, SlopesEqualDifferences) {
   int moved = 0;
-  SurveyPlan columns = plan(Method::columns);
-  columns.held.kind = HeldCoordinate::Kind::integrated;
-  columns.tolerance = 1e-12;
+  SurveyPlan columns = columns_plan(1e-12);
+  columns.held = {held_y(HeldCoordinate::Kind::integrated)};
   for (const Case& c : random_cases(12, 6)) {
     const double volume = survey(c.p, c.mode, columns).volume;
     if (!(volume > 1e-5)) continue;

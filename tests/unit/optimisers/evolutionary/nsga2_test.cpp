@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "engine/math/hypervolume.hpp"
-#include "engine/optimisers/evolutionary/dominance.hpp"
-#include "engine/optimisers/front.hpp"
+#include "engine/optimisers/dominance.hpp"
+#include "engine/problem/front.hpp"
 #include "tests/unit/optimisers/stage.hpp"
 #include "tests/unit/optimisers/trade_off_problems.hpp"
 

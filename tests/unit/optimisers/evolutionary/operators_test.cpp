@@ -9,7 +9,7 @@
 #include "engine/optimisers/evolutionary/known_designs.hpp"
 #include "engine/optimisers/evolutionary/mutation.hpp"
 #include "engine/optimisers/evolutionary/selection.hpp"
-#include "engine/optimisers/solvers/start.hpp"
+#include "engine/optimisers/start.hpp"
 
 namespace pkm {
 namespace {

@@ -1,0 +1,32 @@
+// The ability to survey in columns with exact ends, and to survey voxels faster than cell by cell.
+#pragma once
+
+#include <memory>
+
+#include "engine/mechanism/plan.hpp"
+#include "engine/mechanism/surveyor.hpp"
+
+namespace pkm {
+
+class Columns {
+ public:
+  virtual ~Columns() = default;
+  /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
+  virtual std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+                                                  const Demand& demand) const = 0;
+  /// Whether ColumnOptions::box can cut them.
+  virtual bool take_box() const { return false; }
+};
+
+class Voxels {
+ public:
+  virtual ~Voxels() = default;
+  /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
+  virtual std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                  const Demand& demand) const = 0;
+  /// The cells of a plan for one design, box as in a survey.
+  virtual VoxelMap map(std::span<const double> parameters, const SurveyPlan& plan,
+                       const VoxelOptions& voxels) const = 0;
+};
+
+}  // namespace pkm

@@ -1,0 +1,65 @@
+// Abilities of a mechanism at a pose beside its inverse kinematics.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/model/chain.hpp"
+#include "engine/model/influence.hpp"
+#include "engine/model/placed_link.hpp"
+#include "engine/model/pose.hpp"
+#include "engine/motion/motion.hpp"
+
+namespace pkm {
+
+/// First- and second-order influence coefficients: what speeds and accelerations of the joints a motion takes.
+class Velocities {
+ public:
+  virtual ~Velocities() = default;
+  /// Absent where the pose does not assemble or they are infinite.
+  /// @param mode  one of MechanismInfo::modes
+  virtual std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
+                                                     const std::string& mode) const = 0;
+};
+
+class ForwardKinematics {
+ public:
+  virtual ~ForwardKinematics() = default;
+  /// Every assembly mode for joint values [m, rad]; empty when the joints cannot be reached, or reached in infinitely
+  /// many ways.
+  virtual std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
+                                               const AxisVector<double>& joints) const = 0;
+  /// What that answer means.
+  virtual ForwardStatus status(std::span<const double> parameters, const AxisVector<double>& joints) const {
+    if (assemblies(parameters, joints).empty()) return {"NO_POSE", "no pose assembles with these joint values"};
+    return {};
+  }
+};
+
+/// The mechanism as it is drawn: rails, platform and slides included.
+class Links {
+ public:
+  virtual ~Links() = default;
+  /// The same links in the same order at every pose; empty where the pose does not assemble.
+  /// @param mode  one of MechanismInfo::modes
+  virtual std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
+                                        const std::string& mode) const = 0;
+};
+
+/// One more input shaft, which turns one more output shaft on the platform while the platform moves.
+class AuxiliaryChain {
+ public:
+  virtual ~AuxiliaryChain() = default;
+  virtual std::string input() const = 0;   ///< name of the angle
+  virtual std::string output() const = 0;  ///< name of the angle
+  /// At a pose on its way, with the motion of its input.
+  /// @param phase  of the forks of the chain's two universal joints [rad]
+  virtual ChainReport report(std::span<const double> parameters, const MotionSample& at, double phase) const = 0;
+  /// The input angle for an output [rad]; absent where it does not turn.
+  virtual std::optional<double> input_for(std::span<const double> parameters, const Pose<double>& pose, double output,
+                                          double phase) const = 0;
+};
+
+}  // namespace pkm

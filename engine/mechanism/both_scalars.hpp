@@ -1,0 +1,35 @@
+// Abilities written once for numbers and for derivatives: a mechanism has templates, these bases call them.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+
+namespace pkm {
+
+/// Self has `template <class S> void find_dynamics(std::span<const S> parameters, const std::string& mode,
+/// std::span<const MotionState<S>>, std::span<PoseDynamics<S>>) const`.
+template <class Self>
+class DynamicsOf : public Dynamics {
+ public:
+  void equations(std::span<const double> p, const std::string& mode, std::span<const MotionState<double>> states,
+                 std::span<PoseDynamics<double>> found) const final {
+    static_cast<const Self&>(*this).find_dynamics(p, mode, states, found);
+  }
+  void equations(std::span<const Dual4> p, const std::string& mode, std::span<const MotionState<Dual4>> states,
+                 std::span<PoseDynamics<Dual4>> found) const final {
+    static_cast<const Self&>(*this).find_dynamics(p, mode, states, found);
+  }
+};
+
+/// Self has `template <class S> void find_margins(std::span<const S> parameters, const LimitSpec&,
+/// std::span<const Pose<double>>, std::vector<S>&) const`, which Derivatives::pose_margins calls, too.
+template <class Self>
+class PoseMarginsOf : public PoseMargins {
+ public:
+  std::string margin_unit() const final { return "m"; }
+  void append(std::span<const double> p, const LimitSpec& limits, std::span<const Pose<double>> poses,
+              std::vector<double>& margins) const final {
+    static_cast<const Self&>(*this).find_margins(p, limits, poses, margins);
+  }
+};
+
+}  // namespace pkm

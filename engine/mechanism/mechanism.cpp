@@ -1,0 +1,98 @@
+#include "engine/mechanism/mechanism.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/core/error.hpp"
+#include "engine/core/options.hpp"
+
+namespace pkm {
+
+Refusal Mechanism::refuse(std::span<const double> parameters) const {
+  for (std::size_t i = 0; i < info().parameters.size(); ++i) {
+    const Parameter& p = info().parameters[i];
+    if (!(parameters[i] >= p.lower && parameters[i] <= p.upper))
+      return p.name + " = " + shortest(parameters[i]) + " is outside the model's range " + shortest(p.lower) + " to " +
+             shortest(p.upper) + " " + p.unit;
+  }
+  return {};
+}
+
+void Mechanism::thresholds(std::span<const double>, const LimitSpec& limits, std::span<double> values) const {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = limits.given[i].value_or(info().limits[i].inactive);
+}
+
+const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan) {
+  std::vector<std::string> held;
+  for (const HeldCoordinate& named : plan.held) {
+    const bool known = named.coordinate >= 0 && named.coordinate < static_cast<int>(info.coordinates.size());
+    held.push_back(known ? info.coordinates[static_cast<std::size_t>(named.coordinate)].name
+                         : "coordinate number " + std::to_string(named.coordinate + 1));
+  }
+  for (const Sweep& sweep : info.sweeps)
+    if (std::ranges::all_of(plan.held, [&](const HeldCoordinate& named) {
+          return std::ranges::find(sweep.held, named.coordinate) != sweep.held.end();
+        }))
+      return sweep;
+  throw std::invalid_argument("mechanism " + info.name + " has no survey that holds " + join(held, " and "));
+}
+
+std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual) {
+  const int n = static_cast<int>(coordinates.size());
+  const auto sweep_over = [n](const std::vector<int>& swept) {
+    Sweep sweep{.swept = swept, .held = {}, .column = swept.back()};
+    for (int i = 0; i < n; ++i)
+      if (std::ranges::find(swept, i) == swept.end()) sweep.held.push_back(i);
+    return sweep;
+  };
+  std::vector<Sweep> sweeps = {sweep_over(usual)};
+  for (std::size_t count = 3; count >= 1; --count)
+    for (int bits = (1 << n) - 1; bits > 0; --bits) {
+      std::vector<int> swept;
+      for (int i = 0; i < n; ++i)
+        if (bits & (1 << (n - 1 - i))) swept.push_back(i);
+      if (swept.size() == count && swept != usual) sweeps.push_back(sweep_over(swept));
+    }
+  return sweeps;
+}
+
+double held_value(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
+                  int coordinate) {
+  const HeldCoordinate held = how_held(plan, coordinate);
+  if (held.kind == HeldCoordinate::Kind::value) return held.value;
+  if (held.kind == HeldCoordinate::Kind::listed) return held.values.front();
+  if (const auto middle = mechanism.middle(parameters, coordinate)) return *middle;
+  throw std::invalid_argument("mechanism " + mechanism.info().name + " does not say where the middle of " +
+                              mechanism.info().coordinates[static_cast<std::size_t>(coordinate)].name +
+                              " is; give a value");
+}
+
+std::string unit_of_product(const MechanismInfo& info, const std::vector<int>& coordinates) {
+  const auto power = [](const std::string& unit, std::ptrdiff_t n) {
+    return n == 0 ? "" : n == 1 ? unit : unit + "^" + std::to_string(n);
+  };
+  const auto angles =
+      std::ranges::count_if(coordinates, [&](int i) { return info.coordinates[static_cast<std::size_t>(i)].turns(); });
+  const std::string lengths = power("m", std::ssize(coordinates) - angles), turns = power("rad", angles);
+  return lengths + (lengths.empty() || turns.empty() ? "" : " ") + turns;
+}
+
+std::string volume_unit(const MechanismInfo& info, const SurveyPlan& plan) {
+  std::vector<int> measured = sweep_of(info, plan).swept;
+  for (const HeldCoordinate& held : plan.held)
+    if (held.kind == HeldCoordinate::Kind::integrated) measured.push_back(held.coordinate);
+  return unit_of_product(info, measured);
+}
+
+void append_margins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
+                    std::span<const Pose<double>> poses, std::vector<double>& margins) {
+  if (const PoseMargins* ability = mechanism.pose_margins()) return ability->append(parameters, limits, poses, margins);
+  for (const Pose<double>& pose : poses) {
+    const PoseReport report = mechanism.inspect(parameters, pose, mechanism.info().modes.front(), limits);
+    for (const auto& [name, margin] : report.margins) margins.push_back(margin == margin ? margin : -1);
+    if (!report.assembles) margins.push_back(-1);
+  }
+}
+
+}  // namespace pkm

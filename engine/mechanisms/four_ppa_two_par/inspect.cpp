@@ -1,0 +1,99 @@
+#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
+
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "engine/mechanisms/four_ppa_two_par/links.hpp"
+#include "engine/mechanisms/four_ppa_two_par/margins.hpp"
+#include "engine/model/conditioning.hpp"
+
+namespace pkm::four_ppa_two_par {
+namespace {
+
+std::string out_of_reach(const Limbs<double>& limb, const std::array<double, kMargins>& margin) {
+  for (std::size_t j = 0; j < 2; ++j) {
+    const std::string number = std::to_string(j + 1), name = "limb " + number;
+    if (limb.x[j] < 0) return name + ": x_" + number + " < 0, the platform is beyond the rail's vertical plane";
+    if (margin[kReachX + j] < 0) return name + ": out of reach of the lower bars (x_" + number + " > l_d)";
+    if (margin[kReachZ + j] < 0) return name + ": out of reach of the upper bars (|z_c| > l_u)";
+  }
+  return {};
+}
+
+void add_velocities(const Geometry<double>& g, const Velocity<double>& v, PoseReport& report) {
+  report.G = v.G;
+  report.det_G = v.G.determinant();
+  report.conditioning = 0;
+  if (!v.finite) return;
+  report.Jq = v.Jq;
+  report.det_Jq = v.k[0] * v.k[1] / 4;
+  if (*report.det_Jq == 0) return;
+  const Eigen::Matrix4d J = v.Jq.inverse() * v.G;
+  report.J = J;
+  double columns[4][4];
+  for (int col = 0; col < 4; ++col)
+    for (int row = 0; row < 4; ++row) columns[col][row] = J(row, col) * (col == 3 ? 2 / g.a : 1);  // L_c = a/2
+  report.conditioning = inverse_condition(columns);
+}
+
+[[gnu::noinline]] double lower_clearance(const Geometry<double>& g, double x, double z, double s, double c) {
+  return nearest_links(links(g, lower_placement(g, x, z, s, c))).clearance;
+}
+
+}  // namespace
+
+PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
+  PoseReport report;
+  const Limbs<double> limb = inverse(g, pose, mode);
+  report.assembles = limb.assembles;
+  const double c = sincos(pose.angle).cos;
+  report.angles.emplace_back("section_type", section_type(g, c));
+  std::array<double, kMargins> margin;
+  margin.fill(std::numeric_limits<double>::infinity());
+  visit_margins<Angles::in_radians>(g, l, pose.x, pose.y, pose.z, sincos(pose.angle), mode,
+                                    [&](std::size_t index, double part) {
+                                      margin[index] = std::fmin(margin[index], part);
+                                      return true;
+                                    });
+  const auto list = [&](std::size_t index) { report.margins.emplace_back(kMarginNames[index], margin[index]); };
+  if (!limb.assembles) {
+    report.reason = out_of_reach(limb, margin);
+    for (std::size_t j = 0; j < 2; ++j) list(kReachX + j), list(kReachZ + j);
+    return report;
+  }
+  report.joints = {limb.q[0], limb.q[1], limb.q[2], limb.q[3]};
+  add_velocities(g, velocity(g, pose, limb, mode), report);
+  for (std::size_t j = 0; j < 2; ++j)
+    report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha(g, limb, j).radians());
+  for (std::size_t j = 0; j < 2; ++j)
+    report.angles.emplace_back("beta_" + std::to_string(j + 1), beta(lean(g, limb, j), mode[j]));
+  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
+  const Nearest<double> nearest = nearest_links(links(g, placement(limb, sincos(pose.angle).sin, mode)));
+  report.angles.emplace_back("clearance", nearest.clearance);
+  if (l.clearance_min) margin[kFirstLimit + kClearanceMin] = nearest.clearance - *l.clearance_min;
+
+  report.feasible = true;
+  for (std::size_t i = 0; i < kMargins; ++i) {
+    const bool clearance = i == kFirstLimit + kClearanceMin;
+    if (clearance && !l.clearance_min) continue;
+    list(i);
+    if (report.feasible && !(margin[i] >= 0)) {
+      report.reason = std::string("limit ") + kMarginNames[i] + " is broken";
+      if (clearance)
+        report.reason += ": " + link_name(nearest.first) + " and " + link_name(nearest.second) +
+                         (nearest.clearance < 0 ? " overlap" : " are too near");
+    }
+    report.feasible = report.feasible && margin[i] >= 0;
+  }
+  return report;
+}
+
+bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, double y, double z, double sin_theta,
+              double cos_theta) {
+  const auto holds = [](std::size_t, double margin) { return margin >= 0; };
+  if (!visit_margins<Angles::by_sides>(g, l, x, y, z, {sin_theta, cos_theta}, kLowerMode, holds)) return false;
+  return !l.clearance_min || lower_clearance(g, x, z, sin_theta, cos_theta) >= *l.clearance_min;
+}
+
+}  // namespace pkm::four_ppa_two_par

@@ -1,0 +1,38 @@
+// Hybrid robot: the loops of its limbs, and their Jacobian; for lanes, too, so with no other header than those.
+//
+// Frames, names and equations: README.md.
+#pragma once
+
+#include <array>
+
+namespace pkm::hybrid {
+
+template <class S>
+struct Limbs {
+  S n1, n2, n3;  ///< components of the links along the rails [m]
+  S k, N1, N2;   ///< [m], [m], [m^2]
+};
+
+/// @param g     lengths L1, L2, L3, d, e [m]
+/// @param root  root(n_i^2, L_i, i) is n_i in the working mode, whatever it makes of a limb out of reach
+template <class S, class Lengths, class Root>
+[[gnu::always_inline]] inline Limbs<S> limbs(const Lengths& g, const S& z, const S& sin_b, const S& cos_b,
+                                             const Root& root) {
+  const S k = g.e * cos_b - g.d, N1 = z + g.e * sin_b;
+  return {.n1 = root(S((g.L1 - z) * (g.L1 + z)), g.L1, 0),
+          .n2 = root(S((g.L2 - z) * (g.L2 + z)), g.L2, 1),
+          .n3 = root(S(g.L3 * g.L3 - k * k - N1 * N1), g.L3, 2),
+          .k = k,
+          .N1 = N1,
+          .N2 = g.e * (z * cos_b + g.d * sin_b)};
+}
+
+/// J of (s1, s3, s4) over (x, z, beta length): y stands alone with the gain 1 and is left out.
+template <class S>
+[[gnu::always_inline]] inline std::array<std::array<S, 3>, 3> homogeneous_jacobian(const S& z, const Limbs<S>& j,
+                                                                                   const S& length) {
+  const S zero(0.0), one(1.0);
+  return {{{one, z / j.n1, zero}, {one, z / j.n2, zero}, {one, j.N1 / j.n3, j.N2 / j.n3 / length}}};
+}
+
+}  // namespace pkm::hybrid

@@ -1,0 +1,135 @@
+#include "engine/problem/front.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace pkm {
+namespace {
+
+/// Scores from 0 to 1 over the front; 0 where all are alike.
+Scores normalised(const Scores& front) {
+  const Ranges extent = ranges_of(front);
+  Scores result = front;
+  for (std::size_t i = 0; i < front.size(); ++i)
+    for (std::size_t k = 0; k < front.objectives; ++k) {
+      const double range = extent.range(k);
+      result.values[i * front.objectives + k] = range > 0 ? (front[i][k] - extent.least[k]) / range : 0;
+    }
+  return result;
+}
+
+std::vector<double> sums(const Scores& scores) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    result.push_back(std::accumulate(scores[i], scores[i] + scores.objectives, 0.0));
+  return result;
+}
+
+double distance(const Scores& scores, std::size_t a, std::size_t b) {
+  double greatest = 0;
+  for (std::size_t k = 0; k < scores.objectives; ++k)
+    greatest = std::max(greatest, std::fabs(scores[a][k] - scores[b][k]));
+  return greatest;
+}
+
+}  // namespace
+
+void add_scores(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table, std::size_t row,
+                Scores& scores) {
+  const auto values = table.objective_row(row);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    scores.values.push_back(objectives[k].direction == Direction::maximise ? -values[k] : values[k]);
+}
+
+Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table,
+                 std::span<const std::int64_t> rows) {
+  Scores scores{objectives.size()};
+  for (const std::int64_t row : rows) add_scores(objectives, table, static_cast<std::size_t>(row), scores);
+  return scores;
+}
+
+Ranges ranges_of(const Scores& front) {
+  Ranges e;
+  for (std::size_t k = 0; front.size() > 0 && k < front.objectives; ++k) {
+    e.least.push_back(front[0][k]);
+    e.greatest.push_back(front[0][k]);
+    for (std::size_t i = 1; i < front.size(); ++i) {
+      e.least[k] = std::min(e.least[k], front[i][k]);
+      e.greatest[k] = std::max(e.greatest[k], front[i][k]);
+    }
+  }
+  return e;
+}
+
+std::vector<std::size_t> ends_of(const Scores& front) {
+  std::vector<std::size_t> ends;
+  for (std::size_t k = 0; k < front.objectives; ++k) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < front.size(); ++i)
+      if (front[i][k] < front[best][k]) best = i;
+    ends.push_back(best);
+  }
+  return ends;
+}
+
+std::size_t compromise(const Scores& front) {
+  const Scores scaled = normalised(front);
+  const std::vector<double> price = sums(scaled);
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < scaled.size(); ++i) {
+    const double worst = *std::max_element(scaled[i], scaled[i] + scaled.objectives);
+    if (worst > least || (worst == least && price[i] >= price[best])) continue;
+    least = worst;
+    best = i;
+  }
+  return best;
+}
+
+std::vector<std::size_t> knees(const Scores& front) {
+  constexpr double kRadius = 0.2;
+  constexpr double kCheaper = 1e-9;  // than an end, so that rounding makes no knee of a straight front
+  const Scores scaled = normalised(front);
+  const Ranges extent = ranges_of(front);
+  const std::vector<double> price = sums(scaled);
+  std::vector<std::size_t> order(front.size()), found;
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return price[a] < price[b]; });
+  double end = std::numeric_limits<double>::infinity();  // price of the cheapest end
+  for (std::size_t k = 0; k < front.objectives; ++k)
+    for (std::size_t i = 0; i < front.size(); ++i)
+      if (extent.range(k) > 0 && scaled[i][k] == 0) end = std::min(end, price[i]);
+  for (std::size_t i = 0; i < order.size() && price[order[i]] < end - kCheaper; ++i) {
+    // The next cheaper ones are the likeliest to be near.
+    const auto near = [&](std::size_t cheaper) { return distance(scaled, cheaper, order[i]) <= kRadius; };
+    if (std::none_of(order.rend() - static_cast<std::ptrdiff_t>(i), order.rend(), near)) found.push_back(order[i]);
+  }
+  return found;
+}
+
+std::vector<std::size_t> spread_choice(const Scores& front, std::size_t count) {
+  const std::size_t n = front.size();
+  count = std::min(count, n);
+  std::vector<std::size_t> chosen;
+  if (count == 0) return chosen;
+  const Scores scaled = normalised(front);
+  std::vector<double> away(n, std::numeric_limits<double>::infinity());  // from the nearest one chosen
+  const auto choose = [&](std::size_t i) {
+    if (chosen.size() == count || away[i] == 0) return;
+    chosen.push_back(i);
+    for (std::size_t j = 0; j < n; ++j) away[j] = std::min(away[j], distance(scaled, i, j));
+  };
+  choose(compromise(front));
+  for (const std::size_t end : ends_of(front)) choose(end);
+  while (chosen.size() < count) {
+    const auto farthest = static_cast<std::size_t>(std::max_element(away.begin(), away.end()) - away.begin());
+    if (away[farthest] == 0) break;
+    choose(farthest);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+}  // namespace pkm

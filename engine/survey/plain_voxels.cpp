@@ -1,0 +1,176 @@
+#include "engine/survey/plain_voxels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/dynamics/coupling.hpp"
+#include "engine/survey/share_samples.hpp"
+#include "engine/survey/voxel_grid.hpp"
+
+namespace pkm {
+namespace {
+
+using Kind = HeldCoordinate::Kind;
+
+/// Cells of the held coordinates that are integrated over: a place between their values [lower, lower + cells step].
+struct HeldCells {
+  std::size_t coordinate;
+  double lower, step;
+  std::int64_t cells;
+};
+
+/// The cells of one design.
+class Cells {
+ public:
+  Cells(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
+        const VoxelOptions& voxels)
+      : sweep_(sweep_of(mechanism.info(), plan)),
+        ranges_(mechanism.ranges(parameters)),
+        grid_(voxels.cells, voxels.box ? *voxels.box : box_of(mechanism)),
+        pose_(mechanism.info().coordinates.size()) {
+    for (const int coordinate : sweep_.held) {
+      const auto at = static_cast<std::size_t>(coordinate);
+      const HeldCoordinate held = how_held(plan, coordinate);
+      if (held.kind != Kind::integrated) {
+        pose_[at] = held_value(mechanism, parameters, plan, coordinate);
+        continue;
+      }
+      if (!ranges_) no_ranges(mechanism);
+      const auto [lower, upper] = (*ranges_)[at];
+      held_.push_back({at, lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
+      measure_ *= held_.back().step;
+      slices_ *= held.cells;
+    }
+  }
+
+  const VoxelGrid& grid() const { return grid_; }
+  std::int64_t slices() const { return slices_; }  ///< grids, one for each combination of the integrated coordinates
+  double measure() const { return grid_.cell_volume() * measure_; }  ///< of a cell
+
+  Pose<double> pose(std::int64_t slice, std::int64_t i, std::int64_t j, std::int64_t k) const {
+    Pose<double> pose = pose_;
+    for (const HeldCells& held : held_) {
+      pose[held.coordinate] = held.lower + (static_cast<double>(slice % held.cells) + 0.5) * held.step;
+      slice /= held.cells;
+    }
+    const std::int64_t cell[3] = {i, j, k};
+    for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
+      pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid_.centre(axis, cell[axis]);
+    return pose;
+  }
+  /// Whether a cell lies on the outer layer of the box.
+  bool touches(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    const std::int64_t cell[3] = {i, j, k};
+    for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
+      if (cell[axis] == 0 || cell[axis] == grid_.cells[axis] - 1) return true;
+    return false;
+  }
+
+ private:
+  [[noreturn]] static void no_ranges(const Mechanism& mechanism) {
+    throw std::invalid_argument("mechanism " + mechanism.info().name +
+                                " does not say where its workspace is; give a box");
+  }
+  Box box_of(const Mechanism& mechanism) const {
+    if (!ranges_) no_ranges(mechanism);
+    Box box;
+    box.fill({0, 1});
+    for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
+      box[axis] = (*ranges_)[static_cast<std::size_t>(sweep_.swept[axis])];
+    return box;
+  }
+
+  const Sweep& sweep_;
+  std::optional<std::vector<std::array<double, 2>>> ranges_;
+  VoxelGrid grid_;
+  Pose<double> pose_;
+  std::vector<HeldCells> held_;
+  std::int64_t slices_ = 1;
+  double measure_ = 1;
+};
+
+class PlainVoxels final : public Surveyor {
+ public:
+  PlainVoxels(const Mechanism& mechanism, const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
+      : mechanism_(mechanism),
+        plan_(plan),
+        voxels_(voxels),
+        demand_(demand),
+        mode_(demand.mode.empty() ? mechanism.info().modes.front() : demand.mode) {
+    if (demand.characteristic_length)
+      throw std::invalid_argument("mechanism " + mechanism.info().name +
+                                  " has its own characteristic length only; leave out characteristic_length");
+  }
+
+  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
+    const Cells cells(mechanism_, parameters, plan_, voxels_);
+    const VoxelGrid& grid = cells.grid();
+    survey.clear();
+    survey.cells = grid.count() * cells.slices();
+    survey.cell_volume = cells.measure();
+    share_samples(static_cast<std::size_t>(cells.slices() * grid.cells[0]), survey,
+                  [&](std::size_t piece, Survey<double>& part, std::size_t) {
+                    const auto slice = static_cast<std::int64_t>(piece) / grid.cells[0],
+                               i = static_cast<std::int64_t>(piece) % grid.cells[0];
+                    for (std::int64_t j = 0; j < grid.cells[1]; ++j)
+                      for (std::int64_t k = 0; k < grid.cells[2]; ++k)
+                        if (add(parameters, cells.pose(slice, i, j, k), cells.measure(), part))
+                          part.touches_box = part.touches_box || cells.touches(i, j, k);
+                  });
+    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+  }
+  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
+
+ private:
+  /// Whether the pose is feasible: then its sample is added.
+  bool add(std::span<const double> parameters, const Pose<double>& pose, double weight, Survey<double>& to) const {
+    const PoseReport report = mechanism_.inspect(parameters, pose, mode_, plan_.limits);
+    if (!report.feasible) return false;
+    ++to.feasible_cells;
+    if (!demand_.conditioning && !demand_.poses && !demand_.dci && !demand_.inertia_condition) return true;
+    to.weight.push_back(weight);
+    if (demand_.conditioning) to.conditioning.push_back(report.conditioning.value_or(0));
+    if (demand_.poses) to.pose.push_back(pose);
+    if (demand_.dci || demand_.inertia_condition) add_inertia(parameters, pose, to);
+    return true;
+  }
+  void add_inertia(std::span<const double> parameters, const Pose<double>& pose, Survey<double>& to) const {
+    const MotionState<double> state{pose, AxisVector<double>(pose.size())};
+    PoseDynamics<double> d;
+    mechanism_.dynamics()->equations(parameters, mode_, {&state, 1}, {&d, 1});
+    const AxisMatrix<double> M_q = joint_inertia(d);
+    const AxisVector<double> indices = coupling_indices(M_q);
+    for (std::size_t joint = 0; demand_.dci && joint < indices.size(); ++joint)
+      to.dci[joint].push_back(std::isfinite(indices[joint]) ? indices[joint] : 1);
+    if (demand_.inertia_condition) to.inertia_condition.push_back(inertia_condition(M_q));
+  }
+
+  const Mechanism& mechanism_;
+  SurveyPlan plan_;
+  VoxelOptions voxels_;
+  Demand demand_;
+  std::string mode_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Surveyor> prepare_plain_voxels(const Mechanism& mechanism, const SurveyPlan& plan,
+                                                     const VoxelOptions& voxels, const Demand& demand) {
+  return std::make_unique<PlainVoxels>(mechanism, plan, voxels, demand);
+}
+
+VoxelMap plain_voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
+                         const VoxelOptions& voxels) {
+  const Cells cells(mechanism, parameters, plan, voxels);
+  VoxelMap map = cells.grid().map();
+  const std::string& mode = mechanism.info().modes.front();
+  std::size_t cell = 0;
+  for (std::int64_t i = 0; i < map.cells[0]; ++i)
+    for (std::int64_t j = 0; j < map.cells[1]; ++j)
+      for (std::int64_t k = 0; k < map.cells[2]; ++k)
+        map.feasible[cell++] = mechanism.inspect(parameters, cells.pose(0, i, j, k), mode, plan.limits).feasible;
+  return map;
+}
+
+}  // namespace pkm

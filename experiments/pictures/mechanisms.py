@@ -1,0 +1,149 @@
+"""mechanisms.py PROGRAM MECHANISM OUT.svg: a mechanism at its usual pose, with the names of its lengths.
+
+The links are those of the program: a study of the nominal design is run, and the first design's links are read from its
+report. Needs numpy. For the READMEs in engine/mechanisms:
+  mechanisms.py build/quickstart/bin/pkmopt 4ppa-2par engine/mechanisms/four_ppa_two_par/mechanism.svg
+"""
+import base64
+import html
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+# What lengths are called: (name, end, end), an end being (link, which of several so called, 0 or 1: its from or to).
+# They are written above, a further -1 puts them below; from a vertical one, left and right.
+LENGTHS = {
+    "4ppa-2par": [
+        ("a", ("platform", 0, 0), ("platform", 0, 1), -1),
+        ("b", ("rail 1", 0, 0), ("rail 2", 0, 0)),
+        ("l_u", ("upper bar of slider 1", 0, 0), ("upper bar of slider 1", 0, 1)),
+        ("l_d", ("lower bar of limb 1", 0, 0), ("lower bar of limb 1", 0, 1)),
+        ("d", ("lower connector of limb 2", 0, 0), ("platform", 0, 1), -1),
+        ("L0", ("rail 2", 0, 0), ("rail 2", 0, 1), -1),
+    ],
+    "3crr-r-cru": [
+        *((f"l_{i}", (f"rod {i}", 0, 0), (f"rod {i}", 0, 1)) for i in (11, 12, 21, 22, 31, 32, 41, 42)),
+        ("l", ("moving platform", 0, 0), ("moving platform", 0, 1)),
+        ("L", ("rail 1", 0, 0), ("rail 1", 0, 1), -1),
+    ],
+    "quadrupteron": [
+        *((f"l_{i}", (f"rod {i}", 0, 0), (f"rod {i}", 0, 1)) for i in (11, 12, 21, 22, 31, 32, 41, 42)),
+        ("l", ("platform", 4, 0), ("platform", 4, 1)),
+        ("L", ("rail 1", 0, 0), ("rail 1", 0, 1), -1),
+    ],
+    "2t1r-p-hybrid": [
+        ("2 a", ("platform", 0, 0), ("platform", 0, 1), -1),
+        ("e", ("platform", 1, 0), ("platform", 1, 1)),
+        ("L1", ("link A", 0, 0), ("link A", 0, 1)),
+        ("L2", ("link B", 0, 0), ("link B", 0, 1)),
+        ("L3", ("link C", 0, 0), ("link C", 0, 1)),
+        ("d", ("carriage E", 0, 0), ("carriage E", 0, 1)),
+    ],
+}
+# Where the eye is, about the vertical and above the horizon [deg].
+EYE = {"4ppa-2par": (-62, 16), "2t1r-p-hybrid": (-70, 24)}
+COLOURS = {"frame": "#9a9a9a", "platform": "#c44e52"}
+OTHERS = ["#4c72b0", "#55a868", "#8172b3", "#ccb974", "#64b5cd", "#937860"]
+WIDTH = 900  # of the picture [px]
+
+
+def unpack(text):
+    kind, *bounds, data = text.split(":")
+    data = base64.b64decode(data)
+    if kind == "bits":
+        return np.unpackbits(np.frombuffer(data, np.uint8), bitorder="little")
+    level = np.frombuffer(data, "<u2").astype(float)
+    lower, upper = (float(b) for b in bounds)
+    return lower + (upper - lower) * level / 65534
+
+
+def links_of(program, mechanism):
+    """[(name, part, radius, ends)] at the usual pose of the nominal design."""
+    said = subprocess.run([program, "list", "mechanisms", "--json"], check=True, capture_output=True, text=True).stdout
+    info = next(m for m in json.loads(said)["mechanisms"] if m["name"] == mechanism)
+    length = next(p for p in info["parameters"] if p["unit"] == "m" and p["default"] > 0)
+    value = length["default"]
+    with tempfile.TemporaryDirectory() as folder:
+        study, file, page = (str(Path(folder, "drawn" + end)) for end in (".toml", ".h5", ".html"))
+        Path(study).write_text(
+            f'[study]\nname = "drawn"\n[mechanism]\ntype = "{mechanism}"\n'
+            f'[variables]\n{length["name"]} = {{ min = {value * 0.999999}, max = {value * 1.000001} }}\n'
+            '[workspace]\nmethod = "columns"\n[[objective]]\ntype = "workspace-volume"\n'
+            '[[stage]]\noptimiser = "ga"\npopulation = 4\ngenerations = 1\n')  # fmt: skip
+        for command in (["run", study], ["report", file, "-o", page]):
+            subprocess.run([program, *command], check=True, stdout=subprocess.DEVNULL, cwd=folder)
+        text = Path(page).read_text()
+    start = text.index('"mechanism":{"mode"') + len('"mechanism":')
+    design = json.JSONDecoder().raw_decode(text[start:])[0]["designs"][0]
+    place = int(np.sum(unpack(design["drawn"])[: design["start"]]))
+    at = np.stack([unpack(c).reshape(-1, design["ends"])[place] for c in design["at"]], axis=1)
+    return [(k["name"], k["part"], k["radius"], at[[k["from"], k["to"]]]) for k in design["links"]]
+
+
+def picture(mechanism, links):
+    turn, up = np.radians(EYE.get(mechanism, (-60, 20)))
+    right = np.array([-np.sin(turn), np.cos(turn), 0])
+    away = -np.array([np.cos(turn) * np.cos(up), np.sin(turn) * np.cos(up), np.sin(up)])
+    above = np.cross(right, away)
+    flat = np.array([np.stack([ends @ right, -(ends @ above)], axis=1) for *_, ends in links])
+    margin = 0.06 * np.ptp(flat.reshape(-1, 2), axis=0).max()
+    low = flat.reshape(-1, 2).min(axis=0) - margin
+    size = flat.reshape(-1, 2).max(axis=0) + margin - low
+    scale = WIDTH / size[0]
+
+    def px(point):
+        return (np.array([point @ right, -(point @ above)]) - low) * scale
+
+    def line(a, b, colour, width, more=""):
+        (x1, y1), (x2, y2) = a, b
+        return (f'<path d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}" stroke="{colour}" stroke-width="{width:.1f}"{more}/>')
+
+    def text(at, words, anchor="middle", colour="#222"):
+        name, _, index = words.partition("_")
+        low = f'<tspan font-size="70%" dy="4">{html.escape(index)}</tspan>' if index else ""
+        return (f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}" fill="{colour}">'
+                f"{html.escape(name)}{low}</text>")  # fmt: skip
+
+    parts = [part for part in dict.fromkeys(part for _, part, *_ in links) if part not in COLOURS]
+    colours = COLOURS | {part: OTHERS[i % len(OTHERS)] for i, part in enumerate(parts)}
+    drawn = ['<g fill="none" stroke-linecap="round">']
+    for _, part, radius, ends in sorted(links, key=lambda k: -float(k[3].mean(axis=0) @ away)):
+        a, b = px(ends[0]), px(ends[1])
+        width = max(2 * radius * scale, 2)
+        drawn.append(line(a, b, "#fff", width + 3, ' stroke-opacity="0.7"'))
+        drawn.append(line(a, b, colours[part], width))
+    drawn.append("</g>")
+    drawn.append('<g font-family="sans-serif" font-size="19" font-style="italic">')
+    for name, *ends, side in ((*length, 1) if len(length) == 3 else length for length in LENGTHS.get(mechanism, [])):
+        held = [([k for k in links if k[0] == link][which], end) for link, which, end in ends]
+        a, b = (px(link[3][end]) for link, end in held)
+        across = np.array([-(b - a)[1], (b - a)[0]]) / max(np.hypot(*(b - a)), 1e-9)
+        if across[1] > 0 or (abs(across[1]) < 0.2 and across[0] > 0):
+            across = -across  # beside the link, to its upper side
+        across *= side
+        shift = (12 + scale * max(link[2] for link, _ in held)) * across
+        drawn.append(line(a + shift, b + shift, "#222", 1, ' marker-start="url(#tip)" marker-end="url(#tip)"'))
+        drawn.append(text((a + b) / 2 + shift + 13 * across + [0, 6], name))
+    origin, arm = px(np.zeros(3)), 0.14 * size.max()
+    for axis, name in zip(np.eye(3), "xyz"):
+        tip = px(axis * arm)
+        drawn.append(line(origin, tip, "#c0392b", 2, ' marker-end="url(#tip)"'))
+        drawn.append(text(tip + 14 * (tip - origin) / max(np.hypot(*(tip - origin)), 1e-9) + [0, 6], name, colour="#c0392b"))
+    drawn.append("</g>")
+    named = [f'<tspan fill="{colours[part]}">{html.escape(part)}</tspan>' for part in colours]
+    drawn.append(f'<text x="{WIDTH / 2}" y="{size[1] * scale + 22:.1f}" text-anchor="middle" '
+                 f'font-family="sans-serif" font-size="16" word-spacing="2">{" &#160; ".join(named)}</text>')  # fmt: skip
+    height = size[1] * scale + 36
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height:.0f}" width="{WIDTH}">\n'
+            '<defs><marker id="tip" viewBox="-10 -4 10 8" markerWidth="9" markerHeight="7" orient="auto-start-reverse">'
+            '<path d="M-10-4L0 0L-10 4z" fill="context-stroke"/></marker></defs>\n'
+            '<rect width="100%" height="100%" fill="#fff"/>\n' + "\n".join(drawn) + "\n</svg>\n")  # fmt: skip
+
+
+if __name__ == "__main__":
+    program, mechanism, out = sys.argv[1:]
+    Path(out).write_text(picture(mechanism, links_of(program, mechanism)))

@@ -1,0 +1,174 @@
+// Studies that earlier programs were stopped in, one for each schema of the file (tests/data/README.md): this program
+// shows, reports, exports and evaluates them. It ends one of its own algorithms with the bits of the program that began
+// it, and refuses the others by the versions of both.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/report/page_parts.hpp"
+#include "engine/study/run_study.hpp"
+#include "tests/cli/study_program.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+struct OldStudy {
+  std::string name;
+  std::int64_t algorithms;
+  std::string program;
+  std::vector<std::string> optimisers;  ///< of the stages that had begun; the last had not ended
+};
+
+void PrintTo(const OldStudy& study, std::ostream* out) { *out << study.name; }
+
+const OldStudy kOldStudies[] = {{"interrupted-schema-1", 1, "0.1.0 (259d3de3a709)", {"ga", "ga"}},
+                                {"interrupted-schema-2", 2, "0.1.0 (3640aaead440)", {"ga", "nlopt", "ipopt"}},
+                                {"interrupted-schema-3", 3, "0.1.0 (cccc14640680)", {"nsga2", "nlopt"}}};
+
+class OldStudies : public StudyProgram, public ::testing::WithParamInterface<OldStudy> {
+ protected:
+  /// A copy, which alone is there for the program.
+  void fetch(const std::string& name) const { fs::copy_file(PKM_TEST_DATA "/" + name, path("s.h5")); }
+  std::string slurp(const std::string& name) const {
+    std::ifstream file(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    return names;
+  }
+  Json json(const std::vector<std::string>& arguments) {
+    EXPECT_EQ(run(arguments), 0) << output_;
+    return Json::parse(output_);
+  }
+};
+
+TEST_P(OldStudies, AreShown) {
+  const OldStudy& old = GetParam();
+  fetch(old.name + ".h5");
+  const StudyContents file = read("s.h5");
+  EXPECT_EQ(file.state, StudyState::interrupted);
+  EXPECT_EQ(file.algorithms, old.algorithms);
+
+  ASSERT_EQ(run({"show", "s.h5"}), 0) << output_;
+  EXPECT_THAT(output_, StartsWith(file.name + ": interrupted, " + std::to_string(file.evaluations()) + " evaluations"));
+  EXPECT_THAT(output_, Not(HasSubstr("cannot read the study's text")));
+
+  const Json shown = json({"show", "s.h5", "--json"});
+  EXPECT_EQ(shown["state"], "interrupted");
+  EXPECT_EQ(shown["program"], old.program);
+  EXPECT_EQ(shown["evaluations"], file.evaluations());
+  ASSERT_EQ(shown["stages"].size(), old.optimisers.size());
+  for (std::size_t i = 0; i < old.optimisers.size(); ++i) {
+    EXPECT_EQ(shown["stages"][i]["optimiser"], old.optimisers[i]);
+    EXPECT_EQ(shown["stages"][i]["evaluations"], file.stages[i].table.size());
+    EXPECT_EQ(shown["stages"][i]["finished"], i + 1 < old.optimisers.size());
+    EXPECT_EQ(shown["stages"][i].value("starts", Json::array()).size(), file.stages[i].starts.size());
+    EXPECT_EQ(shown["stages"][i].contains("optimality"), old.optimisers.size() == 3 && i == 1);  // once it has ended
+    EXPECT_EQ(shown["stages"][i].contains("front"), old.optimisers[i] == "nsga2");
+  }
+  const EvaluationTable& table = file.stages[static_cast<std::size_t>(file.best.stage)].table;
+  const auto row = static_cast<std::size_t>(file.best.row);
+  for (std::size_t i = 0; i < file.problem.variables.size(); ++i)
+    EXPECT_EQ(shown["best"]["design"][file.problem.variables[i].name], table.design(row)[i]);
+}
+
+TEST_P(OldStudies, AreReportedAndExported) {
+  fetch(GetParam().name + ".h5");
+  ASSERT_EQ(run({"export", "s.h5", "--csv", ".", "--vtk", "best.vtkhdf"}), 0) << output_;
+  const std::string rows = slurp("evaluations.csv");
+  EXPECT_EQ(std::ranges::count(rows, '\n'), 1 + read("s.h5").evaluations());
+  EXPECT_TRUE(fs::exists(path("best.vtkhdf")));
+  try {
+    page_parts();
+  } catch (const std::exception& reason) {
+    GTEST_SKIP() << reason.what();
+  }
+  ASSERT_EQ(run({"report", "s.h5"}), 0) << output_;
+  EXPECT_THAT(slurp("s.html"), HasSubstr("\"name\":\"" + read("s.h5").name + "\""));
+}
+
+// Bits may differ between versions of the algorithms, values may not.
+TEST_P(OldStudies, DesignsAreEvaluatedToTheValuesRecorded) {
+  fetch(GetParam().name + ".h5");
+  const StudyContents file = read("s.h5");
+  const StageRecord& stage = file.stages[0];
+  const std::size_t generation = stage.generations.size() - 1;
+  const auto row = static_cast<std::size_t>(stage.generations.population_of(generation)[0]);
+  ASSERT_EQ(stage.table.status[row], Status::feasible);
+  const Json anew = json({"evaluate", "--from", "s.h5", "--stage", "1", "--generation", std::to_string(generation),
+                          "--individual", "1", "--json"});
+  EXPECT_EQ(anew["feasible"], true);
+  EXPECT_GE(anew["parameters"].size(), file.problem.parameters.size());  // mechanisms have gained some since
+  for (const ParameterRecord& parameter : file.problem.parameters)
+    if (parameter.variable < 0) {
+      EXPECT_EQ(anew["parameters"][parameter.name], parameter.value) << parameter.name;
+    }
+  for (std::size_t i = 0; i < file.problem.variables.size(); ++i)
+    EXPECT_EQ(anew["parameters"][file.problem.variables[i].name], stage.table.design(row)[i]);
+  const auto expect = [&](const char* kind, const auto& infos, std::span<const double> recorded) {
+    ASSERT_EQ(anew[kind].size(), infos.size());
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const double tolerance = file.algorithms == kAlgorithms ? 0 : 1e-12 * std::abs(recorded[i]);
+      EXPECT_NEAR(anew[kind][infos[i].name].template get<double>(), recorded[i], tolerance) << infos[i].name;
+    }
+  };
+  expect("objectives", file.problem.objectives, stage.table.objective_row(row));
+  expect("constraints", file.problem.margins, stage.table.margin_row(row));
+}
+
+class OldStudiesOfOtherAlgorithms : public OldStudies {};
+
+TEST_P(OldStudiesOfOtherAlgorithms, AreRefusedByTheVersions) {
+  const OldStudy& old = GetParam();
+  fetch(old.name + ".h5");
+  const std::string before = slurp("s.h5");
+  for (std::vector<std::string> arguments :
+       {std::vector<std::string>{"resume", "s.h5"}, {"resume", "s.h5", "--generations", "50"}}) {
+    EXPECT_EQ(run(arguments), 1);
+    EXPECT_EQ(output_, "pkmopt: s.h5 was written by pkmopt " + old.program + ", whose algorithms have version " +
+                           std::to_string(old.algorithms) + "; this program has version 3 and would not repeat it\n");
+  }
+  EXPECT_EQ(slurp("s.h5"), before);
+  EXPECT_EQ(files(), (std::set<std::string>{"s.h5", "output.txt"}));
+}
+
+class OldStudiesOfTheseAlgorithms : public OldStudies {};
+
+// The straight study is of the program that was interrupted: its bits and this program's are compared.
+TEST_P(OldStudiesOfTheseAlgorithms, EndAsTheirOwnProgramEndedThem) {
+  const StudyContents straight = read_study(PKM_TEST_DATA "/straight-schema-3.h5");
+  ASSERT_EQ(straight.state, StudyState::finished);
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{"--threads", "1"}, {"--threads", "3", "--instruction-set", "baseline"}}) {
+    fs::remove(path("s.h5"));
+    fetch(GetParam().name + ".h5");
+    ASSERT_LT(read("s.h5").evaluations(), straight.evaluations());
+    std::vector<std::string> arguments = {"resume", "s.h5", "--quiet"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    ASSERT_EQ(run(arguments), 0) << output_;
+    EXPECT_EQ(first_difference(straight, read("s.h5")), "") << how[1] << " threads";
+    EXPECT_THAT(slurp("s.h5"), StartsWith("pkmopt-study schema=3 "));
+  }
+}
+
+std::string name_of_schema(const ::testing::TestParamInfo<OldStudy>& info) {
+  return "Schema" + info.param.name.substr(info.param.name.size() - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, OldStudies, ::testing::ValuesIn(kOldStudies), name_of_schema);
+INSTANTIATE_TEST_SUITE_P(Refused, OldStudiesOfOtherAlgorithms, ::testing::Values(kOldStudies[0], kOldStudies[1]),
+                         name_of_schema);
+INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfTheseAlgorithms, ::testing::Values(kOldStudies[2]), name_of_schema);
+
+}  // namespace
+}  // namespace pkm::testing

@@ -1,0 +1,74 @@
+// What a front tells: its compromise, its knees, and a choice of its designs.
+#include "engine/problem/front.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/unit/optimisers/trade_off_problems.hpp"
+
+namespace pkm::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
+
+Scores line(std::initializer_list<double> at) {
+  Scores scores{2};
+  for (const double t : at) scores.add(std::array{t, 1 - t});
+  return scores;
+}
+
+TEST(Front, TheCompromiseWeighsRanges) {
+  // Second score in thousands: without ranges the last one would be cheapest.
+  const Scores scores{2, {0, 4000, 1, 1000, 4, 0}};
+  EXPECT_EQ(compromise(scores), 1u);
+}
+
+TEST(Front, TheCompromiseOfABulgingFrontIsInItsMiddle) {
+  for (const TradeOff& known : {zdt_problems()[1], zdt_problems()[4], dtlz2()}) {
+    const Scores front{known.objectives(), known.front};
+    const Ranges extent = ranges_of(front);
+    const std::size_t chosen = compromise(front);
+    for (std::size_t k = 0; k < front.objectives; ++k)
+      EXPECT_LT((front[chosen][k] - extent.least[k]) / extent.range(k), 0.65) << known.name;
+    EXPECT_TRUE(knees(front).empty()) << known.name;
+    const auto one = spread_choice(front, 1);
+    EXPECT_THAT(one, ElementsAre(chosen));
+  }
+}
+
+TEST(Front, AConstantScoreTakesNoKneeAway) {
+  Scores scores{3};
+  for (int i = 0; i <= 50; ++i) scores.add(std::array{i / 50.0, std::pow(1 - i / 50.0, 3), 7.0});
+  EXPECT_EQ(knees(scores).size(), 1u);
+}
+
+TEST(Front, KneesAreBendsAndNotEnds) {
+  // Two bends towards the origin, joined by straight pieces; the one in the middle bulges outwards.
+  const std::array<double, 2> corners[] = {{0.0, 1.0}, {0.05, 0.7}, {0.45, 0.6}, {0.7, 0.05}, {1.0, 0.0}};
+  Scores scores{2};
+  for (std::size_t i = 0; i + 1 < std::size(corners); ++i)
+    for (int k = 0; k < 10; ++k)
+      scores.add(std::array{corners[i][0] + (corners[i + 1][0] - corners[i][0]) * k / 10,
+                            corners[i][1] + (corners[i + 1][1] - corners[i][1]) * k / 10});
+  scores.add(corners[4]);
+  EXPECT_THAT(knees(scores), UnorderedElementsAre(10, 30));
+  EXPECT_TRUE(knees(line({0, 0.5, 1})).empty());  // a straight front has none
+}
+
+TEST(Front, AChoiceHasTheEndsAndTheCompromise) {
+  Scores scores{2};
+  for (int i = 0; i <= 100; ++i) scores.add(std::array{i / 100.0, std::pow(1 - i / 100.0, 3)});
+  const auto chosen = spread_choice(scores, 5);
+  ASSERT_EQ(chosen.size(), 5u);
+  EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+  EXPECT_THAT(chosen, ::testing::IsSupersetOf({std::size_t{0}, std::size_t{100}, compromise(scores)}));
+  EXPECT_EQ(spread_choice(line({0, 0, 1}), 3).size(), 2u);  // equal points count once
+  EXPECT_TRUE(spread_choice(Scores{2}, 3).empty());
+}
+
+}  // namespace
+}  // namespace pkm::test
