@@ -93,8 +93,8 @@ class Mechanism {
 /// the mechanism has none.
 const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan);
 
-/// Every sweep over `most` coordinates and fewer, in the order of the coordinates, for mechanisms that are surveyed
-/// cell by cell.
+/// Every sweep over three coordinates, over two and over one, in this order, for mechanisms that are surveyed cell by
+/// cell.
 /// @param usual  comes first: the swept coordinates
 std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual);
 

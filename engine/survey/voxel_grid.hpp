@@ -41,8 +41,8 @@ struct VoxelGrid {
 };
 
 /// The plain loop: tests every cell's centre, `feasible(c0, c1, c2)` with the coordinates in the order of the axes.
-/// Slow and obviously right; what the counts from column intervals are compared with, and all that a mechanism without
-/// column intervals needs.
+/// Slow and obviously right: what tests and benchmarks compare the counts from column intervals with. Surveys of a
+/// mechanism that has no voxels of its own are in plain_voxels.hpp.
 template <class Test>
 VoxelMap test_every_cell(const VoxelGrid& grid, const Test& feasible) {
   VoxelMap map = grid.map();
