@@ -1,36 +1,71 @@
 #!/usr/bin/env python3
-"""Compares two results of pkm_benchmarks, benchmark by benchmark.
+"""Compares two builds of pkm_benchmarks, or two results of it, benchmark by benchmark.
 
-    pkm_benchmarks --benchmark_repetitions=9 --benchmark_out=before.json
-    pkm_benchmarks --benchmark_repetitions=9 --benchmark_out=after.json
-    benchmarks/compare.py before.json after.json [--limit PERCENT]
+    benchmarks/compare.py before/pkm_benchmarks after/pkm_benchmarks [--rounds N] [--filter REGEX] [--limit PERCENT]
+    benchmarks/compare.py before.json after.json [--limit PERCENT]     (pkm_benchmarks --benchmark_out=before.json)
 
-Prints the median CPU times, their ratio, and the spread of the repetitions; a change within the spread is noise. With
---limit the exit code is 1 if a benchmark got slower by more than that many per cent and by more than its spread.
+Two programs take turns with each benchmark, so that a machine that changes its speed changes it for both; what only
+one of them has is named. Prints the median times, their ratio, and the spread of the repetitions; a change within the
+spread is noise. Benchmarks of several threads (their names end with /real_time) are compared by wall time, the others
+by CPU time. With --limit the exit code is 1 if a benchmark got slower by more than that many per cent and by more than
+its spread.
 """
 
 import argparse
 import json
+import os
+import re
 import statistics
+import subprocess
 import sys
 
 NANOSECONDS = {"ns": 1, "us": 1e3, "ms": 1e6, "s": 1e9}
 
 
+def repetitions(result):
+    """Benchmark's name -> times of its repetitions [ns]."""
+    times = {}
+    for run in result["benchmarks"]:
+        if run.get("run_type", "iteration") == "iteration" and not run.get("error_occurred"):
+            clock = "real_time" if run["run_name"].endswith("/real_time") else "cpu_time"
+            times.setdefault(run["run_name"], []).append(run[clock] * NANOSECONDS[run["time_unit"]])
+    return times
+
+
 def read(path):
-    """Benchmark's name -> CPU times of its repetitions [ns], and the machine's name."""
+    """The times in a result, and the machine's name."""
     try:
         with open(path, encoding="utf-8") as file:
             result = json.load(file)
-        times = {}
-        for run in result["benchmarks"]:
-            if run.get("run_type", "iteration") == "iteration" and not run.get("error_occurred"):
-                times.setdefault(run["run_name"], []).append(run["cpu_time"] * NANOSECONDS[run["time_unit"]])
+        times = repetitions(result)
     except (OSError, ValueError, KeyError) as error:
-        sys.exit(f"{path} is no result of Google Benchmark (--benchmark_out): {error!r}")
+        sys.exit(f"{path} is neither a program nor a result of Google Benchmark (--benchmark_out): {error!r}")
     if not times:
         sys.exit(f"{path} holds no repetition of any benchmark; write it without --benchmark_report_aggregates_only")
     return times, result.get("context", {}).get("host_name", "?")
+
+
+def ask(program, *options):
+    """What a program of benchmarks prints."""
+    try:
+        return subprocess.run([program, *options], check=True, stdout=subprocess.PIPE, text=True).stdout
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"{program}: {error}")
+
+
+def run_in_turns(programs, rounds, pattern):
+    """The times of each program."""
+    lists = [ask(program, "--benchmark_list_tests", f"--benchmark_filter={pattern}").split() for program in programs]
+    times = [{}, {}]
+    for name in dict.fromkeys(lists[0] + lists[1]):
+        for _ in range(rounds):
+            for program, known, mine in zip(programs, lists, times):
+                if name in known:
+                    result = ask(program, f"--benchmark_filter=^{re.escape(name)}$", "--benchmark_format=json",
+                                 "--benchmark_min_time=0.05")
+                    for run, values in repetitions(json.loads(result)).items():
+                        mine.setdefault(run, []).extend(values)
+    return times
 
 
 def spread(times):
@@ -53,10 +88,16 @@ def main():
     parser.add_argument("before")
     parser.add_argument("after")
     parser.add_argument("--limit", type=float, help="per cent that a benchmark may get slower")
+    parser.add_argument("--rounds", type=int, default=9, help="turns of each program, where programs are given")
+    parser.add_argument("--filter", default=".", help="benchmarks to run, where programs are given")
     arguments = parser.parse_args()
-    (before, host_before), (after, host_after) = read(arguments.before), read(arguments.after)
-    if host_before != host_after:
-        print(f"two machines: {host_before} and {host_after}")
+    programs = [arguments.before, arguments.after]
+    if all(os.access(program, os.X_OK) for program in programs):
+        before, after = run_in_turns(programs, arguments.rounds, arguments.filter)
+    else:
+        (before, host_before), (after, host_after) = read(arguments.before), read(arguments.after)
+        if host_before != host_after:
+            print(f"two machines: {host_before} and {host_after}")
     slower = []
     width = max(map(len, before | after))
     print(f"{'':{width}}  {'before':>9}  {'after':>9}  after/before  spread")

@@ -43,16 +43,16 @@ BENCHMARK(pose)->Name("conditioning/pose")->Unit(benchmark::kMicrosecond);
 
 void survey(benchmark::State& state, SurveyPlan plan) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   const auto surveyor = prepare_survey(four_ppa(), plan, demand);
   const auto all = original_design();
   Scratch scratch;
   Survey<double> result;
   for (auto _ : state) {
     surveyor->survey(all, scratch, result);
-    benchmark::DoNotOptimize(result.conditioning.data());
+    benchmark::DoNotOptimize(result.of(kConditioning).data());
   }
-  const auto poses = static_cast<double>(result.conditioning.size());
+  const auto poses = static_cast<double>(result.of(kConditioning).size());
   state.counters["designs"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["poses"] = benchmark::Counter(poses, benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -29,7 +29,7 @@ constexpr Box kInside = {{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}};
 
 Demand coupling() {
   Demand demand;
-  demand.dci = true;
+  demand.add(kCouplingIndex);
   return demand;
 }
 
@@ -42,7 +42,7 @@ void voxels(benchmark::State& state, const char* name) {
   Survey<double> survey;
   for (auto _ : state) {
     surveyor->survey(parameters, scratch, survey);
-    benchmark::DoNotOptimize(survey.dci[0].data());
+    benchmark::DoNotOptimize(survey.of(kCouplingIndex, 0).data());
   }
   state.counters["feasible"] = static_cast<double>(survey.weight.size());
   state.counters["per_pose"] =
@@ -59,7 +59,7 @@ void full_box(benchmark::State& state, const char* name) {
   Survey<double> survey;
   for (auto _ : state) {
     surveyor->survey(parameters, scratch, survey);
-    benchmark::DoNotOptimize(survey.dci[0].data());
+    benchmark::DoNotOptimize(survey.of(kCouplingIndex, 0).data());
   }
   state.counters["feasible"] = static_cast<double>(survey.weight.size());
   state.counters["per_pose"] =
@@ -80,7 +80,7 @@ void task_box(benchmark::State& state) {
   Survey<S> survey;
   for (auto _ : state) {
     run_survey<S>(*surveyor, parameters, scratch, survey);
-    benchmark::DoNotOptimize(weighted_mean(survey.weight, survey.dci[3]));
+    benchmark::DoNotOptimize(weighted_mean(survey.weight, survey.of(kCouplingIndex, 3)));
   }
   state.counters["poses"] = static_cast<double>(survey.weight.size());
 }

@@ -14,7 +14,7 @@ EvaluationTable two_generations(const Problem& problem, std::size_t population) 
   table.extend(population);
   for (std::size_t row = 0; row < population; ++row)
     random_design(problem.space(), 1, static_cast<std::uint32_t>(row), table.design(row));
-  SerialEvaluator().evaluate(problem, table, 0);
+  ParallelEvaluator(1).evaluate(problem, table, 0);
   table.extend(population);
   for (std::size_t row = population; row < 2 * population; ++row)
     random_design(problem.space(), 1, static_cast<std::uint32_t>(row), table.design(row));

@@ -6,6 +6,8 @@
 #include "engine/mechanisms/all.hpp"
 #include "engine/mechanisms/hybrid/voxels.hpp"
 #include "engine/survey/survey_set.hpp"
+#include "tests/unit/mechanisms/hybrid/plain_pose.hpp"
+#include "tests/unit/mechanisms/plain_loop.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -45,7 +47,7 @@ void survey(benchmark::State& state, const Method& method, std::size_t count, co
 
 Demand with_conditioning() {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   return demand;
 }
 
@@ -70,10 +72,10 @@ void plain_loop(benchmark::State& state) {
   const VoxelGrid grid(kPaperGrid.cells, hybrid::default_box(design));
   Survey<double> plain, fast;
   for (auto _ : state) {
-    summarise(
-        grid,
-        test_every_cell(grid, [&](double x, double z, double beta) { return hybrid::feasible(design, x, z, beta); }),
-        plain);
+    summarise(grid,
+              testing::test_every_cell(
+                  grid, [&](double x, double z, double beta) { return testing::hybrid::feasible(design, x, z, beta); }),
+              plain);
     benchmark::DoNotOptimize(plain.volume);
   }
   survey_once<double>(*prepare_survey(hybrid_robot(), plan_of(kPaperGrid), {}), designs(1)[0], fast);

@@ -59,7 +59,7 @@ void against_bound(benchmark::State& state, const Work& work, const Count& opera
 
 Demand conditioning_too() {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   return demand;
 }
 
@@ -165,7 +165,7 @@ void jointed_voxels_over_phi(benchmark::State& state) {
 void coupling_of_voxels(benchmark::State& state) {
   using namespace crr_cru;
   Work work = nominal("3crr-r-cru", {held_at(3, 0.3)});
-  work.demand.dci = true;
+  work.demand.add(kCouplingIndex);
   work.plan.method = VoxelOptions{.cells = {40, 40, 40}};
   const Operations pose =
       count([] {

@@ -74,7 +74,7 @@ BENCHMARK(threads)
 // The paper's study: what a design takes of a population's evaluation and of the algorithm itself.
 void population(benchmark::State& state) {
   const Study study = paper_study();
-  SerialEvaluator evaluator;
+  ParallelEvaluator evaluator(1);
   run_ga(state, *study.problem, state.range(0), 10, evaluator);
 }
 BENCHMARK(population)->Name("scaling/population")->RangeMultiplier(10)->Range(10, 10000)->Unit(benchmark::kMillisecond);
@@ -82,7 +82,7 @@ BENCHMARK(population)->Name("scaling/population")->RangeMultiplier(10)->Range(10
 // The algorithm alone, with free evaluations.
 void own(benchmark::State& state, std::int64_t generations) {
   const Sphere problem(4);
-  SerialEvaluator evaluator;
+  ParallelEvaluator evaluator(1);
   run_ga(state, problem, state.range(0), generations, evaluator);
 }
 void ga_overhead(benchmark::State& state) { own(state, 100); }
@@ -96,7 +96,7 @@ BENCHMARK(own_population)
 
 void own_variables(benchmark::State& state) {
   const Sphere problem(static_cast<std::size_t>(state.range(0)));
-  SerialEvaluator evaluator;
+  ParallelEvaluator evaluator(1);
   run_ga(state, problem, 100, 20, evaluator);
 }
 BENCHMARK(own_variables)

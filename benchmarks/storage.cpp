@@ -7,6 +7,7 @@
 #include "benchmarks/inputs.hpp"
 #include "engine/math/random.hpp"
 #include "engine/storage/study_file.hpp"
+#include "engine/study/records.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -16,15 +17,7 @@ namespace {
 StudyContents study_of(std::int64_t generations, std::int64_t population) {
   const Study source = paper_study();
   const Problem& problem = *source.problem;
-  StudyContents study;
-  study.name = "benchmark";
-  study.toml = source.text;
-  study.toml_file = source.file_name;
-  study.problem.mechanism = "4ppa-2par";
-  study.problem.variables = problem.space().variables();
-  study.problem.objectives = problem.objectives();
-  study.problem.margins = problem.margins();
-  study.problem.reports = problem.reports();
+  StudyContents study = new_contents(source);
   StageRecord& stage = study.stages.emplace_back();
   stage.optimiser = "ga";
   stage.table = EvaluationTable(problem.shape());

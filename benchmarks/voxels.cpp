@@ -9,9 +9,9 @@
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
-#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "engine/survey/survey_set.hpp"
+#include "tests/unit/mechanisms/four_ppa_two_par/plain_pose.hpp"
 
 namespace pkm::benchmarks {
 namespace {
@@ -39,7 +39,7 @@ void pose_test(benchmark::State& state) {
   }
   for (auto _ : state) {
     std::int64_t count = 0;
-    for (const Sample& p : samples) count += feasible(g, l, p.x, g.L0 / 2, p.z, p.sin, p.cos);
+    for (const Sample& p : samples) count += testing::feasible(g, l, p.x, g.L0 / 2, p.z, p.sin, p.cos);
     benchmark::DoNotOptimize(count);
   }
   const auto poses = static_cast<double>(samples.size());
@@ -88,7 +88,7 @@ BENCHMARK(off_plane)->Name("voxel_survey/off_plane")->Unit(benchmark::kMicroseco
 void on_set(benchmark::State& state, bool conditioning) {
   const auto all = optimal_design();
   Demand demand;
-  demand.conditioning = conditioning;
+  if (conditioning) demand.add(kConditioning);
   const auto surveyor = prepare_survey(four_ppa(), voxel_plan(without_limits()), demand);
   Scratch scratch;
   Survey<double> result;
@@ -152,7 +152,7 @@ void fine_grid(benchmark::State& state, const Mechanism& mechanism, std::vector<
 void fine_four_ppa(benchmark::State& state) { fine_grid(state, four_ppa(), optimal_design(), 512); }
 void fine_conditioning(benchmark::State& state) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   fine_grid(state, four_ppa(), optimal_design(), 128, demand);
 }
 void fine_hybrid(benchmark::State& state) { fine_grid(state, mechanism_named("2t1r-p-hybrid"), {}, 512); }

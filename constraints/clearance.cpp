@@ -6,28 +6,21 @@
 namespace pkm {
 namespace {
 
-const LimitInfo* limit_of(const MechanismInfo& mechanism) {
-  for (const auto& limit : mechanism.limits)
-    if (limit.group == "clearance") return &limit;
-  return nullptr;
-}
-
 std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
-  const LimitInfo* const limit = limit_of(mechanism);
-  if (!limit) return {};
+  const auto owned = limits_of(mechanism, "clearance");
+  if (owned.empty()) return {};
+  const LimitInfo& limit = mechanism.limits[owned.front()];
   return {{.name = "min",
-           .kind = OptionKind::number,
-           .unit = limit->unit,
+           .unit = limit.unit,
            .initial = 0.0,
            .lower = 0,
-           .upper = limit->upper,
+           .upper = limit.upper,
            .meaning = "least distance of links that are not joined; 0: they do not touch"}};
 }
 
 LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
   LimitSpec spec = no_limits(mechanism);
-  for (std::size_t i = 0; i < mechanism.limits.size(); ++i)
-    if (mechanism.limits[i].group == "clearance") spec.given[i] = options.number("min");
+  for (const std::size_t i : limits_of(mechanism, "clearance")) spec.given[i] = options.number("min");
   return spec;
 }
 
@@ -37,12 +30,9 @@ ConstraintEntry clearance() {
   return {
       .name = "clearance",
       .meaning = "links that are not joined (limbs, platforms, sliders or rails), as capsules, keep a least distance",
-      .pose_level = true,
       .options = options,
-      .unit = nullptr,
-      .refusal = [](const Mechanism& mechanism) { return refuse_without_limits(mechanism, "clearance"); },
+      .refusal = refuse_without_limits("clearance"),
       .limits = limits,
-      .make = nullptr,
   };
 }
 

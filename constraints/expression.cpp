@@ -3,7 +3,6 @@
 #include "engine/problem/expression.hpp"
 
 #include <optional>
-#include <stdexcept>
 
 #include "constraints/list.hpp"
 #include "engine/core/unit.hpp"
@@ -28,12 +27,8 @@ Bounds bounds(const Options& options) {
 
 std::vector<OptionSpec> options(const MechanismInfo&) {
   auto specs = expression_options();
-  specs.push_back({.name = "min",
-                   .kind = OptionKind::number,
-                   .unit = kUnitOfEntry,
-                   .meaning = "least value allowed; default without max: 0"});
-  specs.push_back(
-      {.name = "max", .kind = OptionKind::number, .unit = kUnitOfEntry, .meaning = "greatest value allowed"});
+  specs.push_back({.name = "min", .unit = kUnitOfEntry, .meaning = "least value allowed; default without max: 0"});
+  specs.push_back({.name = "max", .unit = kUnitOfEntry, .meaning = "greatest value allowed"});
   return specs;
 }
 
@@ -56,11 +51,8 @@ ConstraintEntry expression_constraint() {
   return {
       .name = "expression",
       .meaning = "a formula of parameters, thresholds and results of the survey is >= 0, or min, or <= max",
-      .pose_level = false,
       .options = options,
       .unit = expression_unit,
-      .refusal = [](const Mechanism&) { return std::string(); },
-      .limits = nullptr,
       .make = make,
       .needs_survey = [](const EntryContext& context) { return Expression(context).needs_survey(); },
       .demand = [](const EntryContext& context, Demand& demand) { Expression(context).add_demand(context, demand); },

@@ -9,18 +9,14 @@ ConstraintEntry interference() {
   return {
       .name = "interference",
       .meaning = "links of one limb stay clear of each other; thresholds from the links' sizes",
-      .pose_level = true,
-      .options = [](const MechanismInfo&) { return std::vector<OptionSpec>(); },
-      .unit = nullptr,
-      .refusal = [](const Mechanism& mechanism) { return refuse_without_limits(mechanism, "interference"); },
+      .refusal = refuse_without_limits("interference"),
       .limits =
           [](const MechanismInfo& mechanism, const Options&) {
             LimitSpec spec = no_limits(mechanism);
-            for (std::size_t i = 0; i < mechanism.limits.size(); ++i)
-              spec.derived[i] = mechanism.limits[i].group == "interference" && !mechanism.limits[i].derivation.empty();
+            for (const std::size_t i : limits_of(mechanism, "interference"))
+              spec.derived[i] = !mechanism.limits[i].derivation.empty();
             return spec;
           },
-      .make = nullptr,
   };
 }
 

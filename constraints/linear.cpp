@@ -1,8 +1,7 @@
 // A linear relation between parameters: sum of coefficient * parameter <= bound. The margin is bound minus sum, in the
 // unit of the parameters.
-#include <stdexcept>
-
 #include "constraints/list.hpp"
+#include "engine/core/catalogue.hpp"
 
 namespace pkm {
 namespace {
@@ -14,17 +13,12 @@ std::vector<double> coefficients(const EntryContext& context) {
   if (given.empty()) throw std::invalid_argument("coefficients = {} relates nothing; name at least one parameter");
   std::vector<double> values(parameters.size(), 0.0);
   for (const auto& [name, coefficient] : given) {
-    std::size_t i = 0;
-    while (i < parameters.size() && parameters[i].name != name) ++i;
-    if (i == parameters.size()) {
-      std::vector<std::string> known;
-      for (const auto& parameter : parameters) known.push_back(parameter.name);
-      const std::string nearest = nearest_name(name, known);
+    const Parameter* const parameter = find_named(parameters, name);
+    if (!parameter)
       throw std::invalid_argument("coefficient of '" + name + "', which is no parameter of mechanism " +
-                                  context.mechanism.info().name + "; expected one of " + join(known) +
-                                  (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-    }
-    values[i] = coefficient;
+                                  context.mechanism.info().name + "; expected one of " + join(names_of(parameters)) +
+                                  did_you_mean(name, names_of(parameters)));
+    values[static_cast<std::size_t>(parameter - parameters.data())] = coefficient;
   }
   return values;
 }
@@ -56,7 +50,6 @@ ConstraintEntry linear() {
   return {
       .name = "linear",
       .meaning = "sum of coefficient * parameter <= bound",
-      .pose_level = false,
       .options =
           [](const MechanismInfo&) {
             return std::vector<OptionSpec>{
@@ -65,15 +58,12 @@ ConstraintEntry linear() {
                  .required = true,
                  .meaning = "one number per parameter that takes part, such as { a = 1, b = -1 }"},
                 {.name = "bound",
-                 .kind = OptionKind::number,
                  .unit = kUnitOfEntry,
                  .initial = 0.0,
                  .meaning = "greatest value of the sum, in the unit that the parameters share"},
             };
           },
       .unit = unit,
-      .refusal = [](const Mechanism&) { return std::string(); },
-      .limits = nullptr,
       .make = make,
   };
 }

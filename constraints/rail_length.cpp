@@ -4,17 +4,6 @@
 
 namespace pkm {
 
-ConstraintEntry rail_length() {
-  return {
-      .name = "rail-length",
-      .meaning = "the rails are long enough for the links",
-      .pose_level = false,
-      .options = [](const MechanismInfo&) { return std::vector<OptionSpec>(); },
-      .unit = [](const EntryContext& context) { return design_test_unit(context, "rail-length"); },
-      .refusal = [](const Mechanism& mechanism) { return refuse_without_test(mechanism, "rail-length"); },
-      .limits = nullptr,
-      .make = [](const EntryContext& context) { return make_design_test(context, "rail-length"); },
-  };
-}
+ConstraintEntry rail_length() { return design_test("rail-length", "the rails are long enough for the links"); }
 
 }  // namespace pkm

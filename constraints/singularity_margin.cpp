@@ -1,6 +1,4 @@
 // Distance from serial and parallel singularities at every pose: one option per limit that the mechanism names.
-#include <stdexcept>
-
 #include "constraints/list.hpp"
 #include "constraints/pose_level.hpp"
 
@@ -9,14 +7,10 @@ namespace {
 
 std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
   std::vector<OptionSpec> specs;
-  for (const auto& limit : mechanism.limits) {
-    if (limit.group != "singularity-margin") continue;
-    specs.push_back({.name = limit.name,
-                     .kind = OptionKind::number,
-                     .unit = limit.unit,
-                     .lower = limit.lower,
-                     .upper = limit.upper,
-                     .meaning = limit.meaning});
+  for (const std::size_t i : limits_of(mechanism, "singularity-margin")) {
+    const LimitInfo& limit = mechanism.limits[i];
+    specs.push_back(
+        {.name = limit.name, .unit = limit.unit, .lower = limit.lower, .upper = limit.upper, .meaning = limit.meaning});
     if (!limit.derivation.empty())
       specs.push_back({.name = limit.name + "_derived",
                        .kind = OptionKind::flag,
@@ -30,9 +24,8 @@ LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {
   LimitSpec spec = no_limits(mechanism);
   std::vector<std::string> names;
   bool any = false;
-  for (std::size_t i = 0; i < mechanism.limits.size(); ++i) {
+  for (const std::size_t i : limits_of(mechanism, "singularity-margin")) {
     const LimitInfo& limit = mechanism.limits[i];
-    if (limit.group != "singularity-margin") continue;
     names.push_back(limit.name);
     if (options.has(limit.name)) spec.given[i] = options.number(limit.name);
     spec.derived[i] = !limit.derivation.empty() && options.flag(limit.name + "_derived");
@@ -50,12 +43,9 @@ ConstraintEntry singularity_margin() {
   return {
       .name = "singularity-margin",
       .meaning = "every pose keeps its distance from singularities",
-      .pose_level = true,
       .options = options,
-      .unit = nullptr,
-      .refusal = [](const Mechanism& mechanism) { return refuse_without_limits(mechanism, "singularity-margin"); },
+      .refusal = refuse_without_limits("singularity-margin"),
       .limits = limits,
-      .make = nullptr,
   };
 }
 

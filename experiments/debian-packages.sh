@@ -7,7 +7,6 @@ pkm_build_packages=(
   libtomlplusplus-dev               # studies
   libnlopt-dev coinor-libipopt-dev  # solvers
   liblapack-dev                     # what Ipopt asks for when it is linked
-  libmuparser-dev                   # formulas in studies
   libcli11-dev nlohmann-json3-dev   # command line, --json
   librandom123-dev                  # counter-based random numbers
 )

@@ -12,7 +12,6 @@ ObjectiveEntry expression_objective() {
       .direction = Direction::maximise,
       .options = expression_options(),
       .unit = expression_unit,
-      .refusal = [](const Mechanism&) { return std::string(); },
       .demand = [](const EntryContext& context, Demand& demand) { Expression(context).add_demand(context, demand); },
       .make =
           [](const EntryContext& context) {

@@ -7,12 +7,8 @@ namespace pkm {
 
 ObjectiveEntry workspace_volume();
 ObjectiveEntry workspace_ratio();
-ObjectiveEntry conditioning();
-ObjectiveEntry dci();
-ObjectiveEntry dci_uniformity();
-ObjectiveEntry inertia_condition_objective();
-ObjectiveEntry peak_force();
-ObjectiveEntry peak_power();
+std::vector<ObjectiveEntry> pose_objectives();  ///< of every quantity of poses
+std::vector<ObjectiveEntry> peak_objectives();  ///< of forces and power along a motion
 ObjectiveEntry expression_objective();
 
 }  // namespace pkm

@@ -16,22 +16,20 @@ ObjectiveEntry workspace_ratio() {
       .name = "workspace-ratio",
       .meaning = "workspace volume divided by the mechanism's size",
       .direction = Direction::maximise,
-      .options = {},
       .unit =
           [](const EntryContext& context) {
             return quotient(volume_unit(context.mechanism.info(), context.plan), context.mechanism.size()->unit());
           },
       .refusal =
           [](const Mechanism& mechanism) {
-            return mechanism.size() ? std::string()
+            return mechanism.size() ? Refusal()
                                     : "objective workspace-ratio needs a size, and mechanism " + mechanism.info().name +
                                           " defines none";
           },
-      .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext&) {
             return make_quantity([]<class S>(const DesignView<S>& design) {
-              return S(design.survey->volume / size_of<S>(design.mechanism, design.parameters));
+              return S(design.survey->volume / design.mechanism.size()->of(design.parameters));
             });
           },
   };

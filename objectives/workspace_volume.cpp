@@ -8,10 +8,7 @@ ObjectiveEntry workspace_volume() {
       .name = "workspace-volume",
       .meaning = "measure of the feasible poses over the swept coordinates",
       .direction = Direction::maximise,
-      .options = {},
       .unit = [](const EntryContext& context) { return volume_unit(context.mechanism.info(), context.plan); },
-      .refusal = [](const Mechanism&) { return std::string(); },
-      .demand = [](const EntryContext&, Demand&) {},
       .make =
           [](const EntryContext&) { return make_quantity([](const auto& design) { return design.survey->volume; }); },
   };

@@ -5,25 +5,28 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "engine/core/printable.hpp"
+
 namespace pkm {
 namespace {
+
+// Bytes of a message's parts: all of them together are less than 2 kB.
+constexpr std::size_t kLongestFile = 300, kLongestKey = 160, kLongestFound = 160, kLongestExpected = 1000,
+                      kLongestName = 80, kLongestSentence = 1450, kLongestMessage = 1950;
+
+/// Text of others as a message shows it.
+std::string shown(std::string_view text, std::size_t longest) {
+  return excerpt(printable(excerpt(text, longest)), longest);
+}
 
 std::string prefix(const SourcePlace& place) {
   std::string text;
   if (!place.file.empty()) {
-    text += place.file;
+    text += shown(place.file, kLongestFile);
     if (place.line > 0) text += ":" + std::to_string(place.line);
     text += ": ";
   }
-  if (!place.key.empty()) text += place.key + ": ";
-  return text;
-}
-
-std::string message(const SourcePlace& place, std::string_view found, std::string_view expected,
-                    std::string_view nearest) {
-  std::string text = prefix(place);
-  text += "found " + std::string(found) + "; expected " + std::string(expected);
-  if (!nearest.empty()) text += "; did you mean '" + std::string(nearest) + "'?";
+  if (!place.key.empty()) text += shown(place.key, kLongestKey) + ": ";
   return text;
 }
 
@@ -45,15 +48,24 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 ConfigError::ConfigError(SourcePlace place, std::string_view found, std::string_view expected, std::string_view nearest)
-    : std::runtime_error(message(place, found, expected, nearest)), place_(std::move(place)) {}
+    : ConfigError(std::move(place),
+                  "found " + shown(found, kLongestFound) + "; expected " + shown(expected, kLongestExpected) +
+                      (nearest.empty() ? "" : "; did you mean '" + shown(nearest, kLongestName) + "'?")) {}
 
 ConfigError::ConfigError(SourcePlace place, std::string_view sentence)
-    : std::runtime_error(prefix(place) + std::string(sentence)), place_(std::move(place)) {}
+    : std::runtime_error(prefix(place) + shown(sentence, kLongestSentence)), place_(std::move(place)) {}
+
+StorageError::StorageError(std::string_view sentence)
+    : std::runtime_error(shown(sentence, kLongestFile + kLongestSentence)) {}
+
+std::string message_of(const std::exception& error) { return shown(error.what(), kLongestMessage); }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   std::string best;
+  if (name.size() > kLongestName) return best;
   std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);  // further away is another word
   for (const auto& candidate : known) {
+    if (candidate.size() > 2 * kLongestName) continue;  // nor could it be shown
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < best_distance) {
       best_distance = distance;

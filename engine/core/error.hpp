@@ -1,6 +1,7 @@
 // The errors that reach a user, and the check of what one caller owes another.
 #pragma once
 
+#include <exception>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@ struct SourcePlace {
 };
 
 /// Bad input from a user. what() is one sentence: place, what was found, what was expected, nearest known name.
+/// Whatever the input, it is less than 2 kB long and printable: long parts are shortened, control characters escaped.
 class ConfigError : public std::runtime_error {
  public:
   ConfigError(SourcePlace place, std::string_view found, std::string_view expected, std::string_view nearest = {});
@@ -27,11 +29,15 @@ class ConfigError : public std::runtime_error {
   SourcePlace place_;
 };
 
-/// A study file that cannot be read, written, locked or trusted. what() is one sentence with the file's name.
+/// A study file that cannot be read, written, locked or trusted. what() is one sentence with the file's name, as short
+/// and printable as a ConfigError's.
 class StorageError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit StorageError(std::string_view sentence);
 };
+
+/// what() of any exception, as short and as printable.
+std::string message_of(const std::exception& error);
 
 /// The known name nearest to `name` by edit distance, or "" when none is near enough to be meant.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);

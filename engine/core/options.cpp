@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 
+#include "engine/core/catalogue.hpp"
+
 namespace pkm {
 
 Options default_options(const std::vector<OptionSpec>& specs) {
@@ -23,42 +25,28 @@ namespace {
 std::string quoted(const std::string& word) {
   std::string text = "\"";
   for (const char c : word) {
-    if (c == '\n')
-      text += "\\n";
-    else if (c == '\t')
-      text += "\\t";
-    else
-      text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+    if (std::string_view("\"\\\n\t").find(c) != std::string_view::npos) text += '\\';
+    text += c == '\n' ? 'n' : c == '\t' ? 't' : c;
   }
   return text + '"';
 }
 
+struct Writer {
+  std::string operator()(double number) const { return shortest(number); }
+  std::string operator()(std::int64_t number) const { return std::to_string(number); }
+  std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+  std::string operator()(const std::string& word) const { return quoted(word); }
+  std::string operator()(const std::vector<NamedNumbers>& list) const { return "[" + join_of(list, *this) + "]"; }
+  std::string operator()(const Setting& setting) const { return std::visit(*this, setting); }
+  template <class Value>
+  std::string operator()(const std::map<std::string, Value>& table) const {
+    const auto entry = [this](const auto& named) { return named.first + " = " + (*this)(named.second); };
+    return "{ " + join_of(table, entry) + (table.empty() ? "}" : " }");
+  }
+};
+
 }  // namespace
 
-std::string to_text(const OptionValue& value) {
-  struct Writer {
-    std::string operator()(double number) const { return shortest(number); }
-    std::string operator()(std::int64_t number) const { return std::to_string(number); }
-    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
-    std::string operator()(const std::string& word) const { return quoted(word); }
-    std::string operator()(const NamedNumbers& numbers) const {
-      std::string text;
-      for (const auto& [name, number] : numbers) text += (text.empty() ? " " : ", ") + name + " = " + shortest(number);
-      return "{" + text + " }";
-    }
-    std::string operator()(const std::vector<NamedNumbers>& list) const {
-      std::string text;
-      for (const auto& numbers : list) text += (text.empty() ? "" : ", ") + (*this)(numbers);
-      return "[" + text + "]";
-    }
-    std::string operator()(const NamedSettings& settings) const {
-      std::string text;
-      for (const auto& [name, setting] : settings)
-        text += (text.empty() ? " " : ", ") + name + " = " + std::visit(*this, setting);
-      return "{" + text + " }";
-    }
-  };
-  return std::visit(Writer{}, value);
-}
+std::string to_text(const OptionValue& value) { return std::visit(Writer{}, value); }
 
 }  // namespace pkm

@@ -26,10 +26,4 @@ double DesignSpace::to_unit(std::size_t i, double value) const {
   return v.upper > v.lower ? (value - v.lower) / (v.upper - v.lower) : 0.0;
 }
 
-bool DesignSpace::contains(std::span<const double> design) const {
-  for (std::size_t i = 0; i < variables_.size(); ++i)
-    if (!(design[i] >= variables_[i].lower && design[i] <= variables_[i].upper)) return false;
-  return true;
-}
-
 }  // namespace pkm

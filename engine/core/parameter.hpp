@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -43,7 +42,6 @@ class DesignSpace {
   double to_unit(std::size_t i, double value) const;
   /// The value of variable i nearest to `value` that the space holds: inside the bounds, on the lattice.
   double nearest(std::size_t i, double value) const;
-  bool contains(std::span<const double> design) const;
 
  private:
   std::vector<Variable> variables_;

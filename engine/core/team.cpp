@@ -5,7 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <latch>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace pkm {
 namespace {
@@ -39,6 +45,30 @@ struct Pieces {
   }
 };
 
+/// OpenMP ends the program where it cannot start a thread, so whether so many can be is tried before.
+void expect_threads(int size) {
+  static std::atomic<int> known = 1;  // so many could be started
+  if (size <= known.load(std::memory_order_relaxed)) return;
+  std::latch done(1);
+  std::vector<std::thread> threads;
+  std::string trouble;
+  try {
+    while (std::ssize(threads) < size - 1) threads.emplace_back([&done] { done.wait(); });
+  } catch (const std::system_error& error) {
+    trouble = error.code().message();
+  } catch (const std::bad_alloc&) {
+    trouble = "out of memory";
+  }
+  const std::size_t started = threads.size();
+  done.count_down();
+  for (std::thread& thread : threads) thread.join();
+  if (!trouble.empty())
+    throw std::runtime_error("a team of " + std::to_string(size) + " threads cannot be started: after " +
+                             std::to_string(started) + " more there was no other (" + trouble +
+                             "); use fewer, or allow the program more memory");
+  known = size;
+}
+
 }  // namespace
 
 int team_size(int threads) {
@@ -48,6 +78,7 @@ int team_size(int threads) {
 void with_team(int threads, WorkRef body) {
   const int size = team_size(threads);
   if (size == 1 || omp_in_parallel()) return body(0, 1, 0);
+  expect_threads(size);
   std::exception_ptr failure = nullptr;
 #pragma omp parallel num_threads(size)
 #pragma omp master  // the others wait at the region's end, and take tasks there

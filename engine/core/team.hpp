@@ -39,7 +39,7 @@ int team_size(int threads);
 
 /// Runs body() on this thread, beside a team of so many threads, this one included, as for team_size(): share_pieces()
 /// in it uses them. What it throws is thrown here. One region serves all: within a region, ours or another's, body()
-/// keeps the team that it has.
+/// keeps the team that it has. Throws std::runtime_error where so many threads cannot be started.
 void with_team(int threads, WorkRef body);
 
 /// While it lives, this thread has no team.

@@ -6,7 +6,7 @@
 
 namespace pkm {
 
-/// One line per row, two spaces before each cell, each column as wide as its widest cell.
-std::string aligned(const std::vector<std::vector<std::string>>& rows);
+/// One line per row, two spaces before each cell, each column as wide as its widest cell; the cells are printable.
+std::string aligned(std::vector<std::vector<std::string>> rows);
 
 }  // namespace pkm

@@ -4,11 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
-#include <stdexcept>
 #include <vector>
 
-#include "engine/core/error.hpp"
+#include "engine/core/catalogue.hpp"
 #include "engine/core/options.hpp"
 
 namespace pkm {
@@ -62,20 +60,7 @@ constexpr Symbol kSymbols[] = {
     {"rpm", {kAngularSpeed, kHalfTurn, 30}},
 };
 
-const Symbol* find_symbol(std::string_view name) {
-  for (const auto& symbol : kSymbols)
-    if (symbol.name == name) return &symbol;
-  return nullptr;
-}
-
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t";
-  const auto first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
 
 /// Reads "kg m^2/s" symbol by symbol; `use` sees each with its power. False when the text is no product of known units.
 template <class Use>
@@ -96,7 +81,7 @@ bool read_unit(std::string_view text, Use use) {
     } else {
       std::size_t length = 0;
       while (length < text.size() && is_letter(text[length])) ++length;
-      const Symbol* symbol = find_symbol(text.substr(0, length));
+      const Symbol* symbol = find_named(kSymbols, text.substr(0, length));
       if (!symbol) return false;
       text.remove_prefix(length);
       int power = 1;
@@ -130,8 +115,7 @@ std::vector<std::string> related_units(std::string_view unit) {
   std::vector<std::string> names;
   std::vector<Dimension> listed;
   const auto list = [&](const Dimension& dimension) {
-    for (const auto& seen : listed)
-      if (seen == dimension) return;
+    if (contains(listed, dimension)) return;
     listed.push_back(dimension);
     for (const auto& symbol : kSymbols)
       if (symbol.unit.dimension == dimension) names.emplace_back(symbol.name);
@@ -142,6 +126,13 @@ std::vector<std::string> related_units(std::string_view unit) {
 }
 
 }  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t";
+  const auto first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
 
 bool is_si_unit(std::string_view text) {
   const auto unit = unit_of(text);
@@ -157,23 +148,34 @@ std::string with_unit(double value, std::string_view unit) {
   return unit == "1" || unit.empty() ? shortest(value) : shortest(value) + " " + std::string(unit);
 }
 
-double parse_quantity(std::string_view text, std::string_view unit) {
-  const auto refuse = [&]() {
-    return std::invalid_argument('"' + std::string(text) + "\" is not " + quantity_hint(unit));
-  };
+std::string angle_hint(double value, std::string_view unit) {
+  if (unit != "rad" || std::fabs(value) <= kGreatestAngle) return "";
+  return "an angle within " + shortest(kGreatestAngle) +
+         " rad, beyond which digits would be lost; leave whole turns out";
+}
+
+std::optional<std::int64_t> parse_integer(std::string_view text) {
+  const std::string_view digits = text.substr(text.starts_with('-') ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  std::int64_t number = 0;
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  const bool padded = digits.starts_with('0') && text != "0";
+  return error == std::errc() && stop == end && !padded ? std::optional(number) : std::nullopt;
+}
+
+std::optional<double> parse_quantity(std::string_view text, std::string_view unit) {
   std::string_view rest = trimmed(text);
   if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
   double number = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-  if (error != std::errc{} || !std::isfinite(number)) throw refuse();
+  if (error != std::errc{} || !std::isfinite(number)) return {};
   rest = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
   if (rest.empty()) return number;
   const auto written = unit_of(rest), wanted = unit_of(unit);
   PKM_EXPECTS(wanted.has_value());
-  if (!written || rest[0] == '1' || !wanted || written->dimension != wanted->dimension) throw refuse();
+  if (!written || rest[0] == '1' || !wanted || written->dimension != wanted->dimension) return {};
   const double value = number * written->multiply / written->divide;
-  if (!std::isfinite(value)) throw refuse();
-  return value;
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace pkm

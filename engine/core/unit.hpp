@@ -6,15 +6,31 @@
 // rad".
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace pkm {
 
 /// The value of `text` in the SI unit `unit` ("m", "rad", "s", "kg", "N", "kg m^2", ... or "1"). Text without a unit is
-/// taken to be in `unit`. Does not depend on the locale. Throws std::invalid_argument with one sentence that lists the
-/// units known when `text` is no finite number, has another dimension, an unknown unit or anything behind it.
-double parse_quantity(std::string_view text, std::string_view unit);
+/// taken to be in `unit`. Does not depend on the locale. None where `text` is no finite number, has another dimension,
+/// an unknown unit or anything behind it: see quantity_hint().
+std::optional<double> parse_quantity(std::string_view text, std::string_view unit);
+
+/// Angles beyond it [rad] are no input: a double holds fewer than 11 digits of what is left of them behind whole turns,
+/// and sin and cos are not reduced for them (engine/math/portable.hpp).
+inline constexpr double kGreatestAngle = 1e5;
+
+/// Why a number in `unit` is not taken, where it is an angle beyond kGreatestAngle: what is expected. Else "".
+std::string angle_hint(double value, std::string_view unit);
+
+/// A whole number in decimal digits, "-12", "0"; none for anything else, such as "010", "1e3", " 1", "+1" or what 64
+/// bits do not hold.
+std::optional<std::int64_t> parse_integer(std::string_view text);
+
+/// The text without blanks and tabs around it.
+std::string_view trimmed(std::string_view text);
 
 /// Whether `unit` is a product of SI units that the program knows, such as "m", "m^2 rad", "N m/rad" or "1".
 bool is_si_unit(std::string_view unit);

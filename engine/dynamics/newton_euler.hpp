@@ -23,12 +23,6 @@
 
 namespace pkm {
 
-/// A couple that a joint can transmit.
-struct JointCouple {
-  Vector<double, 3> direction;  ///< of unit length
-  bool redundant = false;       ///< set to zero by the square closure
-};
-
 /// Which component of a joint's force an actuator exerts.
 struct Actuator {
   std::size_t joint;       ///< number among the mechanism's actuated joints
@@ -41,10 +35,10 @@ struct Actuator {
 /// Between two bodies, or a body and the ground. It transmits a force in every direction.
 struct Joint {
   std::string name;
-  Vector<double, 3> point;          ///< [m]
-  std::size_t on;                   ///< body that force and couples act on
-  std::optional<std::size_t> from;  ///< body that their opposites act on; none: the ground
-  std::vector<JointCouple> couples;
+  Vector<double, 3> point;                 ///< [m]
+  std::size_t on;                          ///< body that force and couples act on
+  std::optional<std::size_t> from;         ///< body that their opposites act on; none: the ground
+  std::vector<Vector<double, 3>> couples;  ///< that it can transmit: directions of unit length
   std::optional<Actuator> actuator;
 };
 
@@ -76,10 +70,6 @@ double couple_length(const NewtonEuler& system);
 /// By complete orthogonal decomposition; pivots below kRankTolerance of the greatest are 0.
 inline constexpr double kRankTolerance = 1e-10;
 LeastNorm least_norm(const NewtonEuler& system);
-
-/// The unknowns [N, N m] when redundant couples are 0. Forces are the same as above. Needs as many unknowns as
-/// equations to remain (std::logic_error otherwise); infinite or NaN at a singularity.
-Eigen::VectorXd square_closure(const NewtonEuler& system);
 
 /// Forces of the actuators in a solution, by the number of their joints [N].
 AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution);

@@ -7,12 +7,14 @@
 // (9), 2023, 448-458, eqs 36 to 41, with its errata. A mechanism fills PoseDynamics in; the rest is here.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "engine/math/small_matrix.hpp"
 #include "engine/model/pose.hpp"
+#include "engine/model/singular.hpp"
 
 namespace pkm {
 
@@ -32,15 +34,13 @@ template <class S, std::size_t N = 0>
 struct MotionState {
   Pose<S> pose;
   AxisVector<S> velocity;  ///< Xdot [m/s, rad/s]
+
+  operator MotionState<S, 4>() const { return {schoenflies(pose), fixed<4>(velocity)}; }
 };
 template <class S>
 struct MotionState<S, 4> {
   SchoenfliesPose<S> pose;
   Vector<S, 4> velocity;
-
-  MotionState() = default;
-  MotionState(const SchoenfliesPose<S>& at, const Vector<S, 4>& Xdot) : pose(at), velocity(Xdot) {}
-  MotionState(const MotionState<S, 0>& any) : pose(schoenflies(any.pose)), velocity(fixed<4>(any.velocity)) {}
 };
 
 /// For N coordinates and as many joints; N = 0: for any number of both.
@@ -58,43 +58,41 @@ struct PoseDynamics {
   /// Velocity and angular velocity of the point where a wrench acts.
   MatrixOf<S, 6, N ? N : kMostJoints, N != 0> J_wrench;
 
-  PoseDynamics() = default;
-  /// Of a number known when compiling.
-  template <std::size_t M>
-  requires(N == 0 && M != 0) PoseDynamics(const PoseDynamics<S, M>& d)
-      : assembles(d.assembles),
-        q(d.q),
-        J(d.J),
-        J_rate_X(d.J_rate_X),
-        M_X(d.M_X),
-        h_X(d.h_X),
-        G_X(d.G_X),
-        J_wrench(d.J_wrench) {}
+  operator PoseDynamics<S>() const requires(N != 0) { return {assembles, q, J, J_rate_X, M_X, h_X, G_X, J_wrench}; }
 };
 
-/// Joint-space form; infinite where J is singular.
+/// Joint-space form; NaN where J is singular to working precision.
 template <class S, std::size_t N = 0>
 struct JointSpace {
   AxisMatrix<S, N> M_q;       ///< [kg]
   AxisVector<S, N> c_q, G_q;  ///< Coriolis and centrifugal forces, weight [N]
 };
 
-/// J^-T f.
-template <class S, std::size_t N>
-AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& f) {
-  return solve(transpose(d.J), f);
+/// The same size, and NaN everywhere: what does not exist where J is singular.
+template <SmallMatrix M>
+M undetermined(M like) {
+  for (auto& element : like) element = typename M::Scalar(std::numeric_limits<double>::quiet_NaN());
+  return like;
 }
 
-/// Forces tau of the actuators for an acceleration Xddot under a wrench on the platform, by virtual work [N].
+/// J^-T f; NaN where J is singular to working precision.
+template <class S, std::size_t N>
+AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& f) {
+  return is_singular(d.J) ? undetermined(f) : solve(transpose(d.J), f);
+}
+
+/// Forces tau of the actuators for an acceleration Xddot under a wrench on the platform, by virtual work [N]; NaN where
+/// J is singular to working precision.
 template <class S, std::size_t N>
 AxisVector<S, N> drive_forces(const PoseDynamics<S, N>& d, const std::type_identity_t<AxisVector<S, N>>& acceleration,
                               const Wrench<S>& wrench) {
   return at_joints<S, N>(d, d.M_X * acceleration + d.h_X + d.G_X - transpose(d.J_wrench) * wrench);
 }
 
-/// Inertia as the joints feel it [kg]; symmetric to the last bit.
+/// Inertia as the joints feel it [kg]; symmetric to the last bit. NaN where J is singular to working precision.
 template <class S, std::size_t N>
 AxisMatrix<S, N> joint_inertia(const PoseDynamics<S, N>& d) {
+  if (is_singular(d.J)) return undetermined(d.M_X);
   const AxisMatrix<S, N> half = solve(transpose(d.J), d.M_X);   // J^-T M_X
   AxisMatrix<S, N> M = solve(transpose(d.J), transpose(half));  // J^-T (J^-T M_X)^T
   for (std::size_t i = 0; i < M.rows(); ++i)

@@ -52,15 +52,15 @@ template <std::size_t N>
 RigidBody in_motion(const PlacedBody<N>& placed, const std::type_identity_t<AxisVector<double, N>>& velocity,
                     const std::type_identity_t<AxisVector<double, N>>& acceleration) {
   const Body<double, N>& b = placed.body;
-  RigidBody body;
-  body.name = placed.name;
-  body.mass = b.mass;
-  body.inertia = b.inertia;
-  body.centre = placed.centre;
-  body.a = b.J_v * acceleration + b.b_v;
-  body.omega = b.J_omega * velocity;
-  body.epsilon = b.J_omega * acceleration + b.b_omega;
-  return body;
+  return {.name = placed.name,
+          .mass = b.mass,
+          .inertia = b.inertia,
+          .centre = placed.centre,
+          .a = b.J_v * acceleration + b.b_v,
+          .omega = b.J_omega * velocity,
+          .epsilon = b.J_omega * acceleration + b.b_omega,
+          .force = {},
+          .moment = {}};
 }
 
 /// Lets a force and a moment act on the body at a point of the world.

@@ -19,6 +19,10 @@ constexpr double kInner[kStages][kStages] = {{5.0 / 36, 2.0 / 9 - kRoot / 15, 5.
                                              {5.0 / 36 + kRoot / 30, 2.0 / 9 + kRoot / 15, 5.0 / 36}};
 constexpr int kMostIterations = 60;
 
+const char* const kLeavesReach = "the mechanism leaves its reach";
+const char* const kOddOrLong = ": the mechanism is near a singularity, or the step is too long";
+std::string at(double time) { return "at t = " + with_unit(time, "s") + " "; }
+
 double largest(const AxisVector<double>& x) {
   double most = 0;
   for (const double value : x) most = std::isfinite(value) ? std::fmax(most, std::fabs(value)) : INFINITY;
@@ -36,12 +40,6 @@ class Integrator {
   explicit Integrator(const SimulationSetup& setup) : setup_(setup) {}
 
   /// "" or why there is no step.
-  std::string begin(const AxisVector<double>& pose, const AxisVector<double>& velocity, SimulationState& state) const {
-    state.pose = pose;
-    state.velocity = velocity;
-    return complete(state);
-  }
-
   std::string step(const SimulationState& from, double end, SimulationState& to) const {
     const double h = end - from.time;
     std::array<Stage, kStages> stages;
@@ -58,6 +56,18 @@ class Integrator {
       to.work_of_wrench += weight * stages[i].wrench;
     }
     return complete(to);
+  }
+
+  /// Acceleration and kinetic energy of a state. "" or why there are none, or a limit that it breaks.
+  std::string complete(SimulationState& state) const {
+    const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
+    if (!d.assembles) return at(state.time) + kLeavesReach;
+    if (is_singular(d.J)) return at(state.time) + "the mechanism is in a singularity";
+    state.acceleration = acceleration(d, setup_.forces(state.time), setup_.wrench);
+    state.kinetic_energy = kinetic_energy(d, state.velocity);
+    if (!std::isfinite(largest(state.acceleration))) return at(state.time) + "the mechanism has no finite acceleration";
+    const std::string refused = setup_.refuse ? setup_.refuse(state.pose) : std::string();
+    return refused.empty() ? refused : at(state.time) + refused;
   }
 
  private:
@@ -77,7 +87,7 @@ class Integrator {
       for (std::size_t i = 0; i < kStages; ++i) {
         const double time = from.time + h * kNode[i];
         Stage now;
-        if (!evaluate(time, pose[i], velocity[i], now)) return leaves_reach(time);
+        if (!evaluate(time, pose[i], velocity[i], now)) return at(time) + kLeavesReach;
         change = std::fmax(change, largest(now.acceleration - stages[i].acceleration));
         scale = std::fmax(scale, largest(now.acceleration));
         stages[i] = now;
@@ -88,8 +98,7 @@ class Integrator {
       if (change == 0 || (settled && change >= before)) return {};
       before = change;
     }
-    return "at t = " + with_unit(from.time, "s") +
-           " the accelerations do not settle: the mechanism is near a singularity, or the step is too long";
+    return at(from.time) + "the accelerations do not settle" + kOddOrLong;
   }
 
   bool evaluate(double time, const AxisVector<double>& pose, const AxisVector<double>& velocity, Stage& stage) const {
@@ -104,22 +113,6 @@ class Integrator {
     return true;
   }
 
-  /// Acceleration and kinetic energy of a state.
-  std::string complete(SimulationState& state) const {
-    const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
-    if (!d.assembles) return leaves_reach(state.time);
-    state.acceleration = acceleration(d, setup_.forces(state.time), setup_.wrench);
-    state.kinetic_energy = kinetic_energy(d, state.velocity);
-    if (!std::isfinite(largest(state.acceleration)))
-      return "at t = " + with_unit(state.time, "s") + " the mechanism is in a singularity";
-    const std::string refused = setup_.refuse ? setup_.refuse(state.pose) : std::string();
-    return refused.empty() ? refused : "at t = " + with_unit(state.time, "s") + " " + refused;
-  }
-
-  static std::string leaves_reach(double time) {
-    return "at t = " + with_unit(time, "s") + " the mechanism leaves its reach";
-  }
-
   const SimulationSetup& setup_;
 };
 
@@ -130,7 +123,9 @@ Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose
   const Integrator integrator(setup);
   Simulation result;
   SimulationState state;
-  result.stopped = integrator.begin(pose, velocity, state);
+  state.pose = pose;
+  state.velocity = velocity;
+  result.stopped = integrator.complete(state);
   if (!result.stopped.empty()) return result;
   result.states.push_back(state);
   const double at_first = state.kinetic_energy;
@@ -147,9 +142,7 @@ Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose
     const double work = next.work_of_drives + next.work_of_weight + next.work_of_wrench;
     const double imbalance = std::fabs(next.kinetic_energy - at_first - work);
     if (!(imbalance <= setup.tolerance * result.turned_over)) {
-      result.stopped = "at t = " + with_unit(end, "s") +
-                       " the energy is no longer conserved: the mechanism is near a singularity, or the step is too "
-                       "long";
+      result.stopped = at(end) + "the energy is no longer conserved" + kOddOrLong;
       return result;
     }
     result.imbalance = std::fmax(result.imbalance, imbalance);

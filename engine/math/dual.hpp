@@ -65,6 +65,9 @@ struct Dual {
     return x;
   }
 
+  /// f(x) of a function's value and its first derivative there.
+  [[gnu::always_inline]] Dual through(double f, double f1, double) const { return {f, v * f1}; }
+
   [[gnu::always_inline]] Dual& operator+=(const Dual& y) { return *this = *this + y; }
   [[gnu::always_inline]] Dual& operator-=(const Dual& y) { return *this = *this - y; }
   [[gnu::always_inline]] Dual& operator*=(const Dual& y) { return *this = *this * y; }
@@ -94,46 +97,10 @@ struct Dual {
   }
 };
 
-// The vocabulary of scalar.hpp.
-
-template <int N>
-double value_of(const Dual<N>& x) {
-  return x.a;
-}
-template <int N>
-[[gnu::always_inline]] inline Dual<N> sqrt(const Dual<N>& x) {
-  const double root = std::sqrt(x.a);
-  return {root, x.v * (0.5 / root)};
-}
-template <int N>
-SinCosOf<Dual<N>> sincos(const Dual<N>& x) {
-  const auto [s, c] = portable::sincos(x.a);
-  return {{s, x.v * c}, {c, x.v * -s}};
-}
 template <int N>
 Dual<N> atan2(const Dual<N>& y, const Dual<N>& x) {
   const double norm = x.a * x.a + y.a * y.a;
   return {portable::atan2(y.a, x.a), (y.v * x.a - x.v * y.a) * (1 / norm)};
-}
-template <int N>
-Dual<N> asin(const Dual<N>& x) {
-  const double cosine = std::sqrt((1 - x.a) * (1 + x.a));
-  return {portable::asin(x.a), x.v * (cosine > 0 ? 1 / cosine : 0)};
-}
-template <int N>
-Dual<N> acos(const Dual<N>& x) {
-  const double sine = std::sqrt((1 - x.a) * (1 + x.a));
-  return {portable::acos(x.a), x.v * (sine > 0 ? -1 / sine : 0)};
-}
-
-template <int N>
-Dual<N> exp(const Dual<N>& x) {
-  const double e = portable::exp(x.a);
-  return {e, x.v * e};
-}
-template <int N>
-Dual<N> log(const Dual<N>& x) {
-  return {portable::log(x.a), x.v * (1 / x.a)};
 }
 
 /// Derivatives by four variables; more take several passes.

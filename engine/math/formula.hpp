@@ -1,9 +1,8 @@
 // A formula of named numbers, read from text once and computed often: "volume / (pi * b * (l_u + l_d))".
 //
-// muParser reads the text. Its own evaluation is not used, because a parser serves one thread, calls libm (whose last
-// bits differ between processors) and knows nothing of derivatives: the byte code it makes becomes a list of steps that
-// never changes and that works for every scalar. So derivatives are as exact as those of the inputs, and values have
-// the same bits on every processor and thread, those of the formula written in C++.
+// The text becomes a list of steps that never changes and that works for every scalar. So threads share it, derivatives
+// are as exact as those of the inputs, and values have the same bits on every processor, those of the formula written
+// in C++.
 //
 // What a formula may hold: numbers (1, .5, 1e-3), the given names, `pi`, + - * / and signs, ^ (to the right: 2^3^2 is
 // 2^9, and -a^2 is -(a^2)), comparisons < <= > >= == != and && || (1 or 0), c ? x : y, parentheses, and the functions

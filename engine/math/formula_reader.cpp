@@ -1,136 +1,36 @@
-#include "engine/math/formula_reader.hpp"
-
-#include <muParser.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/math/formula_words.hpp"
-#include "engine/math/portable.hpp"
 
 namespace pkm::formula {
 namespace {
 
-int identify_number(const char* text, int* position, double* value) {
-  const std::size_t length = read_number(text, *value);
-  *position += static_cast<int>(length);
-  return length > 0 ? 1 : 0;
+constexpr std::size_t kMostCharacters = 20000;
+constexpr const char* kNoColon = "has a '?' without its ':'";
+
+bool is_order(const Operation* operation) {
+  return operation && (operation->name[0] == '<' || operation->name[0] == '>');
 }
 
-// muParser would call these to evaluate, which it never does here: their addresses tell calls and signs apart.
-double call_1(void*, double) { return 0; }
-double call_2(void*, double, double) { return 0; }
-double call_many(void*, const double*, int) { return 0; }
-double minus(double x) { return -x; }
-double plus(double x) { return x; }
-
-/// muParser with our words only.
-class Parser final : public mu::ParserBase {
+/// Dijkstra's shunting yard: operators wait until one comes that binds no more than they do, parentheses and choices
+/// c ? x : y until they end. Nothing recurses, so that no depth is too much.
+class Reader {
  public:
-  Parser() {
-    AddValIdent(identify_number);
-    InitCharSets();
-    InitFun();
-    InitConst();
-    InitOprt();
-    EnableOptimizer(false);  // each operation becomes a step, in the order in which it is written
-  }
+  explicit Reader(const std::string& text) : text_(text) {}
 
- private:
-  void InitCharSets() override {
-    DefineNameChars("0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
-    DefineOprtChars("+-*/^<>=!&|?:");
-    DefineInfixOprtChars("+-");
-  }
-  void InitFun() override {
-    for (const Function& function : functions()) {
-      void* tag = const_cast<Function*>(&function);  // is handed on and comes back in the byte code
-      if (function.arguments == 1) DefineFunUserData(function.name, call_1, tag);
-      if (function.arguments == 2) DefineFunUserData(function.name, call_2, tag);
-      if (function.arguments == 0) DefineFunUserData(function.name, call_many, tag);
+  Program run(const std::vector<Word>& words) {
+    for (const Word& word : words) {
+      const bool is_sign = wants_operand_ && (word.text == "+" || word.text == "-");
+      if (is_sign && after_sign_) misplaced(word);
+      take(word);
+      after_sign_ = is_sign;
     }
-  }
-  void InitConst() override { DefineConst(kPiName, kPi); }
-  void InitOprt() override {
-    DefineInfixOprt("-", minus);
-    DefineInfixOprt("+", plus);
-  }
-};
-
-/// muParser's complaint about words in the wrong order, as a sentence of ours.
-std::string sentence_of(const mu::ParserError& error, const std::string& text) {
-  const std::string token = error.GetToken();
-  std::size_t place = error.GetPos() < 0 ? std::string::npos : static_cast<std::size_t>(error.GetPos());
-  switch (error.GetCode()) {
-    case mu::ecUNEXPECTED_EOF:
-      return "ends where a number, a name or '(' is expected";
-    case mu::ecMISSING_ELSE_CLAUSE:
-      return "has a '?' without its ':'";
-    case mu::ecMISPLACED_COLON:
-      return "has a " + quote(":", text.rfind(':', place)) + " without its '?'";
-    case mu::ecEXPRESSION_TOO_LONG:
-      return "has more than " + std::to_string(mu::MaxLenExpression) + " characters";
-    default:
-      break;
-  }
-  // Some complaints tell the place behind the word.
-  if (token.empty() || token == "-" || token == "+") --place;
-  if (place >= text.size()) return "cannot be read: " + error.GetMsg();
-  std::size_t end = place;
-  while (end > 0 && is_blank(text[end - 1])) --end;
-  const bool behind_operand = end > 0 && (is_name_part(text[end - 1]) || text[end - 1] == '.' || text[end - 1] == ')');
-  return "has a " + quote(token.empty() ? text.substr(place, 1) : token, place) + ", where " +
-         (behind_operand ? "an operator" : "a number, a name or '('") + " is expected";
-}
-
-Operation operation_of(mu::ECmdCode code) {
-  switch (code) {
-    case mu::cmLE:
-      return Operation::less_or_equal;
-    case mu::cmGE:
-      return Operation::greater_or_equal;
-    case mu::cmNEQ:
-      return Operation::unequal;
-    case mu::cmEQ:
-      return Operation::equal;
-    case mu::cmLT:
-      return Operation::less;
-    case mu::cmGT:
-      return Operation::greater;
-    case mu::cmADD:
-      return Operation::add;
-    case mu::cmSUB:
-      return Operation::subtract;
-    case mu::cmMUL:
-      return Operation::multiply;
-    case mu::cmDIV:
-      return Operation::divide;
-    case mu::cmPOW:
-      return Operation::power;
-    case mu::cmLAND:
-      return Operation::both;
-    case mu::cmLOR:
-      return Operation::either;
-    default:
-      throw std::logic_error("muParser made a step of a formula that nobody knows");
-  }
-}
-
-bool is_order(Operation operation) {
-  return operation == Operation::less || operation == Operation::less_or_equal || operation == Operation::greater ||
-         operation == Operation::greater_or_equal;
-}
-
-/// Makes one step of each word of muParser's byte code, so that its jumps keep their lengths, and follows what the
-/// steps leave on the stack.
-class Translation {
- public:
-  Translation(const std::string& text, const double* slots) : text_(text), slots_(slots) {}
-
-  Program run(const mu::ParserByteCode& code) {
-    for (const mu::SToken* token = code.GetBase(); token->Cmd != mu::cmEND; ++token) add(*token);
-    if (stack_.size() != 1) throw confusion();
+    if (wants_operand_) refuse(text_, "ends where a number, a name or '(' is expected");
+    end_choices();
+    if (!waiting_.empty()) refuse(text_, kNoColon);
+    if (compares_comparison_) refuse(text_, "compares a comparison; write a < b && b < c for a < b < c");
     auto& used = program_.used;
     std::ranges::sort(used);
     used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -138,80 +38,120 @@ class Translation {
   }
 
  private:
-  void add(const mu::SToken& token) {
-    switch (token.Cmd) {
-      case mu::cmVAL:
-        return push({Operation::number, 0, token.Val.data2});
-      case mu::cmVAR:
-        program_.used.push_back(static_cast<std::size_t>(token.Val.ptr - slots_));
-        return push({Operation::name, program_.used.back()});
-      case mu::cmFUNC:
-        if (const auto* function = static_cast<const Function*>(token.Fun.cb._pUserData))
-          return call(function->operation, static_cast<std::size_t>(std::abs(token.Fun.argc)));
-        if (token.Fun.cb._pRawFun == reinterpret_cast<mu::erased_fun_type>(minus)) return call(Operation::negate, 1);
-        return step({Operation::nothing});
-      case mu::cmIF:
-        pop(1);
-        branches_.push_back(stack_.size());
-        return step({Operation::jump_if_zero, behind_jump(token)});
-      case mu::cmELSE:
-        pop(1);
-        return step({Operation::jump, behind_jump(token)});
-      case mu::cmENDIF:
-        if (branches_.empty() || stack_.size() != branches_.back() + 1) throw confusion();
-        branches_.pop_back();
-        return step({Operation::nothing});
-      default:
-        return call(operation_of(token.Cmd), 2);
+  struct Waiting {
+    enum class Kind { operation, parenthesis, question, colon };
+    Kind kind;
+    const Operation* operation = nullptr;  ///< also the function of a parenthesis; null: it only groups
+    std::size_t count = 0;                 ///< arguments so far; of '?' and ':' the step that jumps
+  };
+  using Kind = Waiting::Kind;
+
+  void take(const Word& word) {
+    const char mark = word.text[0];
+    if (word.operand || word.function || mark == '(') {
+      if (!wants_operand_) misplaced(word);
+      if (word.operand) operand(*word.operand);
+      if (mark == '(') waiting_.push_back({Kind::parenthesis, called_, 1});
+      called_ = word.function;
+    } else if (wants_operand_) {
+      if (mark != '-' && mark != '+') misplaced(word);
+      if (mark == '-') waiting_.push_back({Kind::operation, &negation()});
+    } else if (const Operation* operation = find_named(operators(), word.text)) {
+      finish(mark == '^' ? operation->rank + 1 : operation->rank);
+      waiting_.push_back({Kind::operation, operation});
+      wants_operand_ = true;
+    } else if (mark == '?') {
+      finish(0);
+      waiting_.push_back({.kind = Kind::question, .count = jump(Step::Kind::jump_if_zero)});
+      wants_operand_ = true;
+    } else {
+      end_choices();
+      const bool in_question = !waiting_.empty() && waiting_.back().kind == Kind::question;
+      if (mark == ':' && !in_question) refuse(text_, "has a " + quote(":", word.place) + " without its '?'");
+      if (mark == ')' && in_question) refuse(text_, kNoColon);
+      if (mark == ',' && in_question) misplaced(word);
+      if (mark == ')') return close();
+      wants_operand_ = true;
+      if (mark == ',') {
+        ++waiting_.back().count;
+      } else {
+        const std::size_t question = waiting_.back().count;
+        waiting_.back() = {.kind = Kind::colon, .count = jump(Step::Kind::jump)};
+        land(question);
+      }
     }
   }
 
-  std::size_t behind_jump(const mu::SToken& token) const {
-    return program_.steps.size() + static_cast<std::size_t>(token.Oprt.offset) + 1;
+  void operand(const Step& step) {
+    if (step.kind == Step::Kind::name) program_.used.push_back(step.count);
+    push(step);
+    wants_operand_ = false;
   }
-  void call(Operation operation, std::size_t count) {
-    if (is_order(operation) && stack_.size() >= 2 && (is_order(stack_.back()) || is_order(stack_[stack_.size() - 2])))
-      refuse(text_, "compares a comparison; write a < b && b < c for a < b < c");
-    pop(count);
-    push({operation, count});
+
+  void close() {
+    const Waiting open = waiting_.back();
+    waiting_.pop_back();
+    if (open.operation) call(open.operation, open.count);
   }
-  void push(const Step& made) {
-    stack_.push_back(made.operation);
+
+  /// Carries out what waits on top and binds at least as much as `rank`.
+  void finish(int rank) {
+    for (; !waiting_.empty(); waiting_.pop_back()) {
+      const auto& [kind, operation, count] = waiting_.back();
+      if (kind != Kind::operation || operation->rank < rank) return;
+      call(operation, operation->arguments);
+    }
+  }
+  /// And the choices of which both branches are there.
+  void end_choices() {
+    for (finish(0); !waiting_.empty() && waiting_.back().kind == Kind::colon; finish(0)) {
+      land(waiting_.back().count);
+      waiting_.pop_back();
+    }
+  }
+
+  /// Takes the uppermost number; which step the jump is.
+  std::size_t jump(Step::Kind kind) {
+    stack_.pop_back();
+    program_.steps.push_back({.kind = kind});
+    return program_.steps.size() - 1;
+  }
+  void land(std::size_t jump) { program_.steps[jump].count = program_.steps.size(); }
+
+  void call(const Operation* operation, std::size_t count) {
+    const auto arguments = stack_.end() - static_cast<std::ptrdiff_t>(count);
+    compares_comparison_ |= is_order(operation) && std::any_of(arguments, stack_.end(), is_order);
+    stack_.erase(arguments, stack_.end());
+    push({.kind = Step::Kind::operation, .count = count, .operation = operation});
+  }
+  void push(const Step& step) {
+    program_.steps.push_back(step);
+    stack_.push_back(step.operation);
     program_.depth = std::max(program_.depth, stack_.size());
-    step(made);
   }
-  void pop(std::size_t count) {
-    if (stack_.size() < count) throw confusion();
-    stack_.resize(stack_.size() - count);
+
+  [[noreturn]] void misplaced(const Word& word) const {
+    refuse(text_, "has a " + quote(word.text, word.place) + ", where " +
+                      (wants_operand_ ? "a number, a name or '('" : "an operator") + " is expected");
   }
-  void step(const Step& made) { program_.steps.push_back(made); }
-  static std::logic_error confusion() { return std::logic_error("muParser made steps of a formula that do not fit"); }
 
   const std::string& text_;
-  const double* slots_;
   Program program_;
-  std::vector<Operation> stack_;       ///< what gave each number
-  std::vector<std::size_t> branches_;  ///< depth of the stack before each open c ? x : y
+  std::vector<Waiting> waiting_;
+  std::vector<const Operation*> stack_;  ///< what gave each number; null: a number or a name
+  const Operation* called_ = nullptr;    ///< by the name just read
+  bool wants_operand_ = true, after_sign_ = false, compares_comparison_ = false;
 };
 
 }  // namespace
 
 Program read_program(const std::string& text, const std::vector<std::string>& names) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (!may_be_name(names[i]) ||
-        std::find(names.begin() + static_cast<std::ptrdiff_t>(i) + 1, names.end(), names[i]) != names.end())
-      throw std::logic_error("a formula cannot know a number called '" + names[i] + "'");
-  const std::string prepared = check_words(text, names);
-  std::vector<double> slots(names.size());  // their addresses stand for the names
-  Parser parser;
-  for (std::size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &slots[i]);
-  try {
-    parser.SetExpr(prepared);
-    parser.GetUsedVar();  // reads without evaluating
-  } catch (const mu::ParserError& error) {
-    refuse(text, sentence_of(error, prepared));
-  }
-  return Translation(text, slots.data()).run(parser.GetByteCode());
+  for (auto name = names.begin(); name != names.end(); ++name)
+    if (!may_be_name(*name) || std::find(name + 1, names.end(), *name) != names.end())
+      throw std::logic_error("a formula cannot know a number called '" + *name + "'");
+  const std::vector<Word> words = words_of(text, names);
+  if (text.size() >= kMostCharacters) refuse(text, "has more than " + std::to_string(kMostCharacters) + " characters");
+  return Reader(text).run(words);
 }
 
 }  // namespace pkm::formula

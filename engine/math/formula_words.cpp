@@ -2,168 +2,130 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <stdexcept>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/core/error.hpp"
 
 namespace pkm::formula {
 namespace {
 
+constexpr const char* kPiName = "pi";
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
 
 /// "; known are a, b; did you mean 'a'?"
 std::string known_words(const std::string& word, const std::vector<std::string>& known) {
-  const std::string nearest = nearest_name(word, known);
-  return "; known are " + join(known) + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
+  return "; known are " + join(known) + did_you_mean(word, known);
 }
 
 class WordCheck {
  public:
-  WordCheck(const std::string& text, const std::vector<std::string>& names)
-      : text_(text), prepared_(text), known_(names) {
+  WordCheck(const std::string& text, const std::vector<std::string>& names) : text_(text), known_(names) {
     known_.emplace_back(kPiName);
   }
 
-  std::string run() {
-    for (std::size_t i = 0; i < text_.size(); ++i) {
-      if (is_blank(text_[i])) continue;
-      const std::size_t start = i;
-      i += word_at(start) - 1;
-      previous_ = start;
-    }
-    if (previous_ == text_.size()) refuse(text_, "is empty");
-    if (!open_.empty()) refuse(text_, "never closes the " + quote("(", open_.back().place));
-    return std::move(prepared_);
+  std::vector<Word> run() {
+    for (std::size_t i = 0; i < text_.size();)
+      if (is_blank(text_[i])) {
+        ++i;
+      } else {
+        words_.push_back(word_at(i));
+        i += words_.back().text.size();
+      }
+    if (words_.empty()) refuse(text_, "is empty");
+    if (!open_.empty()) refuse(text_, "never closes the " + quote("(", words_[open_.back().word].place));
+    return std::move(words_);
   }
 
  private:
-  struct Call {
-    const Function* function = nullptr;
-    std::size_t place = 0;
-  };
   struct Parenthesis {
-    std::size_t place;
-    Call call;  ///< no function: it only groups
+    std::size_t word;
+    bool calls;  ///< the word before it; else it only groups
     std::size_t commas = 0;
   };
 
-  /// Checks the word that begins at `i`; its length.
-  std::size_t word_at(std::size_t i) {
+  Word word_at(std::size_t i) {
     const std::string_view rest = std::string_view(text_).substr(i);
-    double number = 0;
-    if (const std::size_t length = read_number(rest, number)) {
-      if (number != number) refuse(text_, "has a number out of range, " + quote(rest.substr(0, length), i));
-      return length;
-    }
+    if (is_digit(rest[0]) || (rest[0] == '.' && rest.size() > 1 && is_digit(rest[1]))) return number_at(i);
     if (is_name_start(rest[0])) return name_at(i);
+    std::size_t length = 1;
     for (const char* pair : {"<=", ">=", "==", "!=", "&&", "||"})
-      if (rest.starts_with(pair)) return 2;
+      if (rest.starts_with(pair)) length = 2;
+    if (length == 2) return {text_.substr(i, length), i};
     if (rest[0] == '(') {
-      open_.push_back({i, call_});
-      call_ = {};
+      open_.push_back({words_.size(), !words_.empty() && words_.back().function});
     } else if (rest[0] == ')') {
       close(i);
     } else if (rest[0] == ',') {
       if (open_.empty()) refuse(text_, "has a " + quote(",", i) + ", but a formula gives one number");
-      if (!open_.back().call.function) refuse(text_, "has a " + quote(",", i) + " outside of a function's arguments");
+      if (!open_.back().calls) refuse(text_, "has a " + quote(",", i) + " outside of a function's arguments");
       ++open_.back().commas;
     } else if (rest[0] == '=') {
       refuse(text_, "has a " + quote("=", i) + ", but a formula changes nothing; compare with '=='");
     } else if (std::string_view("+-*/^<>?:").find(rest[0]) == std::string_view::npos) {
-      std::size_t length = 1;  // the further bytes of a character in UTF-8 go with the first
+      // the further bytes of a character in UTF-8 go with the first
       while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0U) == 0x80U) ++length;
       refuse(text_, "has a " + quote(rest.substr(0, length), i) + ", which means nothing in a formula");
     }
-    return 1;
+    return {text_.substr(i, 1), i};
   }
 
-  std::size_t name_at(std::size_t i) {
-    std::size_t end = i;
-    while (end < text_.size() && is_name_part(text_[end])) ++end;
-    std::size_t next = end;
-    while (next < text_.size() && is_blank(text_[next])) ++next;
-    const bool calls = next < text_.size() && text_[next] == '(';
+  /// Does not depend on the locale.
+  Word number_at(std::size_t i) const {
+    Step step{.kind = Step::Kind::number};
+    const auto [end, error] = std::from_chars(text_.data() + i, text_.data() + text_.size(), step.number);
+    const std::string word(text_.data() + i, end);
+    if (error != std::errc{}) refuse(text_, "has a number out of range, " + quote(word, i));
+    return {word, i, step};
+  }
 
-    const std::string word = text_.substr(i, end - i);
-    const Function* function = find_named(functions(), word);
-    const bool known = std::ranges::find(known_, word) != known_.end();
+  Word name_at(std::size_t i) const {
+    const auto begin = text_.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto end = std::find_if_not(begin, text_.end(), is_name_part);
+    const auto next = std::find_if_not(end, text_.end(), is_blank);
+    const bool calls = next != text_.end() && *next == '(';
+
+    const std::string word(begin, end);
+    const Operation* function = find_named(functions(), word);
+    const auto position = static_cast<std::size_t>(std::ranges::find(known_, word) - known_.begin());
+    const bool known = position < known_.size();
     if (calls && known) refuse(text_, "calls " + quote(word, i) + ", which is no function; multiply with '*'");
     if (calls && !function)
       refuse(text_, "calls the unknown function " + quote(word, i) + known_words(word, names_of(functions())));
     if (!calls && function) refuse(text_, "lacks the arguments of " + quote(word, i) + ", in parentheses");
     if (!calls && !known) refuse(text_, "has the unknown name " + quote(word, i) + known_words(word, known_));
-    if (calls) {
-      call_ = {function, i};
-      const auto begin = prepared_.begin();
-      std::rotate(begin + static_cast<std::ptrdiff_t>(i), begin + static_cast<std::ptrdiff_t>(end),
-                  begin + static_cast<std::ptrdiff_t>(next));
-    }
-    return end - i;
+    if (calls) return {word, i, {}, function};
+    if (word == kPiName) return {word, i, Step{.kind = Step::Kind::number, .number = kPi}};
+    return {word, i, Step{.kind = Step::Kind::name, .count = position}};
   }
 
   void close(std::size_t i) {
     if (open_.empty()) refuse(text_, "has a " + quote(")", i) + " without its '('");
-    const auto [place, call, commas] = open_.back();
+    const auto [word, calls, commas] = open_.back();
     open_.pop_back();
-    if (!call.function) return;
-    const std::size_t given = previous_ == place ? 0 : commas + 1, wanted = call.function->arguments;
+    if (!calls) return;
+    const Word& call = words_[word - 1];
+    const std::size_t given = word + 1 == words_.size() ? 0 : commas + 1, wanted = call.function->arguments;
     if (wanted == 0 ? given >= 2 : given == wanted) return;
     refuse(text_, "gives " + std::to_string(given) + (given == 1 ? " argument" : " arguments") + " to " +
-                      quote(call.function->name, call.place) + ", which takes " +
+                      quote(call.text, call.place) + ", which takes " +
                       (wanted == 0 ? "two or more" : std::to_string(wanted)));
   }
 
   const std::string& text_;
-  std::string prepared_;
   std::vector<std::string> known_;
+  std::vector<Word> words_;
   std::vector<Parenthesis> open_;
-  Call call_;                            ///< of the name just read
-  std::size_t previous_ = text_.size();  ///< where the word before began
 };
 
 }  // namespace
 
-const std::vector<Function>& functions() {
-  static const std::vector<Function> list = {
-      {"sin", 1, Operation::sine},
-      {"cos", 1, Operation::cosine},
-      {"tan", 1, Operation::tangent},
-      {"asin", 1, Operation::arcsine},
-      {"acos", 1, Operation::arccosine},
-      {"atan", 1, Operation::arctangent},
-      {"atan2", 2, Operation::arctangent_2},
-      {"sinh", 1, Operation::hyperbolic_sine},
-      {"cosh", 1, Operation::hyperbolic_cosine},
-      {"tanh", 1, Operation::hyperbolic_tangent},
-      {"exp", 1, Operation::exponential},
-      {"log", 1, Operation::logarithm},
-      {"log10", 1, Operation::logarithm_10},
-      {"sqrt", 1, Operation::root},
-      {"abs", 1, Operation::magnitude},
-      {"sign", 1, Operation::sign},
-      {"min", 0, Operation::least},
-      {"max", 0, Operation::greatest},
-  };
-  return list;
-}
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
-
 bool may_be_name(const std::string& name) {
   return !name.empty() && is_name_start(name[0]) && std::ranges::all_of(name, is_name_part) && name != kPiName &&
          !find_named(functions(), name);
-}
-
-std::size_t read_number(std::string_view text, double& value) {
-  const std::size_t first = text.starts_with('.') ? 1 : 0;
-  if (text.size() <= first || !is_digit(text[first])) return 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{}) value = std::numeric_limits<double>::quiet_NaN();
-  return static_cast<std::size_t>(end - text.data());
 }
 
 void refuse(const std::string& text, const std::string& sentence) {
@@ -177,7 +139,7 @@ std::string quote(std::string_view word, std::size_t place) {
   return "'" + std::string(word) + "' at character " + std::to_string(place + 1);
 }
 
-std::string check_words(const std::string& text, const std::vector<std::string>& names) {
+std::vector<Word> words_of(const std::string& text, const std::vector<std::string>& names) {
   return WordCheck(text, names).run();
 }
 

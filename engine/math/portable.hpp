@@ -7,6 +7,7 @@
 // of 2^-53); the tests measure that.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -16,14 +17,15 @@ namespace pkm {
 
 inline constexpr double kPi = 3.141592653589793238462643383279502884;
 
-namespace portable {
-
-struct SinCos {
-  double sin, cos;
+template <class S>
+struct SinCosOf {
+  S sin, cos;
 };
 
+namespace portable {
+
 /// sin and cos of an angle [rad], |angle| <= 1e5 (the reduction by three parts of pi/2 is exact up to there).
-inline SinCos sincos(double angle) {
+inline SinCosOf<double> sincos(double angle) {
   constexpr double part_1 = 0x1.921fb544p+0, part_2 = 0x1.0b4611a6p-34, part_3 = 0x1.3198a2e037073p-69;
   const double k = std::nearbyint(angle * (2 / kPi));
   const double r = ((angle - k * part_1) - k * part_2) - k * part_3;
@@ -43,7 +45,8 @@ inline SinCos sincos(double angle) {
                                                                                    q * (1.0 / 20922789888000.0)))))));
   const double half = 0.5 * q, head = 1.0 - half;
   const double c = head + (((1.0 - head) - half) + tail);  // keeps the bits that 1 - q/2 rounds away
-  switch (static_cast<std::int64_t>(k) & 3) {
+  // The last bits of k + 1.5 2^52 are those of k; NaN, which no integer holds, has some too.
+  switch (std::bit_cast<std::uint64_t>(k + 0x1.8p52) & 3) {
     case 0:
       return {s, c};
     case 1:

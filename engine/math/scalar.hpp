@@ -10,25 +10,50 @@
 
 namespace pkm {
 
-using std::sqrt;
+using portable::acos, portable::asin, portable::atan2, portable::exp, portable::log, portable::sincos, std::sqrt;
 
 inline double value_of(double x) { return x; }
 
+/// A scalar with derivatives: f(x) follows from f(a), f'(a) and f''(a) at its value a. Where a slope is infinite, at
+/// the ends of the range of asin and acos, the derivatives are 0.
 template <class S>
-struct SinCosOf {
-  S sin, cos;
+concept Derivative = requires(const S& x) {
+  x.through(x.a, x.a, x.a);
 };
 
-inline SinCosOf<double> sincos(double x) {
-  const auto [s, c] = portable::sincos(x);
-  return {s, c};
+template <Derivative S>
+double value_of(const S& x) {
+  return x.a;
 }
-
-inline double atan2(double y, double x) { return portable::atan2(y, x); }
-inline double asin(double x) { return portable::asin(x); }
-inline double acos(double x) { return portable::acos(x); }
-inline double exp(double x) { return portable::exp(x); }
-inline double log(double x) { return portable::log(x); }
+template <Derivative S>
+[[gnu::always_inline]] inline S sqrt(const S& x) {
+  const double root = std::sqrt(x.a);
+  return x.through(root, 0.5 / root, -0.25 / (root * x.a));
+}
+template <Derivative S>
+SinCosOf<S> sincos(const S& x) {
+  const auto [s, c] = portable::sincos(x.a);
+  return {x.through(s, c, -s), x.through(c, -s, -c)};
+}
+template <Derivative S>
+S asin(const S& x) {
+  const double cosine = std::sqrt((1 - x.a) * (1 + x.a)), slope = cosine > 0 ? 1 / cosine : 0;
+  return x.through(portable::asin(x.a), slope, x.a * slope * slope * slope);
+}
+template <Derivative S>
+S acos(const S& x) {
+  const double sine = std::sqrt((1 - x.a) * (1 + x.a)), slope = sine > 0 ? -1 / sine : 0;
+  return x.through(portable::acos(x.a), slope, x.a * slope * slope * slope);
+}
+template <Derivative S>
+S exp(const S& x) {
+  const double e = portable::exp(x.a);
+  return x.through(e, e, e);
+}
+template <Derivative S>
+S log(const S& x) {
+  return x.through(portable::log(x.a), 1 / x.a, -1 / (x.a * x.a));
+}
 
 /// x if the condition holds, else y; both exist.
 template <class S>

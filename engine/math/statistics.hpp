@@ -37,47 +37,40 @@ S power_mean(const std::vector<S>& field, double r) {
 /// The least value; 0 without samples.
 template <class S>
 S least(const std::vector<S>& field) {
-  if (field.empty()) return S(0.0);
-  S result = field.front();
-  for (const S& value : field) result = min(result, value);
-  return result;
-}
-
-/// Kreisselmeier-Steinhauser aggregate of the least value, weighted by measure:
-///   m - ln(sum of w exp(-r (f - m)) / sum of w) / r,   m = least f,   r = sharpness.
-/// Smooth, not below the least value, and it tends to it as r grows; 0 without samples.
-template <class S>
-S soft_least(const std::vector<S>& weight, const std::vector<S>& field, double sharpness) {
-  if (field.empty()) return S(0.0);
-  const double shift = value_of(least(field));  // a constant: the sum's derivative does not depend on it
-  S sum(0.0), total(0.0);
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    sum += weight[i] * exp(S((field[i] - shift) * -sharpness));
-    total += weight[i];
-  }
-  return shift - log(S(sum / total)) / sharpness;
+  return field.empty() ? S(0.0) : *std::ranges::min_element(field, {}, [](const S& x) { return value_of(x); });
 }
 
 /// The greatest value; 0 without samples.
 template <class S>
 S greatest(const std::vector<S>& field) {
+  return field.empty() ? S(0.0) : *std::ranges::max_element(field, {}, [](const S& x) { return value_of(x); });
+}
+
+/// m + ln(sum of w exp(r (f - m)) / sum of w) / r.
+template <class S>
+S soft_extreme(const std::vector<S>& weight, const std::vector<S>& field, double m, double r) {
   if (field.empty()) return S(0.0);
-  S result = field.front();
-  for (const S& value : field) result = max(result, value);
-  return result;
+  S sum(0.0), total(0.0);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    sum += weight[i] * exp(S((field[i] - m) * r));
+    total += weight[i];
+  }
+  return m + log(S(sum / total)) / r;
+}
+
+/// Kreisselmeier-Steinhauser aggregate of the least value, weighted by measure:
+///   m - ln(sum of w exp(-r (f - m)) / sum of w) / r,   m = least f,   r = sharpness.
+/// Smooth, not below the least value, and it tends to it as r grows; 0 without samples. m counts as a constant: the
+/// sum's derivative does not depend on it.
+template <class S>
+S soft_least(const std::vector<S>& weight, const std::vector<S>& field, double sharpness) {
+  return soft_extreme(weight, field, value_of(least(field)), -sharpness);
 }
 
 /// The same aggregate of the greatest value: not above it, and it tends to it as `sharpness` grows.
 template <class S>
 S soft_greatest(const std::vector<S>& weight, const std::vector<S>& field, double sharpness) {
-  if (field.empty()) return S(0.0);
-  const double shift = value_of(greatest(field));
-  S sum(0.0), total(0.0);
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    sum += weight[i] * exp(S((field[i] - shift) * sharpness));
-    total += weight[i];
-  }
-  return shift + log(S(sum / total)) / sharpness;
+  return soft_extreme(weight, field, value_of(greatest(field)), sharpness);
 }
 
 /// Root of the weighted mean square distance from the mean (population); 0 without samples.

@@ -7,8 +7,6 @@
 // the bits of the same formula with double.
 #pragma once
 
-#include <cmath>
-
 #include "engine/math/scalar.hpp"
 
 namespace pkm {
@@ -40,30 +38,6 @@ struct Taylor {
   Taylor through(double f, double f1, double f2) const { return {f, f1 * d, f2 * d * d + f1 * dd}; }
 };
 
-// The vocabulary of scalar.hpp.
-
-inline double value_of(const Taylor& x) { return x.a; }
-inline Taylor sqrt(const Taylor& x) {
-  const double root = std::sqrt(x.a);
-  return x.through(root, 0.5 / root, -0.25 / (root * x.a));
-}
-inline SinCosOf<Taylor> sincos(const Taylor& x) {
-  const auto [s, c] = portable::sincos(x.a);
-  return {x.through(s, c, -s), x.through(c, -s, -c)};
-}
-inline Taylor exp(const Taylor& x) {
-  const double e = portable::exp(x.a);
-  return x.through(e, e, e);
-}
-inline Taylor log(const Taylor& x) { return x.through(portable::log(x.a), 1 / x.a, -1 / (x.a * x.a)); }
-inline Taylor asin(const Taylor& x) {  // where the slope is infinite, the derivatives are 0, as in dual.hpp
-  const double cosine = std::sqrt((1 - x.a) * (1 + x.a)), slope = cosine > 0 ? 1 / cosine : 0;
-  return x.through(portable::asin(x.a), slope, x.a * slope * slope * slope);
-}
-inline Taylor acos(const Taylor& x) {
-  const double sine = std::sqrt((1 - x.a) * (1 + x.a)), slope = sine > 0 ? 1 / sine : 0;
-  return x.through(portable::acos(x.a), -slope, -x.a * slope * slope * slope);
-}
 inline Taylor atan2(const Taylor& y, const Taylor& x) {
   const double n = x.a * x.a + y.a * y.a, dn = 2 * (x.a * x.d + y.a * y.d);
   const double turn = (x.a * y.d - y.a * x.d) / n;

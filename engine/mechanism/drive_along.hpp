@@ -11,21 +11,14 @@
 
 namespace pkm {
 
-/// One sample of a motion.
+/// One sample of a motion: qdot = J Xdot, qddot = J Xddot + Jdot Xdot, tau by virtual work.
 template <class S>
 struct Drive {
   AxisVector<S> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
-  AxisVector<S> forces;                         ///< tau [N, N m]
+  AxisVector<S> forces;                         ///< tau [N, N m]; NaN where J is singular to working precision
 
   S power(std::size_t joint) const { return forces[joint] * speeds[joint]; }  ///< > 0: the actuator drives [W]
 };
-
-/// qdot = J Xdot, qddot = J Xddot + Jdot Xdot, tau by virtual work.
-template <class S>
-Drive<S> drive_of(const PoseDynamics<S>& d, const AxisVector<S>& velocity, const AxisVector<S>& acceleration,
-                  const Wrench<S>& wrench) {
-  return {d.q, d.J * velocity, d.J * acceleration + d.J_rate_X, drive_forces(d, acceleration, wrench)};
-}
 
 /// Room for the states that the mechanism is asked for at once.
 template <class S>
@@ -55,8 +48,11 @@ std::size_t drive_along(const Dynamics& mechanism, std::span<const S> parameters
     for (std::size_t k = 0; k < count; ++k) states[k] = {samples[first + k].pose, samples[first + k].velocity};
     mechanism.equations(parameters, mode, states, dynamics);
     for (std::size_t k = 0; k < count; ++k) {
-      if (!dynamics[k].assembles) return first + k;
-      visit(first + k, drive_of<S>(dynamics[k], states[k].velocity, samples[first + k].acceleration, load));
+      const PoseDynamics<S>& d = dynamics[k];
+      if (!d.assembles) return first + k;
+      const AxisVector<S>& acceleration = samples[first + k].acceleration;
+      visit(first + k, Drive<S>{d.q, d.J * states[k].velocity, d.J * acceleration + d.J_rate_X,
+                                drive_forces(d, acceleration, load)});
     }
   }
   return samples.size();

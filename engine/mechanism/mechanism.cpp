@@ -22,6 +22,18 @@ Refusal Mechanism::refuse(std::span<const double> parameters) const {
 void Mechanism::thresholds(std::span<const double>, const LimitSpec& limits, std::span<double> values) const {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = limits.given[i].value_or(info().limits[i].inactive);
 }
+void Mechanism::thresholds(std::span<const Dual4>, const LimitSpec& limits, std::span<Dual4> values) const {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = limits.given[i].value_or(info().limits[i].inactive);
+}
+
+Refusal no_joint_forces(const Mechanism& mechanism) {
+  const MechanismInfo& info = mechanism.info();
+  const std::size_t joints = info.joints.size(), coordinates = info.coordinates.size();
+  if (!mechanism.dynamics()) return "mechanism " + info.name + " has no masses";
+  if (joints == coordinates) return {};
+  return "mechanism " + info.name + " has " + std::to_string(joints) + " joints for " + std::to_string(coordinates) +
+         " coordinates, not as many of both";
+}
 
 const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan) {
   std::vector<std::string> held;
@@ -57,6 +69,13 @@ std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const st
   return sweeps;
 }
 
+std::size_t number_of_mode(const MechanismInfo& info, const std::string& name) {
+  if (name.empty()) return 0;
+  const auto found = std::ranges::find(info.modes, name);
+  if (found == info.modes.end()) throw std::invalid_argument("unknown working mode " + name);
+  return static_cast<std::size_t>(found - info.modes.begin());
+}
+
 double held_value(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
                   int coordinate) {
   const HeldCoordinate held = how_held(plan, coordinate);
@@ -83,16 +102,6 @@ std::string volume_unit(const MechanismInfo& info, const SurveyPlan& plan) {
   for (const HeldCoordinate& held : plan.held)
     if (held.kind == HeldCoordinate::Kind::integrated) measured.push_back(held.coordinate);
   return unit_of_product(info, measured);
-}
-
-void append_margins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
-                    std::span<const Pose<double>> poses, std::vector<double>& margins) {
-  if (const PoseMargins* ability = mechanism.pose_margins()) return ability->append(parameters, limits, poses, margins);
-  for (const Pose<double>& pose : poses) {
-    const PoseReport report = mechanism.inspect(parameters, pose, mechanism.info().modes.front(), limits);
-    for (const auto& [name, margin] : report.margins) margins.push_back(margin == margin ? margin : -1);
-    if (!report.assembles) margins.push_back(-1);
-  }
 }
 
 }  // namespace pkm

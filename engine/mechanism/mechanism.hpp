@@ -69,15 +69,15 @@ class Mechanism {
   /// @param coordinate  one that a sweep of the mechanism holds
   virtual std::optional<double> middle(std::span<const double>, int /*coordinate*/) const { return {}; }
   /// The thresholds in force for a design, order of MechanismInfo::limits: here the given and the inactive ones. Those
-  /// that the design derives are the mechanism's to fill in.
+  /// that the design derives are the mechanism's to fill in, for both scalars.
   virtual void thresholds(std::span<const double> parameters, const LimitSpec& limits, std::span<double> values) const;
+  virtual void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const;
   /// Numbers worth knowing of a design, for `pkmopt evaluate`.
   virtual NamedValues facts(std::span<const double>, const LimitSpec&) const { return {}; }
 
   // Abilities; null: the mechanism has it not.
   virtual const Voxels* voxels() const { return nullptr; }  ///< faster than testing every cell
   virtual const Columns* columns() const { return nullptr; }
-  virtual const Derivatives* derivatives() const { return nullptr; }
   virtual const Size* size() const { return nullptr; }
   virtual const DesignTests* design_tests() const { return nullptr; }
   virtual const PoseMargins* pose_margins() const { return nullptr; }
@@ -89,6 +89,10 @@ class Mechanism {
   virtual const AuxiliaryChain* chain() const { return nullptr; }
 };
 
+/// Why a mechanism has no coupling indices, no inertia at its joints and no forces of its drives: it has no masses, or
+/// they would need the inverse of a Jacobian that is not square.
+Refusal no_joint_forces(const Mechanism& mechanism);
+
 /// The sweep of a plan: the first that holds all coordinates that the plan names. Throws std::invalid_argument when
 /// the mechanism has none.
 const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan);
@@ -97,6 +101,9 @@ const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan);
 /// cell.
 /// @param usual  comes first: the swept coordinates
 std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual);
+
+/// The number of a working mode, 0 for "". Throws std::invalid_argument where the mechanism has none of that name.
+std::size_t number_of_mode(const MechanismInfo& info, const std::string& name);
 
 /// Where a plan's map holds a coordinate for a design [m or rad]: at the plan's value, the first of several, else in
 /// the middle. Throws std::invalid_argument where nothing says.
@@ -111,44 +118,6 @@ std::string volume_unit(const MechanismInfo& info, const SurveyPlan& plan);
 /// No limit given or derived.
 inline LimitSpec no_limits(const MechanismInfo& info) {
   return {std::vector<std::optional<double>>(info.limits.size()), std::vector<bool>(info.limits.size(), false)};
-}
-
-/// The margins of poses by the ability, else those of inspect, NaN counting as broken: appended.
-void append_margins(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits,
-                    std::span<const Pose<double>> poses, std::vector<double>& margins);
-
-/// The ability for numbers, or its derivatives.
-template <class S>
-S size_of(const Mechanism& mechanism, std::span<const S> parameters) {
-  if constexpr (std::is_same_v<S, double>)
-    return mechanism.size()->of(parameters);
-  else
-    return mechanism.derivatives()->size(parameters);
-}
-template <class S>
-void find_thresholds(const Mechanism& mechanism, std::span<const S> parameters, const LimitSpec& limits,
-                     std::span<S> values) {
-  if constexpr (std::is_same_v<S, double>)
-    mechanism.thresholds(parameters, limits, values);
-  else
-    mechanism.derivatives()->thresholds(parameters, limits, values);
-}
-template <class S>
-void find_design_margins(const Mechanism& mechanism, std::span<const S> parameters, const LimitSpec& limits,
-                         std::span<S> margins) {
-  if constexpr (std::is_same_v<S, double>)
-    mechanism.design_tests()->test(parameters, limits, margins);
-  else
-    mechanism.derivatives()->design_margins(parameters, limits, margins);
-}
-
-template <class S>
-void append_pose_margins(const Mechanism& mechanism, std::span<const S> parameters, const LimitSpec& limits,
-                         std::span<const Pose<double>> poses, std::vector<S>& margins) {
-  if constexpr (std::is_same_v<S, double>)
-    append_margins(mechanism, parameters, limits, poses, margins);
-  else
-    mechanism.derivatives()->pose_margins(parameters, limits, poses, margins);
 }
 
 using MechanismList = std::vector<std::shared_ptr<const Mechanism>>;

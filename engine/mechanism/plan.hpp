@@ -1,12 +1,15 @@
 // How a workspace is to be surveyed.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "engine/mechanism/pose_quantity.hpp"
 
 namespace pkm {
 
@@ -52,6 +55,15 @@ struct SurveyPlan {
   const std::optional<Box>& box() const { return voxels() ? voxels()->box : columns()->box; }
 };
 
+/// Of links: they overlap by the sum of their radii at most, and no radius is greater than 1 m.
+inline constexpr double kNoClearance = -2;
+
+/// Whether a plan asks for a clearance.
+/// @param limit  the mechanism's number of it
+inline bool asks_clearance(const SurveyPlan& plan, std::size_t limit) {
+  return plan.limits.given[limit].value_or(kNoClearance) > kNoClearance;
+}
+
 /// How the plan holds a coordinate: in the middle where it does not name it.
 inline HeldCoordinate how_held(const SurveyPlan& plan, int coordinate) {
   for (const HeldCoordinate& held : plan.held)
@@ -61,12 +73,18 @@ inline HeldCoordinate how_held(const SurveyPlan& plan, int coordinate) {
 
 /// What objectives and constraints need beyond the volume. The union over all of them is computed in one pass.
 struct Demand {
-  bool conditioning = false;
-  std::optional<double> characteristic_length;  ///< [m]; none: the mechanism's own
-  bool poses = false;                           ///< where the samples of dci and inertia_condition are
-  bool dci = false;                             ///< dynamic coupling indices of every joint
-  bool inertia_condition = false;               ///< inverse condition number of M_q
-  std::string mode;                             ///< working mode of both; "": the mechanism's default
+  std::vector<const PoseQuantity*> fields;
+  bool poses = false;                           ///< where the samples are, of those of inertia
+  std::optional<double> characteristic_length;  ///< of all fields that need no inertia [m]; none: the mechanism's own
+  std::string mode;                             ///< working mode of those that do; "": the mechanism's default
+
+  bool has(const PoseQuantity& quantity) const { return std::ranges::find(fields, &quantity) != fields.end(); }
+  void add(const PoseQuantity& quantity) {
+    if (!has(quantity)) fields.push_back(&quantity);
+  }
+  bool needs_inertia() const { return std::ranges::any_of(fields, &PoseQuantity::needs_inertia); }
+  bool needs_jacobian() const { return !std::ranges::all_of(fields, &PoseQuantity::needs_inertia); }
+  bool needs_samples() const { return poses || !fields.empty(); }
 };
 
 }  // namespace pkm

@@ -1,12 +1,15 @@
 // What a survey of a design's workspace found: voxels and exact columns fill the same structure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <vector>
 
 #include "engine/math/scalar.hpp"
-#include "engine/model/pose.hpp"
+#include "engine/mechanism/pose_quantity.hpp"
 
 namespace pkm {
 
@@ -25,21 +28,34 @@ struct Survey {
   double error = 0;          ///< estimated relative error of the volume
   // per feasible sample, only what was demanded (empty otherwise), all of one length
   std::vector<S> weight;
-  std::vector<S> conditioning;  ///< inverse condition number of J in [0, 1]
   std::vector<Pose<S>> pose;
-  std::array<std::vector<S>, kMostJoints> dci;  ///< dynamic coupling index per joint, in [0, 1]; as many as there are
-  std::vector<S> inertia_condition;             ///< inverse condition number of M_q in [0, 1]
+  std::map<const PoseQuantity*, std::array<std::vector<S>, kMostJoints>> fields;  ///< the first, or as many as joints
 
-  void clear() {
+  /// A field; empty where it was not demanded.
+  const std::vector<S>& of(const PoseQuantity& quantity, std::size_t joint = 0) const {
+    static const std::vector<S> none;
+    const auto found = fields.find(&quantity);
+    return found == fields.end() ? none : found->second[joint];
+  }
+  /// The same to add to; null where it was not demanded.
+  std::vector<S>* find(const PoseQuantity& quantity) {
+    const auto found = fields.find(&quantity);
+    return found == fields.end() ? nullptr : found->second.data();
+  }
+
+  /// Nothing found yet; memory is kept.
+  /// @param demanded  the fields to be filled
+  void clear(std::span<const PoseQuantity* const> demanded = {}) {
     volume = S{};
     cells = feasible_cells = columns = 0;
     cell_volume = error = 0;
     touches_box = false;
     weight.clear();
-    conditioning.clear();
     pose.clear();
-    for (auto& joint : dci) joint.clear();
-    inertia_condition.clear();
+    std::erase_if(fields,
+                  [&](const auto& field) { return std::ranges::find(demanded, field.first) == demanded.end(); });
+    for (const PoseQuantity* const quantity : demanded)
+      for (auto& component : fields[quantity]) component.clear();
   }
 };
 
@@ -50,10 +66,9 @@ void append_samples(const Survey<S>& from, Survey<S>& to) {
     target.insert(target.end(), source.begin(), source.end());
   };
   append(from.weight, to.weight);
-  append(from.conditioning, to.conditioning);
   append(from.pose, to.pose);
-  for (std::size_t i = 0; i < to.dci.size(); ++i) append(from.dci[i], to.dci[i]);
-  append(from.inertia_condition, to.inertia_condition);
+  for (const auto& [quantity, field] : from.fields)
+    for (std::size_t i = 0; i < field.size(); ++i) append(field[i], to.fields[quantity][i]);
 }
 
 /// The values of a survey with derivatives.
@@ -66,19 +81,19 @@ void copy_values(const Survey<S>& from, Survey<double>& to) {
   to.touches_box = from.touches_box;
   to.columns = from.columns;
   to.error = from.error;
-  const auto copy = [](const std::vector<S>& source, std::vector<double>& target) {
+  const auto copy = [](const auto& source, auto& target) {
     target.resize(source.size());
-    for (std::size_t i = 0; i < source.size(); ++i) target[i] = value_of(source[i]);
+    std::ranges::transform(source, target.begin(), [](const S& x) { return value_of(x); });
   };
   copy(from.weight, to.weight);
-  copy(from.conditioning, to.conditioning);
   to.pose.clear();
   for (const Pose<S>& p : from.pose) {
     to.pose.emplace_back(p.size());
-    for (std::size_t i = 0; i < p.size(); ++i) to.pose.back()[i] = value_of(p[i]);
+    std::ranges::transform(p, to.pose.back().begin(), [](const S& x) { return value_of(x); });
   }
-  for (std::size_t i = 0; i < to.dci.size(); ++i) copy(from.dci[i], to.dci[i]);
-  copy(from.inertia_condition, to.inertia_condition);
+  std::erase_if(to.fields, [&](const auto& field) { return !from.fields.contains(field.first); });
+  for (const auto& [quantity, field] : from.fields)
+    for (std::size_t i = 0; i < field.size(); ++i) copy(field[i], to.fields[quantity][i]);
 }
 
 /// Which cells of a voxel box are feasible, for pictures and the study file. Order of axes: Sweep::swept, the last

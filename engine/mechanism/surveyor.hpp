@@ -32,10 +32,15 @@ class SlopeSurveyor {
   virtual void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const = 0;
 };
 
-/// What every voxel surveyor answers when asked for derivatives.
-inline std::string voxels_have_no_derivatives() {
-  return "the study surveys voxels, whose sums have none; take workspace.method = \"columns\"";
-}
+/// Of a plan by voxels, whose cells it can show, too.
+class VoxelSurveyor : public Surveyor {
+ public:
+  /// The cells of one design, box as in a survey.
+  virtual VoxelMap map(std::span<const double> parameters) const = 0;
+  std::string why_no_slopes() const final {
+    return "the study surveys voxels, whose sums have none; take workspace.method = \"columns\"";
+  }
+};
 
 /// A survey of either kind.
 template <class S>

@@ -9,20 +9,21 @@ namespace pkm {
 namespace {
 
 bool is_finite(const AxisVector<double>& x) {
-  return std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
+  return std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
 }
 
 TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::size_t joints) {
   TrajectorySummary s;
-  s.peak_speed = s.peak_force = s.rms_force = s.peak_power = AxisVector<double>(joints);
-  s.has_forces = std::all_of(points.begin(), points.end(), [](const auto& p) { return p.forces.has_value(); });
+  s.peak_force = s.rms_force = s.peak_power = AxisVector<double>(joints);
+  s.has_forces = std::ranges::all_of(points, [](const auto& p) { return p.forces.has_value(); });
   const auto n = static_cast<double>(points.size());
   double drawn_before = 0, total_before = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const TrajectoryPoint& p = points[k];
     if (!p.feasible) ++s.infeasible;
+    if (p.speeds && !s.peak_speed) s.peak_speed = AxisVector<double>(joints);
     for (std::size_t i = 0; p.speeds && i < joints; ++i)
-      s.peak_speed[i] = std::fmax(s.peak_speed[i], std::fabs((*p.speeds)[i]));
+      (*s.peak_speed)[i] = std::fmax((*s.peak_speed)[i], std::fabs((*p.speeds)[i]));
     if (!s.has_forces) continue;
     double total = 0, drawn = 0;
     for (std::size_t i = 0; i < joints; ++i) {
@@ -47,13 +48,24 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::siz
   return s;
 }
 
+/// The sample's joints, as far as they are finite.
+void set_rates(TrajectoryPoint& point, const AxisVector<double>& speeds, const AxisVector<double>& accelerations) {
+  if (is_finite(speeds)) point.speeds = speeds;
+  if (is_finite(accelerations)) point.accelerations = accelerations;
+}
+
+void mark_singular(TrajectoryPoint& point) {
+  point.reason += std::string(point.feasible ? "" : "; ") + "the Jacobian is singular to working precision";
+  point.feasible = false;
+}
+
 }  // namespace
 
 Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode,
                   const LimitSpec& limits, const Motion& motion, std::size_t count, const Wrench<double>& wrench,
                   double phase) {
   const MechanismInfo& info = mechanism.info();
-  const Dynamics* const dynamics = mechanism.dynamics();
+  const Dynamics* const dynamics = no_joint_forces(mechanism) ? nullptr : mechanism.dynamics();
   const Velocities* const velocities = mechanism.velocities();
   DriveScratch<double> scratch;
   Trajectory trajectory;
@@ -76,19 +88,18 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
     point.joints = report.joints;
     if (dynamics && report.assembles) {
       const auto visit = [&](std::size_t, const Drive<double>& drive) {
-        point.speeds = drive.speeds;
-        point.accelerations = drive.accelerations;
-        if (!is_finite(drive.forces)) return;
+        set_rates(point, drive.speeds, drive.accelerations);
+        if (!is_finite(drive.forces)) return mark_singular(point);
         point.forces = drive.forces;
         point.power = AxisVector<double>(drive.forces.size());
         for (std::size_t i = 0; i < drive.forces.size(); ++i) (*point.power)[i] = drive.power(i);
       };
       drive_along<double>(*dynamics, parameters, mode, {&at, 1}, wrench, scratch, visit);
-    } else if (velocities) {
-      if (const auto joints = velocities->influence(parameters, at.pose, mode)) {
-        point.speeds = joints->G * at.velocity;
-        point.accelerations = accelerations<double, 0>(*joints, at.velocity, at.acceleration);
-      }
+    } else if (velocities && report.assembles) {
+      const auto joints = velocities->influence(parameters, at.pose, mode);
+      if (joints)
+        set_rates(point, joints->G * at.velocity, accelerations<double, 0>(*joints, at.velocity, at.acceleration));
+      if (!joints || (joints->G.rows() == joints->G.cols() && is_singular(joints->G))) mark_singular(point);
     }
     if (mechanism.chain()) point.chain = mechanism.chain()->report(parameters, at, phase);
     trajectory.points.push_back(std::move(point));

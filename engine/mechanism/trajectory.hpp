@@ -12,7 +12,8 @@
 
 namespace pkm {
 
-/// One sample. What does not exist (the pose does not assemble, J is singular, no masses) is absent.
+/// One sample. What does not exist (the pose does not assemble, no masses) is absent. Where J is singular to working
+/// precision (engine/model/singular.hpp) no forces give the motion: the sample is not feasible and has none.
 struct TrajectoryPoint {
   MotionSample motion;
   bool feasible = false;
@@ -26,7 +27,7 @@ struct TrajectoryPoint {
 /// Over the samples that have the numbers; the rest is told by `infeasible`.
 struct TrajectorySummary {
   std::size_t infeasible = 0;
-  AxisVector<double> peak_speed;                       ///< greatest |qdot| [m/s, rad/s]
+  std::optional<AxisVector<double>> peak_speed;        ///< greatest |qdot| [m/s, rad/s]; absent when no sample has any
   bool has_forces = false;                             ///< of every sample; the following are set
   AxisVector<double> peak_force, rms_force;            ///< greatest |tau|; root of the mean square over the samples [N]
   AxisVector<double> peak_power;                       ///< greatest |tau qdot|, driving or braking [W]

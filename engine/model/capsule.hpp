@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "engine/math/scalar.hpp"
 
@@ -82,6 +83,24 @@ S segment_distance(const Segment<S>& a, const Segment<S>& b) {
 template <class S>
 S capsule_distance(const Capsule<S>& a, const Capsule<S>& b) {
   return segment_distance(a.axis, b.axis) - (a.radius + b.radius);
+}
+
+/// The two of several capsules that are nearest to each other.
+template <class S>
+struct Nearest {
+  S clearance;  ///< [m], negative where they overlap
+  std::size_t first = 0, second = 0;
+};
+
+/// Of the pairs for which visit_pairs(visit) calls visit(first, second); the first of those that are as near.
+template <class S, std::size_t N, class VisitPairs>
+Nearest<S> nearest_of(const std::array<Capsule<S>, N>& all, const VisitPairs& visit_pairs) {
+  Nearest<S> nearest{S(std::numeric_limits<double>::infinity())};
+  visit_pairs([&](std::size_t first, std::size_t second) {
+    const S found = capsule_distance(all[first], all[second]);
+    if (value_of(found) < value_of(nearest.clearance)) nearest = {found, first, second};
+  });
+  return nearest;
 }
 
 /// A box along the coordinate axes.

@@ -18,10 +18,9 @@ namespace pkm {
 /// sigma_min / sigma_max of an N x N matrix, in [0, 1]; 0 for a singular matrix or one that is not finite.
 /// One-sided Jacobi: columns are turned in pairs until they are orthogonal; their lengths are the singular values, each
 /// to high relative accuracy, for double and for a derivative scalar alike.
-/// @param m      columns, m[column][row]; overwritten
-/// @param extra  square of one more singular value, of a block that is diagonal already; < 0: none
+/// @param m  columns, m[column][row]; overwritten
 template <int N, class S>
-S inverse_condition(S (&m)[N][N], const S& extra = S(-1.0)) {
+S inverse_condition(S (&m)[N][N]) {
   constexpr int kSweeps = 30;            // 4 or 5 are enough in practice
   constexpr double kOrthogonal = 1e-15;  // cosine between two columns that counts as 0
   const auto dot = [&](int i, int j) {
@@ -50,10 +49,6 @@ S inverse_condition(S (&m)[N][N], const S& extra = S(-1.0)) {
     if (!turned) break;
   }
   S least = dot(0, 0), greatest = least;
-  if (value_of(extra) >= 0) {
-    least = min(least, extra);
-    greatest = max(greatest, extra);
-  }
   for (int i = 1; i < N; ++i) {
     const S length = dot(i, i);
     least = min(least, length);

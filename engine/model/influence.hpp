@@ -26,18 +26,12 @@ struct Influence {
   }
 };
 
-/// The terms Xdot^T H_i Xdot of the accelerations.
-template <class S, std::size_t N>
-AxisVector<S, N> velocity_terms(const Influence<S, N>& influence, const AxisVector<S, N>& velocity) {
-  auto terms = AxisVector<S, N>::zero(influence.G.rows(), 1);
-  for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = dot(velocity, influence.H[i] * velocity);
-  return terms;
-}
-
 template <class S, std::size_t N>
 AxisVector<S, N> accelerations(const Influence<S, N>& influence, const AxisVector<S, N>& velocity,
                                const AxisVector<S, N>& acceleration) {
-  return influence.G * acceleration + velocity_terms<S, N>(influence, velocity);
+  AxisVector<S, N> joints = influence.G * acceleration;
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] += dot(velocity, influence.H[i] * velocity);
+  return joints;
 }
 
 /// The matrices of quadratic forms, from their values form(v) at unit vectors and sums of two of them.

@@ -11,56 +11,31 @@ Taylor at_time(const Formula& formula, double time) {
   return formula.value(std::span<const Taylor>(&t, 1));
 }
 
-class FormulasOfTime final : public Motion {
- public:
-  FormulasOfTime(std::vector<Formula> coordinates, double duration)
-      : coordinates_(std::move(coordinates)), duration_(duration) {}
+}  // namespace
 
-  double duration() const override { return duration_; }
-  MotionSample at(double time) const override {
+std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, const Formula& input) {
+  return std::make_shared<const Motion>(motion->duration(), [motion, input](double time) {
+    MotionSample sample = motion->at(time);
+    const Taylor angle = at_time(input, time);
+    sample.input = {angle.a, angle.d, angle.dd};
+    return sample;
+  });
+}
+
+std::shared_ptr<const Motion> formulas_of_time(std::vector<Formula> coordinates, double duration) {
+  PKM_EXPECTS(duration > 0);
+  return std::make_shared<const Motion>(duration, [coordinates = std::move(coordinates)](double time) {
     MotionSample sample;
     sample.time = time;
-    sample.pose = sample.velocity = sample.acceleration = AxisVector<double>(coordinates_.size());
-    for (std::size_t i = 0; i < coordinates_.size(); ++i) {
-      const Taylor x = at_time(coordinates_[i], time);
+    sample.pose = sample.velocity = sample.acceleration = AxisVector<double>(coordinates.size());
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+      const Taylor x = at_time(coordinates[i], time);
       sample.pose[i] = x.a;
       sample.velocity[i] = x.d;
       sample.acceleration[i] = x.dd;
     }
     return sample;
-  }
-
- private:
-  std::vector<Formula> coordinates_;
-  double duration_;
-};
-
-class WithInput final : public Motion {
- public:
-  WithInput(std::shared_ptr<const Motion> motion, const Formula& input) : motion_(std::move(motion)), input_(input) {}
-
-  double duration() const override { return motion_->duration(); }
-  MotionSample at(double time) const override {
-    MotionSample sample = motion_->at(time);
-    const Taylor input = at_time(input_, time);
-    sample.input = {input.a, input.d, input.dd};
-    return sample;
-  }
-
- private:
-  std::shared_ptr<const Motion> motion_;
-  Formula input_;
-};
-
-}  // namespace
-
-std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, const Formula& input) {
-  return std::make_shared<WithInput>(std::move(motion), input);
-}
-
-std::shared_ptr<const Motion> formulas_of_time(std::vector<Formula> coordinates, double duration) {
-  PKM_EXPECTS(duration > 0);
-  return std::make_shared<FormulasOfTime>(std::move(coordinates), duration);
+  });
 }
 
 }  // namespace pkm

@@ -10,7 +10,6 @@ std::vector<MotionSample> sample(const Motion& motion, std::size_t count) {
   PKM_EXPECTS(count >= 2);
   const double end = motion.duration();
   std::vector<MotionSample> samples;
-  samples.reserve(count);
   for (std::size_t k = 0; k + 1 < count; ++k)
     samples.push_back(motion.at(end * static_cast<double>(k) / static_cast<double>(count - 1)));
   samples.push_back(motion.at(end));

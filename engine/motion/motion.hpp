@@ -4,6 +4,7 @@
 // a mechanism that has these.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,11 +25,15 @@ struct MotionSample {
 /// Immutable, shared by threads.
 class Motion {
  public:
-  virtual ~Motion() = default;
+  Motion(double duration, std::function<MotionSample(double)> at) : duration_(duration), at_(std::move(at)) {}
   /// [s], > 0; it begins at 0.
-  virtual double duration() const = 0;
+  double duration() const { return duration_; }
   /// @param time  in [0, duration()]
-  virtual MotionSample at(double time) const = 0;
+  MotionSample at(double time) const { return at_(time); }
+
+ private:
+  double duration_;
+  std::function<MotionSample(double)> at_;
 };
 
 /// A motion with the name that a study gives it.

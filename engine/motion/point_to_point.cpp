@@ -7,45 +7,9 @@
 namespace pkm {
 namespace {
 
-class PointToPoint final : public Motion {
- public:
-  PointToPoint(const AxisVector<double>& start, const std::vector<Move>& moves, double wait, TimeLaw law) : law_(law) {
-    AxisVector<double> from = start;
-    for (const Move& move : moves) {
-      PKM_EXPECTS(move.duration > 0 && move.wait >= 0);
-      end_ += move.wait;
-      legs_.push_back({end_, move.duration, from, move.to});
-      end_ += move.duration;
-      from = move.to;
-    }
-    end_ += wait;
-  }
-
-  double duration() const override { return end_; }
-  MotionSample at(double time) const override {
-    // The last leg that has begun; a pause before the first belongs to it.
-    const auto after =
-        std::upper_bound(legs_.begin(), legs_.end(), time, [](double t, const Leg& leg) { return t < leg.begin; });
-    const Leg& leg = after == legs_.begin() ? legs_.front() : *(after - 1);
-    const Advance share = advance(law_, time - leg.begin, leg.duration, 1);
-    const AxisVector<double> way = leg.to - leg.from;
-    MotionSample sample;
-    sample.time = time;
-    sample.pose = leg.from + way * share.way;
-    if (share.way == 1) sample.pose = leg.to;
-    sample.velocity = way * share.speed;
-    sample.acceleration = way * share.acceleration;
-    return sample;
-  }
-
- private:
-  struct Leg {
-    double begin, duration;
-    AxisVector<double> from, to;
-  };
-  std::vector<Leg> legs_;
-  double end_ = 0;
-  TimeLaw law_;
+struct Leg {
+  double begin, duration;
+  AxisVector<double> from, to;
 };
 
 }  // namespace
@@ -53,7 +17,23 @@ class PointToPoint final : public Motion {
 std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, const std::vector<Move>& moves,
                                              double wait, TimeLaw law) {
   PKM_EXPECTS(!moves.empty());
-  return std::make_shared<PointToPoint>(start, moves, wait, law);
+  std::vector<Leg> legs;
+  double end = 0;
+  for (const Move& move : moves) {
+    PKM_EXPECTS(move.duration > 0 && move.wait >= 0);
+    end += move.wait;
+    legs.push_back({end, move.duration, legs.empty() ? start : legs.back().to, move.to});
+    end += move.duration;
+  }
+  return std::make_shared<const Motion>(end + wait, [legs = std::move(legs), law](double time) {
+    // The last leg that has begun; a pause before the first belongs to it.
+    const auto after = std::ranges::upper_bound(legs, time, {}, &Leg::begin);
+    const Leg& leg = after == legs.begin() ? legs.front() : *(after - 1);
+    const Advance share = advance(law, time - leg.begin, leg.duration, 1);
+    const AxisVector<double> way = leg.to - leg.from;
+    const AxisVector<double> pose = share.way == 1 ? leg.to : leg.from + way * share.way;
+    return MotionSample{time, pose, way * share.speed, way * share.acceleration, {}};
+  });
 }
 
 double time_within(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,

@@ -6,18 +6,9 @@
 // Both begin and end with speed and acceleration 0.
 #pragma once
 
-#include <string>
-#include <vector>
-
 namespace pkm {
 
 enum class TimeLaw { quintic, cycloid };
-
-/// In the order of TimeLaw.
-inline const std::vector<std::string>& time_law_names() {
-  static const std::vector<std::string> names = {"quintic", "cycloid"};
-  return names;
-}
 
 /// A distance along a move, and its derivatives by time.
 struct Advance {

@@ -1,9 +1,4 @@
-#include "engine/optimisers/evolutionary/genetic_algorithm.hpp"
-#include "engine/optimisers/evolutionary/nsga2.hpp"
-#include "engine/optimisers/optimiser.hpp"
-#include "engine/optimisers/solvers/ipopt.hpp"
-#include "engine/optimisers/solvers/nlopt.hpp"
-#include "engine/optimisers/sweep.hpp"
+#include "engine/optimisers/list.hpp"
 
 namespace pkm {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <utility>
 
 namespace pkm {
 namespace {
@@ -14,16 +12,10 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// Designs by their first score, linked to the next ones that are still there.
 class Line {
  public:
-  explicit Line(const Scores& scores) : objectives_(scores.objectives), order_(scores.size()) {
-    const std::size_t n = scores.size(), m = objectives_;
-    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-      for (std::size_t k = 0; k < m; ++k)
-        if (scores[a][k] != scores[b][k]) return scores[a][k] < scores[b][k];
-      return a < b;
-    });
-    sorted_.reserve(n * m);
-    for (const std::uint32_t i : order_) sorted_.insert(sorted_.end(), scores[i], scores[i] + m);
+  /// @param seen  the same scores in the units in which designs lie apart
+  Line(const Scores& scores, const Scores& seen) : order_(in_order(scores)), scores_{scores.objectives} {
+    const std::size_t n = order_.size();
+    for (const std::uint32_t i : order_) scores_.add({seen[i], seen.objectives});
     before_.resize(n);
     after_.resize(n);
     for (std::size_t at = 0; at < n; ++at) {
@@ -35,9 +27,10 @@ class Line {
 
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::size_t size() const { return order_.size(); }
-  std::size_t objectives() const { return objectives_; }
+  std::size_t objectives() const { return scores_.objectives; }
+  const Scores& scores() const { return scores_; }
   std::uint32_t index(std::size_t at) const { return order_[at]; }
-  const double* score(std::size_t at) const { return &sorted_[at * objectives_]; }
+  const double* score(std::size_t at) const { return scores_[at]; }
   std::size_t before(std::size_t at) const { return before_[at]; }
   std::size_t after(std::size_t at) const { return after_[at]; }
   bool there(std::size_t at) const { return there_[at] != 0; }
@@ -46,39 +39,21 @@ class Line {
     if (after_[at] != kNone) before_[after_[at]] = before_[at];
     there_[at] = 0;
   }
-  /// Scores in units of their ranges; a score that is the same for all becomes 0.
-  void normalise() {
-    for (std::size_t k = 0; k < objectives_; ++k) {
-      double least = score(0)[k], most = least;
-      for (std::size_t at = 1; at < size(); ++at) {
-        least = std::min(least, score(at)[k]);
-        most = std::max(most, score(at)[k]);
-      }
-      for (std::size_t at = 0; at < size(); ++at) {
-        double& value = sorted_[at * objectives_ + k];
-        value = most > least ? (value - least) / (most - least) : 0;
-      }
-    }
-  }
 
  private:
-  std::size_t objectives_;
   std::vector<std::uint32_t> order_;
-  std::vector<double> sorted_;
+  Scores scores_;  ///< in that order
   std::vector<std::size_t> before_, after_;
   std::vector<std::uint8_t> there_;
 };
 
 /// 2 scores: the area that only this design dominates.
-struct Area {
-  const Line& line;
-  double room(std::size_t at) const {
-    const std::size_t b = line.before(at), a = line.after(at);
-    if (b == Line::kNone || a == Line::kNone) return kInfinite;
-    const double* p = line.score(at);
-    return (line.score(a)[0] - p[0]) * (line.score(b)[1] - p[1]);
-  }
-};
+double area_of(const Line& line, std::size_t at) {
+  const std::size_t b = line.before(at), a = line.after(at);
+  if (b == Line::kNone || a == Line::kNone) return kInfinite;
+  const double* p = line.score(at);
+  return (line.score(a)[0] - p[0]) * (line.score(b)[1] - p[1]);
+}
 
 /// The designs nearest to each, for normalised lines.
 class Neighbours {
@@ -155,29 +130,11 @@ class Neighbours {
   std::vector<std::size_t> count_;
 };
 
-/// Any number of scores: the nearest neighbours.
-class Distances {
- public:
-  explicit Distances(const Line& line) : wanted_(line.objectives()), best_(line.size(), 0), near_(line, 3 * wanted_) {
-    for (std::size_t k = 0; k < line.objectives(); ++k) {
-      std::size_t least = 0;
-      for (std::size_t at = 1; at < line.size(); ++at)
-        if (line.score(at)[k] < line.score(least)[k]) least = at;
-      best_[least] = 1;
-    }
-  }
-  double room(std::size_t at) { return best_[at] ? kInfinite : near_.product(at, wanted_); }
-
- private:
-  std::size_t wanted_;
-  std::vector<std::uint8_t> best_;
-  Neighbours near_;
-};
-
 /// Removes the most crowded one again and again. Room only grows while others are removed, so a queue with outdated
 /// entries is in order once the entry at its front has been brought up to date.
-template <class Crowding>
-std::vector<std::uint32_t> in_order(Line& line, std::size_t keep, Crowding&& crowding) {
+/// @param room  room(at) of a design, among those that are still there
+template <class Room>
+std::vector<std::uint32_t> by_room(Line& line, std::size_t keep, const Room& room) {
   struct Entry {
     double room;
     std::size_t at;
@@ -187,14 +144,14 @@ std::vector<std::uint32_t> in_order(Line& line, std::size_t keep, Crowding&& cro
   };
   std::vector<Entry> queue;
   queue.reserve(line.size());
-  for (std::size_t at = 0; at < line.size(); ++at) queue.push_back({crowding.room(at), at});
+  for (std::size_t at = 0; at < line.size(); ++at) queue.push_back({room(at), at});
   std::vector<std::uint32_t> order;
   order.reserve(line.size());
   if (queue.size() > keep) std::make_heap(queue.begin(), queue.end(), later);
   while (queue.size() > keep) {
     std::pop_heap(queue.begin(), queue.end(), later);
     Entry& last = queue.back();
-    const double now = last.room == kInfinite ? kInfinite : crowding.room(last.at);
+    const double now = last.room == kInfinite ? kInfinite : room(last.at);
     if (now > last.room) {
       last.room = now;
       std::push_heap(queue.begin(), queue.end(), later);
@@ -204,7 +161,7 @@ std::vector<std::uint32_t> in_order(Line& line, std::size_t keep, Crowding&& cro
     line.remove(last.at);
     queue.pop_back();
   }
-  for (Entry& kept : queue) kept.room = crowding.room(kept.at);
+  for (Entry& kept : queue) kept.room = room(kept.at);
   std::sort(queue.begin(), queue.end(), [&](const Entry& a, const Entry& b) { return later(b, a); });
   for (const Entry& kept : queue) order.push_back(line.index(kept.at));
   std::reverse(order.begin(), order.end());
@@ -215,16 +172,18 @@ std::vector<std::uint32_t> in_order(Line& line, std::size_t keep, Crowding&& cro
 
 std::vector<std::uint32_t> most_diverse(const Scores& scores, std::size_t keep) {
   if (scores.size() == 0) return {};
-  Line line(scores);
-  if (scores.objectives == 2) return in_order(line, keep, Area{line});
-  line.normalise();
-  return in_order(line, keep, Distances(line));
+  const std::size_t objectives = scores.objectives;
+  Line line(scores, objectives == 2 ? scores : normalised(scores));
+  if (objectives == 2) return by_room(line, keep, [&](std::size_t at) { return area_of(line, at); });
+  std::vector<std::uint8_t> best(line.size(), 0);
+  for (const std::size_t end : ends_of(line.scores())) best[end] = 1;
+  Neighbours nearest(line, 3 * objectives);
+  return by_room(line, keep, [&](std::size_t at) { return best[at] ? kInfinite : nearest.product(at, objectives); });
 }
 
 double spread(const Scores& scores) {
   if (scores.size() < 3) return std::numeric_limits<double>::quiet_NaN();
-  Line line(scores);
-  line.normalise();
+  const Line line(scores, normalised(scores));
   Neighbours nearest(line, 1);
   std::vector<double> distances;
   double sum = 0, deviation = 0;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <utility>
 
 #include "engine/optimisers/diversity.hpp"
 
@@ -70,22 +70,15 @@ struct Members {
 
 template <class Front>
 void sort_by(const Scores& scores, std::vector<std::uint32_t>& front) {
-  const std::size_t n = scores.size(), m = scores.objectives;
-  // The first score stands beside the index: most comparisons need no more.
-  std::vector<std::pair<double, std::uint32_t>> order(n);
-  for (std::size_t i = 0; i < n; ++i) order[i] = {scores[i][0], static_cast<std::uint32_t>(i)};
-  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
-    if (a.first != b.first) return a.first < b.first;
-    const double *p = scores[a.second], *q = scores[b.second];
-    return equal(p, q, m) ? a.second < b.second : before(p, q, m);
-  });
-  front.resize(n);
+  const std::size_t m = scores.objectives;
+  const std::vector<std::uint32_t> order = in_order(scores);
+  front.resize(order.size());
   std::vector<Front> fronts;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t row = order[i].second;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t row = order[i];
     const double* p = scores[row];
-    if (i > 0 && equal(p, scores[order[i - 1].second], m)) {
-      front[row] = front[order[i - 1].second];
+    if (i > 0 && equal(p, scores[order[i - 1]], m)) {
+      front[row] = front[order[i - 1]];
       continue;
     }
     const auto found = std::partition_point(fronts.begin(), fronts.end(), [&](const Front& f) { return f.covers(p); });
@@ -116,33 +109,40 @@ void merge_fronts(const Scores& old, const Scores& fresh, const std::vector<std:
   }
 }
 
+/// work.template operator()<Front>() for what tells what fronts of so many objectives cover.
+template <class Work>
+void with_front(std::size_t objectives, const Work& work) {
+  if (objectives == 2)
+    work.template operator()<Step>();
+  else if (objectives == 3)
+    work.template operator()<Staircase>();
+  else
+    work.template operator()<Members>();
+}
+
 }  // namespace
 
-bool dominates(const double* a, const double* b, std::size_t objectives) {
-  bool better = false;
-  for (std::size_t k = 0; k < objectives; ++k) {
-    if (a[k] > b[k]) return false;
-    better = better || a[k] < b[k];
-  }
-  return better;
+std::vector<std::uint32_t> in_order(const Scores& scores) {
+  // The first score stands beside the index: most comparisons need no more.
+  std::vector<std::pair<double, std::uint32_t>> order(scores.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = {scores[i][0], static_cast<std::uint32_t>(i)};
+  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+    if (a.first != b.first) return a.first < b.first;
+    const double *p = scores[a.second], *q = scores[b.second];
+    return equal(p, q, scores.objectives) ? a.second < b.second : before(p, q, scores.objectives);
+  });
+  std::vector<std::uint32_t> rows;
+  for (const auto& [score, row] : order) rows.push_back(row);
+  return rows;
 }
 
 void sort_fronts(const Scores& scores, std::vector<std::uint32_t>& front) {
-  if (scores.objectives == 2)
-    sort_by<Step>(scores, front);
-  else if (scores.objectives == 3)
-    sort_by<Staircase>(scores, front);
-  else
-    sort_by<Members>(scores, front);
+  with_front(scores.objectives, [&]<class Front> { sort_by<Front>(scores, front); });
 }
 
 bool Archive::add(const Scores& scores, std::span<const std::int64_t> ids) {
   const std::size_t m = scores_.objectives;
-  std::vector<std::uint32_t> order(ids.size());
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return equal(scores[a], scores[b], m) ? a < b : before(scores[a], scores[b], m);
-  });
+  const std::vector<std::uint32_t> order = in_order(scores);
   bool gained = false;
   merged_.objectives = m;
   merged_.clear();
@@ -152,12 +152,7 @@ bool Archive::add(const Scores& scores, std::span<const std::int64_t> ids) {
     merged_ids_.push_back(is_new ? ids[i] : ids_[i]);
     gained = gained || is_new;
   };
-  if (m == 2)
-    merge_fronts<Step>(scores_, scores, order, keep);
-  else if (m == 3)
-    merge_fronts<Staircase>(scores_, scores, order, keep);
-  else
-    merge_fronts<Members>(scores_, scores, order, keep);
+  with_front(m, [&]<class Front> { merge_fronts<Front>(scores_, scores, order, keep); });
   if (!gained) return false;
   std::swap(scores_, merged_);
   std::swap(ids_, merged_ids_);

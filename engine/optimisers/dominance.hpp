@@ -11,7 +11,8 @@
 
 namespace pkm {
 
-bool dominates(const double* a, const double* b, std::size_t objectives);
+/// The designs in lexicographic order of their scores; of equal ones the first comes first.
+std::vector<std::uint32_t> in_order(const Scores& scores);
 
 /// Non-dominated sorting: front 0 is dominated by nobody, front k only by members of the fronts before it. Designs with
 /// equal scores share a front. Each is put into the first front that does not cover it, found by bisection (Zhang et

@@ -1,5 +1,8 @@
-#include "engine/optimisers/sweep.hpp"
-
+// Designs on a grid, evaluated one after the other without any search: how objectives depend on parameters.
+//
+// one-at-a-time: generation 0 is the centre (the first start design, else the middle of the space), generation i + 1
+// moves variable i over its range and leaves the others at the centre. full-factorial: every combination, the last
+// variable fastest, in generations of at most 1000 designs.
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -7,6 +10,7 @@
 #include <utility>
 
 #include "engine/optimisers/front_keeper.hpp"
+#include "engine/optimisers/list.hpp"
 #include "engine/optimisers/option_specs.hpp"
 #include "engine/problem/order.hpp"
 
@@ -61,7 +65,6 @@ class Batches {
                                       .front = front_ ? &front_->front() : nullptr});
   }
 
-  std::size_t pending() const { return table_.size() - first_; }
   StageResult result(StopReason reason) const {
     StageResult result{reason, best_row()};
     if (front_) result.front = front_->front();
@@ -121,25 +124,17 @@ class Sweep final : public Optimiser {
   }
 
   bool all_combinations(Batches& batches, EvaluationTable& table) const {
-    std::vector<std::size_t> digit(levels_.size(), 0);
     std::vector<double> design(levels_.size());
-    for (bool more = true; more;) {
-      for (std::size_t i = 0; i < design.size(); ++i) design[i] = levels_[i][digit[i]];
+    const auto count = static_cast<std::size_t>(combinations(levels_));
+    for (std::size_t k = 0; k < count;) {
+      std::size_t rest = k++;
+      for (std::size_t i = design.size(); i-- > 0; rest /= levels_[i].size())
+        design[i] = levels_[i][rest % levels_[i].size()];
       append(table, design);
-      more = next(digit);
-      if (more && batches.pending() < kBatch) continue;
-      if (!batches.finish_generation()) return !more;
+      if (k < count && k % kBatch != 0) continue;
+      if (!batches.finish_generation()) return k == count;
     }
     return true;
-  }
-
-  // Counts up, the last digit fastest; false after the last combination.
-  bool next(std::vector<std::size_t>& digit) const {
-    for (std::size_t i = digit.size(); i-- > 0;) {
-      if (++digit[i] < levels_[i].size()) return true;
-      digit[i] = 0;
-    }
-    return false;
   }
 
   static void append(EvaluationTable& table, const std::vector<double>& design) {

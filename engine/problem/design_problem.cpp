@@ -25,12 +25,6 @@ std::vector<bool> used_surveys(const ProblemParts& parts) {
   return used;
 }
 
-std::unique_ptr<const Surveyor> prepare(const ProblemParts& parts, std::size_t survey) {
-  if (survey == 0) return prepare_survey(*parts.mechanism, parts.plan, parts.demand);
-  const Region& region = parts.regions[survey - 1];
-  return prepare_survey(*parts.mechanism, region.plan, region.demand);
-}
-
 }  // namespace
 
 struct DesignProblem::Room {
@@ -41,7 +35,9 @@ struct DesignProblem::Room {
 };
 
 DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), used_(used_surveys(parts_)) {
-  for (std::size_t k = 0; k < used_.size(); ++k) surveyors_.push_back(prepare(parts_, k));
+  surveyors_.push_back(prepare_survey(*parts_.mechanism, parts_.plan, parts_.demand));
+  for (const Region& region : parts_.regions)
+    surveyors_.push_back(prepare_survey(*parts_.mechanism, region.plan, region.demand));
   for (const auto& q : parts_.objectives) objectives_.push_back({q.name, q.unit, q.meaning, q.direction});
   for (const auto* list : {&parts_.design_margins, &parts_.survey_margins})
     for (const auto& q : *list) margins_.push_back({q.name, q.unit, q.meaning});
@@ -51,13 +47,11 @@ DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), use
 Refusal DesignProblem::no_derivatives() const {
   for (std::size_t k = 0; k < used_.size(); ++k) {
     if (!used_[k]) continue;
-    const SurveyPlan& plan = k == 0 ? parts_.plan : parts_.regions[k - 1].plan;
-    if (plan.voxels()) return voxels_have_no_derivatives();
     if (!surveyors_[k]->slopes()) return surveyors_[k]->why_no_slopes();
   }
   for (const auto* list : {&parts_.objectives, &parts_.design_margins, &parts_.survey_margins})
     for (const auto& q : *list)
-      if (const std::string reason = q.quantity->no_derivatives(); !reason.empty()) return reason;
+      if (const Refusal reason = q.quantity->no_derivatives()) return reason;
   return {};
 }
 
@@ -176,17 +170,14 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
 std::string DesignProblem::why_failed(const DesignReport& report) const {
   Scratch scratch;
   const DesignView<double> view{*parts_.mechanism, report.parameters, &report.survey, scratch};
-  std::vector<std::pair<const NamedQuantity*, double>> computed;
-  std::size_t margin = 0;
-  for (const auto* list : {&parts_.design_margins, &parts_.survey_margins})
-    for (const auto& q : *list) computed.emplace_back(&q, report.margins[margin++]);
-  for (std::size_t i = 0; i < parts_.objectives.size(); ++i)
-    computed.emplace_back(&parts_.objectives[i], report.objectives[i]);
-  for (const auto& [named, value] : computed) {
-    if (std::isfinite(value)) continue;
-    if (const std::string reason = named->quantity->why_undefined(view); !reason.empty())
-      return named->name + ": " + reason;
-  }
+  std::vector<double> computed = report.margins;
+  computed.insert(computed.end(), report.objectives.begin(), report.objectives.end());
+  auto value = computed.begin();
+  for (const auto* list : {&parts_.design_margins, &parts_.survey_margins, &parts_.objectives})
+    for (const auto& q : *list) {
+      if (std::isfinite(*value++)) continue;
+      if (const std::string reason = q.quantity->why_undefined(view); !reason.empty()) return q.name + ": " + reason;
+    }
   return "an objective or a margin is not a finite number";
 }
 

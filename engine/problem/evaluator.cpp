@@ -13,23 +13,10 @@ using Clock = std::chrono::steady_clock;
 // What is stored must not contradict its status: a feasible design has finite objectives and margins >= 0.
 bool contradicts(const EvaluationSlot& slot) {
   if (slot.status == Status::failed || slot.status == Status::rejected) return false;
-  const auto finite = [](double x) { return std::isfinite(x); };
-  if (std::any_of(slot.margins.begin(), slot.margins.end(), [](double m) { return std::isnan(m); })) return true;
+  if (std::ranges::any_of(slot.margins, [](double m) { return std::isnan(m); })) return true;
   if (slot.status == Status::infeasible) return false;
-  return !std::all_of(slot.objectives.begin(), slot.objectives.end(), finite) ||
-         std::any_of(slot.margins.begin(), slot.margins.end(), [](double m) { return !(m >= 0); });
-}
-
-void evaluate_row(const Problem& problem, EvaluationTable& table, std::size_t row, Scratch& scratch) {
-  const EvaluationSlot slot = table.slot(row);
-  try {
-    problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, slot);
-    if (contradicts(slot)) slot.status = Status::failed;
-  } catch (...) {  // whatever went wrong belongs to this design alone
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::fill(part.begin(), part.end(), nan);
-    slot.status = Status::failed;
-  }
+  return !std::ranges::all_of(slot.objectives, [](double x) { return std::isfinite(x); }) ||
+         std::ranges::any_of(slot.margins, [](double m) { return !(m >= 0); });
 }
 
 // Rows [first, last), each with its time. One reading of the clock ends a row and begins the next.
@@ -37,7 +24,15 @@ void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t f
                    Scratch& scratch) {
   auto begin = Clock::now();
   for (std::size_t row = first; row < last; ++row) {
-    evaluate_row(problem, table, row, scratch);
+    const EvaluationSlot slot = table.slot(row);
+    try {
+      problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, slot);
+      if (contradicts(slot)) slot.status = Status::failed;
+    } catch (...) {  // whatever went wrong belongs to this design alone
+      constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+      for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::ranges::fill(part, nan);
+      slot.status = Status::failed;
+    }
     const auto end = Clock::now();
     table.seconds[row] = std::chrono::duration<float>(end - begin).count();
     begin = end;
@@ -53,10 +48,6 @@ double seconds_each(const EvaluationTable& table, std::size_t first) {
 }
 
 }  // namespace
-
-void SerialEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
-  evaluate_rows(problem, table, first, table.size(), scratch_);
-}
 
 void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   constexpr double kWorthSharing = 5e-6, kLong = 200e-6;  // s

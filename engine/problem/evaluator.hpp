@@ -18,15 +18,6 @@ class Evaluator {
   virtual void follow(std::size_t /*row*/, std::size_t /*first*/, std::size_t /*end*/) {}
 };
 
-/// One design after the other, on the calling thread.
-class SerialEvaluator final : public Evaluator {
- public:
-  void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
-
- private:
-  Scratch scratch_;
-};
-
 /// By a team of threads: it shares out the designs, or, where they are few and take long, what surveys have to share
 /// out within each. The team is the caller's; outside with_team() one is made for each call, which a run of many calls
 /// is better without.

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
-#include <type_traits>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/problem/conditioning_options.hpp"
-#include "engine/problem/survey_results.hpp"
+#include "engine/problem/pose_statistic.hpp"
 
 namespace pkm {
 namespace {
@@ -21,6 +19,29 @@ struct Room {
 }  // namespace
 
 using Origin = ExpressionName::Origin;
+
+template <class S>
+S SurveyResult::value(const Survey<S>& survey, double sharpness, Scratch& scratch) const {
+  if (!quantity) return survey.volume;
+  if (statistic == "worst") return PoseStatistic{*quantity, "mean", "worst"}(survey, scratch);
+  return PoseStatistic{*quantity, statistic, statistic == "mean" ? "mean" : "worst", sharpness}(survey, scratch);
+}
+
+template double SurveyResult::value(const Survey<double>&, double, Scratch&) const;
+template Dual4 SurveyResult::value(const Survey<Dual4>&, double, Scratch&) const;
+
+const std::vector<SurveyResult>& survey_results() {
+  static const std::vector<SurveyResult> list = [] {
+    std::vector<SurveyResult> all = {{"volume", "measure of the feasible poses over the swept coordinates"}};
+    for (const PoseQuantity* const quantity : pose_quantities())
+      for (const auto& [statistic, meaning] : quantity->results)
+        if (statistic)
+          all.push_back(
+              {quantity->name + std::string("_") + statistic, meaning + where_empty(*quantity), quantity, statistic});
+    return all;
+  }();
+  return list;
+}
 
 std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const SurveyPlan& plan) {
   const MechanismInfo& info = mechanism.info();
@@ -37,9 +58,9 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const S
   if (const Size* const size = mechanism.size())
     names.push_back({"size", size->unit(), size->meaning(), Origin::size, 0});
   for (std::size_t i = 0; i < survey_results().size(); ++i) {
-    const SurveyResult& result = survey_results()[i];
-    if (result.available(mechanism))
-      names.push_back({result.name, result.unit(info, plan), result.meaning, Origin::survey, i});
+    const auto& [name, meaning, quantity, statistic] = survey_results()[i];
+    if (!quantity || gives(mechanism, *quantity))
+      names.push_back({name, quantity ? quantity->unit : volume_unit(info, plan), meaning, Origin::survey, i});
   }
   return names;
 }
@@ -78,15 +99,19 @@ bool Expression::needs_survey() const { return uses(Origin::survey); }
 
 void Expression::add_demand(const EntryContext& context, Demand& demand) const {
   for (const std::size_t i : formula_.used())
-    if (names_[i].origin == Origin::survey) survey_results()[names_[i].index].demand(context, demand);
+    if (names_[i].origin == Origin::survey)
+      if (const auto* const quantity = survey_results()[names_[i].index].quantity)
+        demand_field(*quantity, context, demand);
 }
 
 /// An option without effect was most likely meant for something that the expression does not name.
 void Expression::refuse_idle_options(const Options& options, const Demand& demand) const {
-  if (options.has("characteristic_length") && !demand.conditioning)
+  if (options.has("characteristic_length") && !demand.needs_jacobian())
     throw std::invalid_argument("characteristic_length has no effect: the expression names no conditioning");
   const bool softens = std::ranges::any_of(formula_.used(), [&](std::size_t i) {
-    return names_[i].origin == Origin::survey && survey_results()[names_[i].index].has_stand_in;
+    if (names_[i].origin != Origin::survey) return false;
+    const std::string& statistic = survey_results()[names_[i].index].statistic;
+    return statistic == "min" || statistic == "max";
   });
   if (options.values().at("sharpness") != sharpness_option("").initial && !softens)
     throw std::invalid_argument("sharpness has no effect: the expression names no conditioning_min");
@@ -97,7 +122,7 @@ S Expression::value(const DesignView<S>& design) const {
   auto& [values, thresholds, stack] = design.scratch.template get<Room<S>>();
   values.resize(names_.size());
   thresholds.resize(limits_.given.size());
-  if (uses(Origin::threshold)) find_thresholds<S>(design.mechanism, design.parameters, limits_, thresholds);
+  if (uses(Origin::threshold)) design.mechanism.thresholds(design.parameters, limits_, thresholds);
   for (const std::size_t i : formula_.used()) {
     const auto& [name, unit, meaning, origin, index] = names_[i];
     switch (origin) {
@@ -108,13 +133,10 @@ S Expression::value(const DesignView<S>& design) const {
         values[i] = thresholds[index];
         break;
       case Origin::size:
-        values[i] = size_of<S>(design.mechanism, design.parameters);
+        values[i] = design.mechanism.size()->of(design.parameters);
         break;
       case Origin::survey:
-        if constexpr (std::is_same_v<S, double>)
-          values[i] = survey_results()[index].value(*design.survey, design.scratch);
-        else
-          values[i] = survey_results()[index].smooth(*design.survey, sharpness_, design.scratch);
+        values[i] = survey_results()[index].value(*design.survey, sharpness_, design.scratch);
     }
   }
   return formula_.value(std::span<const S>(values), stack);

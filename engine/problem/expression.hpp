@@ -23,6 +23,21 @@ struct ExpressionName {
   std::size_t index = 0;  ///< among the mechanism's parameters or limits, or in survey_results()
 };
 
+/// A number that a survey gives.
+struct SurveyResult {
+  std::string name;
+  std::string meaning;
+  const PoseQuantity* quantity = nullptr;  ///< null: the volume
+  std::string statistic = {};              ///< of PoseResult
+
+  /// With derivatives, a worst case by its smooth stand-in of that sharpness.
+  template <class S>
+  S value(const Survey<S>& survey, double sharpness, Scratch& scratch) const;
+};
+
+/// The volume, and those of every quantity of poses.
+const std::vector<SurveyResult>& survey_results();
+
 /// Every name that the expressions of a mechanism know; `pi` and the functions are the formula's own.
 std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const SurveyPlan& plan);
 

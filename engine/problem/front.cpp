@@ -4,20 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace pkm {
 namespace {
 
-/// Scores from 0 to 1 over the front; 0 where all are alike.
-Scores normalised(const Scores& front) {
-  const Ranges extent = ranges_of(front);
-  Scores result = front;
-  for (std::size_t i = 0; i < front.size(); ++i)
-    for (std::size_t k = 0; k < front.objectives; ++k) {
-      const double range = extent.range(k);
-      result.values[i * front.objectives + k] = range > 0 ? (front[i][k] - extent.least[k]) / range : 0;
-    }
-  return result;
+std::vector<std::size_t> indices(const Scores& scores) {
+  std::vector<std::size_t> all(scores.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
 }
 
 std::vector<double> sums(const Scores& scores) {
@@ -53,39 +48,38 @@ Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationT
 Ranges ranges_of(const Scores& front) {
   Ranges e;
   for (std::size_t k = 0; front.size() > 0 && k < front.objectives; ++k) {
-    e.least.push_back(front[0][k]);
-    e.greatest.push_back(front[0][k]);
-    for (std::size_t i = 1; i < front.size(); ++i) {
-      e.least[k] = std::min(e.least[k], front[i][k]);
-      e.greatest[k] = std::max(e.greatest[k], front[i][k]);
-    }
+    std::vector<double> column;
+    for (std::size_t i = 0; i < front.size(); ++i) column.push_back(front[i][k]);
+    e.least.push_back(std::ranges::min(column));
+    e.greatest.push_back(std::ranges::max(column));
   }
   return e;
 }
 
+Scores normalised(const Scores& front) {
+  const Ranges extent = ranges_of(front);
+  Scores result = front;
+  for (std::size_t i = 0; i < front.size(); ++i)
+    for (std::size_t k = 0; k < front.objectives; ++k) {
+      const double range = extent.range(k);
+      result.values[i * front.objectives + k] = range > 0 ? (front[i][k] - extent.least[k]) / range : 0;
+    }
+  return result;
+}
+
 std::vector<std::size_t> ends_of(const Scores& front) {
   std::vector<std::size_t> ends;
-  for (std::size_t k = 0; k < front.objectives; ++k) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < front.size(); ++i)
-      if (front[i][k] < front[best][k]) best = i;
-    ends.push_back(best);
-  }
+  for (std::size_t k = 0; k < front.objectives; ++k)
+    ends.push_back(std::ranges::min(indices(front), {}, [&](std::size_t i) { return front[i][k]; }));
   return ends;
 }
 
 std::size_t compromise(const Scores& front) {
   const Scores scaled = normalised(front);
   const std::vector<double> price = sums(scaled);
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < scaled.size(); ++i) {
-    const double worst = *std::max_element(scaled[i], scaled[i] + scaled.objectives);
-    if (worst > least || (worst == least && price[i] >= price[best])) continue;
-    least = worst;
-    best = i;
-  }
-  return best;
+  return std::ranges::min(indices(scaled), {}, [&](std::size_t i) {
+    return std::pair(*std::max_element(scaled[i], scaled[i] + scaled.objectives), price[i]);
+  });
 }
 
 std::vector<std::size_t> knees(const Scores& front) {
@@ -94,8 +88,7 @@ std::vector<std::size_t> knees(const Scores& front) {
   const Scores scaled = normalised(front);
   const Ranges extent = ranges_of(front);
   const std::vector<double> price = sums(scaled);
-  std::vector<std::size_t> order(front.size()), found;
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = indices(front), found;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return price[a] < price[b]; });
   double end = std::numeric_limits<double>::infinity();  // price of the cheapest end
   for (std::size_t k = 0; k < front.objectives; ++k)

@@ -46,6 +46,9 @@ struct Ranges {
 };
 Ranges ranges_of(const Scores& front);
 
+/// Scores from 0 to 1 over the front; 0 where all are alike.
+Scores normalised(const Scores& front);
+
 /// The best design of each score, the first of several. The front must not be empty.
 std::vector<std::size_t> ends_of(const Scores& front);
 

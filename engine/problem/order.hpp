@@ -3,6 +3,7 @@
 // the others. A failed evaluation is worse than everything.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 
 #include "engine/problem/problem.hpp"
@@ -15,11 +16,7 @@ struct Ranked {
   double value = 0;  ///< to be minimised: the first objective of a feasible design, else the violation
   std::int64_t row = -1;
 
-  friend bool operator<(const Ranked& a, const Ranked& b) {
-    if (a.status != b.status) return a.status < b.status;
-    if (a.value != b.value) return a.value < b.value;
-    return a.row < b.row;
-  }
+  auto operator<=>(const Ranked&) const = default;
 };
 
 /// Whether a design is better than another, whichever was evaluated first. Strict weak order.

@@ -29,11 +29,7 @@ struct MarginInfo {
 };
 
 /// A number that is computed and stored, but not optimised.
-struct ReportInfo {
-  std::string name;
-  std::string unit;
-  std::string meaning;
-};
+using ReportInfo = MarginInfo;
 
 /// A design problem. Immutable after construction, so threads share one.
 class Problem {

@@ -2,6 +2,7 @@
 // entries that make them.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -32,8 +33,8 @@ class Quantity {
   virtual double value(const DesignView<double>& design) const = 0;
   /// What gradient solvers are told: the value with derivatives, or a smooth stand-in for it (a worst case).
   virtual Dual4 smooth(const DesignView<Dual4>& design) const = 0;
-  /// "" or one sentence saying why there is no `smooth`.
-  virtual std::string no_derivatives() const { return {}; }
+  /// Why there is no `smooth`.
+  virtual Refusal no_derivatives() const { return {}; }
   /// Why its value is not a finite number, where more can be said than that it is not; "" otherwise.
   virtual std::string why_undefined(const DesignView<double>&) const { return {}; }
 };
@@ -41,18 +42,20 @@ class Quantity {
 /// Wraps generic functions `[](const auto& design) { ... }` of a DesignView: the value, and its smooth stand-in where
 /// the value itself has kinks.
 template <class F, class G>
-std::unique_ptr<const Quantity> make_quantity(F function, G stand_in) {
+std::unique_ptr<const Quantity> make_quantity(F function, G stand_in, Refusal no_derivatives = {}) {
   class Wrapped final : public Quantity {
    public:
-    Wrapped(F f, G g) : function_(std::move(f)), smooth_(std::move(g)) {}
+    Wrapped(F f, G g, Refusal why) : function_(std::move(f)), smooth_(std::move(g)), no_derivatives_(std::move(why)) {}
     double value(const DesignView<double>& design) const override { return function_(design); }
     Dual4 smooth(const DesignView<Dual4>& design) const override { return smooth_(design); }
+    Refusal no_derivatives() const override { return no_derivatives_; }
 
    private:
     F function_;
     G smooth_;
+    Refusal no_derivatives_;
   };
-  return std::make_unique<Wrapped>(std::move(function), std::move(stand_in));
+  return std::make_unique<Wrapped>(std::move(function), std::move(stand_in), std::move(no_derivatives));
 }
 template <class F>
 std::unique_ptr<const Quantity> make_quantity(F function) {
@@ -61,19 +64,9 @@ std::unique_ptr<const Quantity> make_quantity(F function) {
 
 /// A quantity without derivatives.
 template <class F>
-std::unique_ptr<const Quantity> make_plain_quantity(F function, std::string no_derivatives) {
-  class Wrapped final : public Quantity {
-   public:
-    Wrapped(F f, std::string why) : function_(std::move(f)), no_derivatives_(std::move(why)) {}
-    double value(const DesignView<double>& design) const override { return function_(design); }
-    Dual4 smooth(const DesignView<Dual4>&) const override { throw std::logic_error(no_derivatives_); }
-    std::string no_derivatives() const override { return no_derivatives_; }
-
-   private:
-    F function_;
-    std::string no_derivatives_;
-  };
-  return std::make_unique<Wrapped>(std::move(function), std::move(no_derivatives));
+std::unique_ptr<const Quantity> make_plain_quantity(F function, const std::string& no_derivatives) {
+  const auto none = [no_derivatives](const DesignView<Dual4>&) -> Dual4 { throw std::logic_error(no_derivatives); };
+  return make_quantity(std::move(function), none, no_derivatives);
 }
 
 /// A part of the workspace that a study names: surveyed by a plan of its own.
@@ -92,19 +85,24 @@ struct EntryContext {
   std::span<const NamedMotion> motions = {};  ///< the study's
 };
 
+inline std::string no_unit(const EntryContext&) { return "1"; }
+inline Refusal serves_all(const Mechanism&) { return {}; }
+inline void needs_nothing(const EntryContext&, Demand&) {}
+inline std::vector<OptionSpec> no_options(const MechanismInfo&) { return {}; }
+
 /// An entry of the catalogue of objectives.
 struct ObjectiveEntry {
   std::string name;
-  std::string meaning;  ///< one line
-  Direction direction;  ///< the natural one
-  std::vector<OptionSpec> options;
-  std::string (*unit)(const EntryContext&);
-  /// "" or one sentence saying why this mechanism cannot serve the objective.
-  std::string (*refusal)(const Mechanism&);
-  void (*demand)(const EntryContext&, Demand&);  ///< adds what the survey has to compute
-  std::unique_ptr<const Quantity> (*make)(const EntryContext&);
+  std::string meaning;                        ///< one line
+  Direction direction = Direction::maximise;  ///< the natural one
+  std::vector<OptionSpec> options = {};
+  std::function<std::string(const EntryContext&)> unit = no_unit;
+  std::function<Refusal(const Mechanism&)> refusal = serves_all;  ///< why this mechanism cannot serve the objective
+  /// Adds what the survey has to compute.
+  std::function<void(const EntryContext&, Demand&)> demand = needs_nothing;
+  std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// What one with these options computes; none: `meaning`.
-  std::string (*detail)(const EntryContext&) = nullptr;
+  std::function<std::string(const EntryContext&)> detail = nullptr;
   bool reads_survey = true;  ///< of the workspace, or of the region that a study names; false: the design alone
 };
 
@@ -113,20 +111,21 @@ struct ObjectiveEntry {
 struct ConstraintEntry {
   std::string name;
   std::string meaning;
-  bool pose_level = false;
   /// Options may depend on the mechanism (its limits' names).
-  std::vector<OptionSpec> (*options)(const MechanismInfo&);
-  std::string (*unit)(const EntryContext&);  ///< not of pose-level ones
-  std::string (*refusal)(const Mechanism&);
+  std::vector<OptionSpec> (*options)(const MechanismInfo&) = no_options;
+  std::function<std::string(const EntryContext&)> unit = nullptr;  ///< not of pose-level ones
+  std::function<Refusal(const Mechanism&)> refusal = serves_all;
   /// Pose-level only: thresholds this constraint sets, merged by the reader (the same threshold twice is an error).
-  LimitSpec (*limits)(const MechanismInfo&, const Options&);
+  LimitSpec (*limits)(const MechanismInfo&, const Options&) = nullptr;
   /// Not of pose-level ones. Throws std::invalid_argument with a sentence when the options name something unknown.
-  std::unique_ptr<const Quantity> (*make)(const EntryContext&);
+  std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// Whether one with these options reads the survey, and what it adds to what the survey has to compute; none: no.
   bool (*needs_survey)(const EntryContext&) = nullptr;
-  void (*demand)(const EntryContext&, Demand&) = nullptr;
+  void (*demand)(const EntryContext&, Demand&) = needs_nothing;
   /// What one with these options tests; none: `meaning`.
   std::string (*detail)(const EntryContext&) = nullptr;
+
+  bool pose_level() const { return limits != nullptr; }
 };
 
 }  // namespace pkm

@@ -5,15 +5,6 @@
 #include <string>
 
 namespace pkm {
-namespace {
-
-void copy_part(const std::vector<double>& from, std::size_t source, std::vector<double>& to, std::size_t row,
-               std::size_t width) {
-  std::copy_n(from.begin() + source * width, width, to.begin() + row * width);
-}
-
-}  // namespace
-
 void ReplayEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   const EvaluationShape shape = table.shape();
   const std::size_t recorded_end = row_ + (end_ - first_);  // first row of the table that is new
@@ -26,10 +17,11 @@ void ReplayEvaluator::evaluate(const Problem& problem, EvaluationTable& table, s
     if (std::memcmp(recorded.data(), table.design(row).data(), recorded.size_bytes()) != 0)
       throw ReplayMismatch("Recorded evaluation " + std::to_string(source) +
                            " is of another design than the optimiser asks for: the record cannot be continued.");
-    copy_part(record_.objectives, source, table.objectives, row, shape.objectives);
-    copy_part(record_.margins, source, table.margins, row, shape.margins);
-    copy_part(record_.reports, source, table.reports, row, shape.reports);
-    copy_part(record_.slopes, source, table.slopes, row, shape.slopes());
+    const EvaluationSlot slot = table.slot(row);
+    std::ranges::copy(record_.objective_row(source), slot.objectives.begin());
+    std::ranges::copy(record_.margin_row(source), slot.margins.begin());
+    std::ranges::copy(record_.report_row(source), slot.reports.begin());
+    std::ranges::copy(record_.slope_row(source), slot.slopes.begin());
     table.status[row] = record_.status[source];
     table.seconds[row] = record_.seconds[source];
   }

@@ -1,31 +1,16 @@
 #include "engine/problem/start_outcome.hpp"
 
+#include <array>
+
 namespace pkm {
 
 std::string_view words(StopReason reason) {
-  switch (reason) {
-    case StopReason::generations:
-      return "generation limit";
-    case StopReason::evaluations:
-      return "evaluation limit";
-    case StopReason::target:
-      return "target reached";
-    case StopReason::stall:
-      return "no further improvement";
-    case StopReason::tolerance:
-      return "converged";
-    case StopReason::exhausted:
-      return "every design evaluated";
-    case StopReason::interrupted:
-      return "interrupted";
-    case StopReason::time:
-      return "time limit";
-    case StopReason::failed:
-      return "failed";
-    case StopReason::starts:
-      return "every start has ended";
-  }
-  return "";
+  static constexpr std::array<std::string_view, 10> kWords = {
+      // in the order of StopReason
+      "generation limit", "evaluation limit",       "target reached", "no further improvement",
+      "converged",        "every design evaluated", "interrupted",    "time limit",
+      "failed",           "every start has ended"};
+  return kWords[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace pkm

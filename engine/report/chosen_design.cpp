@@ -1,6 +1,7 @@
 #include "engine/report/chosen_design.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "engine/core/error.hpp"
 
@@ -26,7 +27,7 @@ std::size_t chosen_stage(const StudyContents& contents, const DesignChoice& choi
                          const std::string& what, const Has& has) {
   std::vector<std::string> with;
   for (std::size_t s = 0; s < contents.stages.size(); ++s)
-    if (has(contents.stages[s])) with.push_back(std::to_string(s + 1));
+    if (std::invoke(has, contents.stages[s])) with.push_back(std::to_string(s + 1));
   if (with.empty())
     throw wrong(option, "study " + contents.name, "a study file that holds a " + what + ": this one has none");
   const std::string stage = choice.stage ? std::to_string(*choice.stage) : with.back();
@@ -60,9 +61,7 @@ ChosenDesign chosen_design(const StudyContents& contents, const Study& study, co
     return study.problem->parameters(contents.stages[stage].table.design(static_cast<std::size_t>(row)));
   };
   if (choice.front) {
-    const std::size_t s = chosen_stage(contents, choice, "--front", "front", [](const StageRecord& stage) {
-      return stage.front && !stage.front->rows.empty();
-    });
+    const std::size_t s = chosen_stage(contents, choice, "--front", "front", &StageRecord::has_front);
     const std::string stage = std::to_string(s + 1), point = std::to_string(*choice.front);
     const std::vector<std::int64_t>& rows = contents.stages[s].front->rows;
     const std::size_t k = checked("--front", *choice.front, 1, static_cast<std::int64_t>(rows.size()),

@@ -1,17 +1,12 @@
 #include <cmath>
 #include <limits>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/math/statistics.hpp"
-#include "engine/report/json_text.hpp"
 #include "engine/report/sections.hpp"
 #include "engine/report/thinning.hpp"
 
 namespace pkm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostGenerations = 1000;
 constexpr std::size_t kMostEvaluations = 2000;  // of a solver stage
@@ -30,12 +25,6 @@ std::vector<double> best_before(const EvaluationTable& table, std::size_t object
   return best;
 }
 
-std::size_t rows_after(const StageRecord& stage, std::size_t generation) {
-  return generation + 1 < stage.generations.size()
-             ? static_cast<std::size_t>(stage.generations.first_row[generation + 1])
-             : stage.table.size();
-}
-
 /// One objective over the generations: the best so far, median and quartiles of the population's feasible designs.
 Json objective_curves(const StageRecord& stage, std::size_t objective, Direction direction, const Thinning& shown) {
   const std::vector<double> best = best_before(stage.table, objective, direction);
@@ -47,7 +36,7 @@ Json objective_curves(const StageRecord& stage, std::size_t objective, Direction
         values.push_back(stage.table.objective_row(r)[objective]);
     const std::vector<double> equal(values.size(), 1.0);
     const auto quantile = [&](double p) { return values.empty() ? kNone : weighted_quantile(equal, values, p); };
-    so_far.push_back(best[rows_after(stage, g)]);
+    so_far.push_back(best[stage.generations.end_of(g, stage.table.size())]);
     median.push_back(quantile(0.5));
     lower.push_back(quantile(0.25));
     upper.push_back(quantile(0.75));
@@ -63,7 +52,7 @@ Json generations(const ProblemRecord& problem, const StageRecord& stage) {
     return list;
   };
   std::vector<std::size_t> evaluations;
-  for (const std::size_t g : shown.indices) evaluations.push_back(rows_after(stage, g));
+  for (const std::size_t g : shown.indices) evaluations.push_back(stage.generations.end_of(g, stage.table.size()));
   Json json = {{"all", stage.generations.size()},
                {"every", shown.every},
                {"number", shown.indices},
@@ -116,8 +105,8 @@ Json evaluations(const StageRecord& stage) {
 
 }  // namespace
 
-std::string convergence_data(const StudyContents& contents) {
-  if (contents.evaluations() == 0 || contents.problem.objectives.empty()) return "";
+Json convergence_data(const StudyContents& contents) {
+  if (contents.evaluations() == 0 || contents.problem.objectives.empty()) return {};
   Json list = Json::array();
   for (const StageRecord& stage : contents.stages) {
     if (stage.table.size() == 0) continue;
@@ -131,7 +120,7 @@ std::string convergence_data(const StudyContents& contents) {
     }
     list.push_back(json);
   }
-  return json_text(list);
+  return list;
 }
 
 }  // namespace pkm

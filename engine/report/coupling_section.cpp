@@ -1,19 +1,13 @@
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/core/team.hpp"
-#include "engine/math/statistics.hpp"
-#include "engine/problem/inertia_options.hpp"
-#include "engine/report/json_text.hpp"
+#include "engine/problem/pose_statistic.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
 #include "engine/survey/survey_set.hpp"
 
 namespace pkm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kCells = 16;     // per swept axis, where every rotation needs a survey of its own
 constexpr std::size_t kRotations = 13;  // of those
@@ -32,14 +26,12 @@ Turned by_layers(const WorkspaceFields& workspace, std::size_t axis, std::size_t
   for (std::int64_t k = 0; k < grid.cells[axis]; ++k) turned.rotations.push_back(grid.centre(axis, k));
   std::int64_t stride = 1;
   for (std::size_t i = axis + 1; i < 3; ++i) stride *= grid.cells[i];
-  const std::vector<double>& feasible = workspace.field("feasible").values;
-  for (std::size_t cell = 0; cell < feasible.size(); ++cell) {
-    if (!(feasible[cell] > 0)) continue;
+  for (const std::size_t cell : workspace.feasible_cells()) {
     auto& survey =
         turned.surveys[static_cast<std::size_t>(static_cast<std::int64_t>(cell) / stride % grid.cells[axis])];
     survey.weight.push_back(1);
     for (std::size_t limb = 0; limb < limbs; ++limb)
-      survey.dci[limb].push_back(workspace.field("dci_" + std::to_string(limb + 1)).values[cell]);
+      survey.fields[&kCouplingIndex][limb].push_back(workspace.field("dci_" + std::to_string(limb + 1)).values[cell]);
   }
   return turned;
 }
@@ -52,9 +44,7 @@ Turned by_surveys(const Views& views, const View& view, std::size_t held) {
   turned.surveys.resize(kRotations);
   for (std::size_t k = 0; k < kRotations; ++k)
     turned.rotations.push_back(lower + (upper - lower) * static_cast<double>(k) / (kRotations - 1));
-  Demand demand;
-  demand.dci = true;
-  demand.mode = views.mode;
+  const Demand demand{.fields = {&kCouplingIndex}, .mode = views.mode};
   share_pieces(kRotations, [&](std::size_t k, std::size_t end) {
     for (; k < end; ++k) {
       SurveyPlan plan = views.plan;
@@ -80,22 +70,20 @@ Turned turned(const Views& views, const View& view, int rotation) {
 
 /// Mean, 95 % quantile and maximum of one index at every rotation that has feasible poses.
 Json against_rotation(const Turned& turned, const std::string& limb) {
-  std::vector<double> mean, p95, most;
-  for (const Survey<double>& survey : turned.surveys) {
-    const std::vector<double> index = coupling_of(survey, limb);
-    const bool none = index.empty();
-    mean.push_back(none ? std::nan("") : weighted_mean(survey.weight, index));
-    p95.push_back(none ? std::nan("") : weighted_quantile(survey.weight, index, 0.95));
-    most.push_back(none ? std::nan("") : greatest(index));
-  }
-  return {{"mean", mean}, {"p95", p95}, {"max", most}};
+  Scratch scratch;
+  Json json;
+  for (const char* const statistic : {"mean", "p95", "max"})
+    for (const Survey<double>& survey : turned.surveys)
+      json[statistic].push_back(
+          survey.weight.empty() ? std::nan("") : PoseStatistic{kCouplingIndex, statistic, limb}(survey, scratch));
+  return json;
 }
 
 }  // namespace
 
-std::string coupling_data(const Views& views) {
+Json coupling_data(const Views& views) {
   const MechanismInfo& info = views.mechanism.info();
-  if (!views.mechanism.dynamics()) return "";
+  if (no_joint_forces(views.mechanism)) return {};
   const auto rotation = std::ranges::find_if(info.coordinates, &AxisInfo::turns);
   const bool turns = rotation != info.coordinates.end();
   std::vector<std::string> joints, limbs;
@@ -115,11 +103,11 @@ std::string coupling_data(const Views& views) {
     }
     designs.push_back(std::move(json));
   }
-  if (designs.empty()) return "";
-  return json_text(Json{{"rotation", turns ? Json(rotation->name) : Json()},
-                        {"joints", joints},
-                        {"masses", views.mechanism.dynamics()->mass_model()},
-                        {"designs", designs}});
+  if (designs.empty()) return {};
+  return {{"rotation", turns ? Json(rotation->name) : Json()},
+          {"joints", joints},
+          {"masses", views.mechanism.dynamics()->mass_model()},
+          {"designs", designs}};
 }
 
 }  // namespace pkm

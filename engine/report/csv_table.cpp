@@ -1,14 +1,25 @@
 #include "engine/report/csv_table.hpp"
 
-#include <cerrno>
+#include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <stdexcept>
+#include <string_view>
 
 #include "engine/core/options.hpp"
 
 namespace pkm {
+namespace {
+
+/// Whether a spreadsheet would take the text for a formula. A number such as -7 is none.
+bool runs_in_spreadsheets(const std::string& text) {
+  if (text.empty() || std::string_view("=+-@\t\r").find(text[0]) == std::string_view::npos) return false;
+  const char* const begin = text.data() + (text[0] == '+' ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  double number = 0;
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  return error != std::errc() || stop != end;
+}
+
+}  // namespace
 
 CsvTable::CsvTable(const std::vector<std::string>& columns) {
   for (const auto& column : columns) add(column);
@@ -19,49 +30,33 @@ void CsvTable::begin_row() {
   row_begins_ = true;
 }
 
-void CsvTable::next_cell() {
+void CsvTable::add_cell(const std::string& text) {
   if (!row_begins_) text_ += ',';
   row_begins_ = false;
+  text_ += text;
 }
 
 void CsvTable::add(double value) {
-  next_cell();
   if (std::isinf(value))
-    text_ += value > 0 ? "inf" : "-inf";
-  else if (!std::isnan(value))
-    text_ += shortest(value + 0.0);  // no "-0"
-}
-
-void CsvTable::add(std::int64_t number) {
-  next_cell();
-  text_ += std::to_string(number);
+    add_cell(value > 0 ? "inf" : "-inf");
+  else
+    add_cell(std::isnan(value) ? "" : shortest(value + 0.0));  // no "-0"
 }
 
 void CsvTable::add(const std::string& text) {
-  next_cell();
-  if (text.find_first_of(",\"\n\r") == std::string::npos) {
-    text_ += text;
-    return;
-  }
-  text_ += '"';
-  for (const char c : text) text_ += c == '"' ? std::string("\"\"") : std::string{c};
-  text_ += '"';
+  const std::string cell = (runs_in_spreadsheets(text) ? "'" : "") + text;
+  if (cell.find_first_of(",\"\n\r") == std::string::npos) return add_cell(cell);
+  std::string quoted;
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string{c};
+  add_cell('"' + quoted + '"');
 }
 
 void CsvTable::add_empty(std::size_t cells) {
-  for (; cells > 0; --cells) next_cell();
+  for (; cells > 0; --cells) add_cell("");
 }
 
-void CsvTable::add(const AxisVector<double>& values) {
+void CsvTable::add(std::span<const double> values) {
   for (const double value : values) add(value);
-}
-
-void CsvTable::write(const std::string& path) const {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary);
-  file << text();
-  file.close();
-  if (!file) throw std::runtime_error(path + ": the table cannot be written (" + std::strerror(errno) + ")");
 }
 
 }  // namespace pkm

@@ -1,12 +1,11 @@
 // Tables for other programs: comma-separated values (RFC 4180, lines end with a line feed), numbers in full precision,
-// empty cells for what does not exist.
+// empty cells for what does not exist. Text that a spreadsheet would run as a formula ("=..", "@..") begins with a '.
 #pragma once
 
-#include <cstdint>
+#include <concepts>
+#include <span>
 #include <string>
 #include <vector>
-
-#include "engine/math/small_matrix.hpp"
 
 namespace pkm {
 
@@ -20,19 +19,23 @@ class CsvTable {
   explicit CsvTable(const std::vector<std::string>& columns);
 
   void begin_row();
+  /// A row that begins with these cells.
+  template <class... Cells>
+  void row(const Cells&... cells) {
+    begin_row();
+    (add(cells), ...);
+  }
   void add(double value);  ///< NaN leaves the cell empty; infinities are "inf" and "-inf"
-  void add(std::int64_t number);
+  void add(std::integral auto number) { add_cell(std::to_string(number)); }
   void add(const std::string& text);
   void add_empty(std::size_t cells);
-  void add(const AxisVector<double>& values);
+  void add(std::span<const double> values);
 
   /// The whole file.
   std::string text() const { return text_ + '\n'; }
-  /// Throws std::runtime_error with a sentence when the file cannot be written.
-  void write(const std::string& path) const;
 
  private:
-  void next_cell();
+  void add_cell(const std::string& text);
 
   std::string text_;
   bool row_begins_ = true;

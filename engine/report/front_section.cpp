@@ -1,13 +1,8 @@
-#include <nlohmann/json.hpp>
-
 #include "engine/problem/front.hpp"
-#include "engine/report/json_text.hpp"
 #include "engine/report/sections.hpp"
 
 namespace pkm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<double> copy(std::span<const double> values) { return {values.begin(), values.end()}; }
 
@@ -29,18 +24,18 @@ Json points(const ProblemRecord& problem, const StageRecord& stage) {
 
 }  // namespace
 
-std::string front_data(const StudyContents& contents) {
+Json front_data(const StudyContents& contents) {
   Json fronts = Json::array();
   for (const StageRecord& stage : contents.stages)
-    if (stage.front && !stage.front->rows.empty())
+    if (stage.has_front())
       fronts.push_back({{"stage", &stage - contents.stages.data() + 1},
                         {"optimiser", stage.optimiser},
                         {"reference", stage.front->reference},
                         {"points", points(contents.problem, stage)}});
-  if (fronts.empty() || contents.problem.objectives.size() < 2) return "";
+  if (fronts.empty() || contents.problem.objectives.size() < 2) return {};
   Json json = {{"fronts", fronts}, {"baseline", Json()}};
   if (contents.final && contents.final->baseline) json["baseline"] = contents.final->baseline->objectives;
-  return json_text(json);
+  return json;
 }
 
 }  // namespace pkm

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/report/views.hpp"
@@ -15,8 +16,17 @@ std::string page_data(const std::vector<PageStudy>& studies, const std::string& 
 /// The same of one design, without a study: {"program": .., "studies": [one with the sections on the design]}.
 std::string page_data(const Views& views, const std::string& program);
 
-/// The page around its data. Throws std::runtime_error with a sentence where the library was built without it (see
-/// page_parts).
+/// The page without data, as it lies in engine/report/page/: what the build has put into the library.
+struct PageParts {
+  std::string_view html;  ///< with marks where the others and the data belong
+  std::string_view style;
+  std::string_view script;
+  std::string_view plotly;
+};
+/// Throws std::runtime_error with a sentence where the library was built without them.
+PageParts page_parts();
+
+/// The page around its data. Throws as page_parts() does.
 std::string html_page(const std::string& data);
 
 }  // namespace pkm

@@ -172,16 +172,6 @@ class Builder {
 
 }  // namespace
 
-double Isosurface::volume() const {
-  double sixfold = 0;
-  for (const auto& [a, b, c] : triangles) {
-    const Point &p = vertices[a], &q = vertices[b], &r = vertices[c];
-    sixfold +=
-        p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) + p[2] * (q[0] * r[1] - q[1] * r[0]);
-  }
-  return sixfold / 6;
-}
-
 Refusal refuse_surface(const WorkspaceFields& workspace) {
   if (workspace.axes.size() == 3) return {};
   std::vector<std::string> swept;

@@ -19,9 +19,6 @@ struct Isosurface {
   std::vector<std::array<double, 3>> vertices;  ///< in the order of WorkspaceFields::axes
   std::vector<std::size_t> cell;                ///< per vertex: the feasible cell next to it, whose fields it may show
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
-
-  /// Of what the triangles enclose, in the product of the axes' units.
-  double volume() const;
 };
 
 /// Why a workspace has no surface: it takes three swept coordinates.

@@ -2,60 +2,50 @@
 #include <array>
 #include <map>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/core/team.hpp"
-#include "engine/report/json_text.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
 
 namespace pkm {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kSteps = 9;      // of each coordinate that the workspace sweeps over
 constexpr std::size_t kHeldSteps = 7;  // of the first that it holds; the others stay where they are
 
-struct Slider {
-  std::vector<double> values;
+using Slider = std::vector<double>;
 
-  Slider() = default;
-  Slider(double lower, double upper, std::size_t steps) {
-    if (!(upper > lower)) steps = 1;
-    for (std::size_t k = 0; k < steps; ++k)
-      values.push_back(steps == 1 ? lower
-                                  : lower + (upper - lower) * static_cast<double>(k) / static_cast<double>(steps - 1));
-  }
-};
+Slider slider(double lower, double upper, std::size_t steps) {
+  if (!(upper > lower)) return {lower};
+  Slider values;
+  for (std::size_t k = 0; k < steps; ++k)
+    values.push_back(lower + (upper - lower) * static_cast<double>(k) / static_cast<double>(steps - 1));
+  return values;
+}
 
 /// One for each coordinate: values that span the feasible cells, and the first held coordinate's range.
 using Sliders = std::vector<Slider>;
 
 Sliders sliders_of(const View& view) {
   const WorkspaceFields& workspace = *view.workspace;
-  const std::vector<double>& feasible = workspace.field("feasible").values;
   const std::size_t coordinates = workspace.axes.size() + workspace.held.size();
   std::vector<std::array<double, 2>> range(coordinates, {1e300, -1e300});
-  for (std::size_t cell = 0; cell < feasible.size(); ++cell) {
-    if (!(feasible[cell] > 0)) continue;
+  for (const std::size_t cell : workspace.feasible_cells()) {
     const Pose<double> pose = workspace.pose(cell);
     for (std::size_t c = 0; c < coordinates; ++c)
       range[c] = {std::min(range[c][0], pose[c]), std::max(range[c][1], pose[c])};
   }
   Sliders sliders;
-  for (const auto& [lower, upper] : range) sliders.emplace_back(lower, upper, kSteps);
+  for (const auto& [lower, upper] : range) sliders.push_back(slider(lower, upper, kSteps));
   if (!workspace.held.empty())
     sliders[static_cast<std::size_t>(workspace.held[0].coordinate)] =
-        Slider(view.held_range[0][0], view.held_range[0][1], kHeldSteps);
+        slider(view.held_range[0][0], view.held_range[0][1], kHeldSteps);
   return sliders;
 }
 
 /// Which step of each slider a pose is at: of the poses the last slider runs fastest.
 std::vector<std::size_t> steps_of(std::size_t pose, const Sliders& sliders) {
   std::vector<std::size_t> steps(sliders.size());
-  for (std::size_t c = sliders.size(); c-- > 0; pose /= sliders[c].values.size())
-    steps[c] = pose % sliders[c].values.size();
+  for (std::size_t c = sliders.size(); c-- > 0; pose /= sliders[c].size()) steps[c] = pose % sliders[c].size();
   return steps;
 }
 
@@ -68,13 +58,13 @@ struct DrawnPose {
 /// Every combination of the sliders' values.
 std::vector<DrawnPose> draw(const Views& views, const View& view, const Sliders& sliders) {
   std::size_t count = 1;
-  for (const Slider& slider : sliders) count *= slider.values.size();
+  for (const Slider& values : sliders) count *= values.size();
   std::vector<DrawnPose> poses(count);
   share_pieces(count, [&](std::size_t pose, std::size_t end) {
     for (; pose < end; ++pose) {
       const std::vector<std::size_t> steps = steps_of(pose, sliders);
       Pose<double> drawn(sliders.size());
-      for (std::size_t c = 0; c < sliders.size(); ++c) drawn[c] = sliders[c].values[steps[c]];
+      for (std::size_t c = 0; c < sliders.size(); ++c) drawn[c] = sliders[c][steps[c]];
       poses[pose].report = views.mechanism.inspect(view.parameters, drawn, views.mode, views.limits);
       poses[pose].links = views.mechanism.links()->place(view.parameters, drawn, views.mode);
     }
@@ -121,21 +111,19 @@ std::size_t usual_pose(const std::vector<DrawnPose>& poses, const Sliders& slide
     for (std::size_t c = 0; c < steps.size(); ++c) middle[c] += static_cast<double>(steps[c]);
     ++count;
   }
-  std::size_t best = 0;
-  double least = 1e300;
-  for (std::size_t pose = 0; pose < poses.size(); ++pose) {
-    if (poses[pose].links.empty() || (count > 0 && !poses[pose].report.feasible)) continue;
-    double distance = 0;
+  const auto distance = [&](std::size_t pose) {
+    if (poses[pose].links.empty() || (count > 0 && !poses[pose].report.feasible)) return 1e300;
+    double sum = 0;
     const std::vector<std::size_t> steps = steps_of(pose, sliders);
     for (std::size_t c = 0; c < steps.size(); ++c) {
       const double away = static_cast<double>(steps[c]) - (count > 0 ? middle[c] / count : 0);
-      distance += away * away;
+      sum += away * away;
     }
-    if (distance < least) {
-      least = distance;
-      best = pose;
-    }
-  }
+    return sum;
+  };
+  std::size_t best = 0;
+  for (std::size_t pose = 1; pose < poses.size(); ++pose)
+    if (distance(pose) < distance(best)) best = pose;
   return best;
 }
 
@@ -147,10 +135,10 @@ Json mechanism(const Views& views, const View& view) {
   if (drawn == poses.end()) return Json();
 
   Json json = {{"name", view.name},
-               {"coordinates", axes_data<Json>(info.coordinates)},
-               {"joints", axes_data<Json>(info.joints)},
+               {"coordinates", axes_data(info.coordinates)},
+               {"joints", axes_data(info.joints)},
                {"links", Json::array()}};
-  for (std::size_t c = 0; c < sliders.size(); ++c) json["coordinates"][c]["values"] = sliders[c].values;
+  for (std::size_t c = 0; c < sliders.size(); ++c) json["coordinates"][c]["values"] = sliders[c];
   const Ends ends(poses);
   for (std::size_t k = 0; k < drawn->links.size(); ++k) {
     const PlacedLink& link = drawn->links[k];
@@ -190,14 +178,14 @@ Json mechanism(const Views& views, const View& view) {
 
 }  // namespace
 
-std::string mechanism_data(const Views& views) {
-  if (!views.mechanism.links()) return "";
+Json mechanism_data(const Views& views) {
+  if (!views.mechanism.links()) return {};
   Json designs = Json::array();
   for (const View& view : views.designs)
     if (view.workspace)
       if (Json json = mechanism(views, view); !json.is_null()) designs.push_back(std::move(json));
-  if (designs.empty()) return "";
-  return json_text(Json{{"mode", views.mode}, {"designs", designs}});
+  if (designs.empty()) return {};
+  return {{"mode", views.mode}, {"designs", designs}};
 }
 
 }  // namespace pkm

@@ -1,16 +1,12 @@
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/mechanism/trajectory.hpp"
-#include "engine/report/json_text.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
 
 namespace pkm {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Column = std::optional<AxisVector<double>> TrajectoryPoint::*;
 
 constexpr std::size_t kSamples = 201;
@@ -57,9 +53,10 @@ Json chain(const Trajectory& trajectory) {
           {"accelerations", curves(&Turning::acceleration)}};
 }
 
-/// Peaks and energies; what needs forces is null where a sample has none.
+/// Peaks and energies; those of speeds are null where no sample has any, those of forces absent where a sample has
+/// none.
 Json summary(const TrajectorySummary& s) {
-  Json json = {{"infeasible", s.infeasible}, {"peak_speed", listed(s.peak_speed)}};
+  Json json = {{"infeasible", s.infeasible}, {"peak_speed", s.peak_speed ? Json(listed(*s.peak_speed)) : Json()}};
   if (s.has_forces)
     json.update({{"peak_force", listed(s.peak_force)},
                  {"rms_force", listed(s.rms_force)},
@@ -95,7 +92,7 @@ Json along(const Views& views, const View& view, const Motion& motion) {
 
 }  // namespace
 
-std::string motions_data(const Views& views) {
+Json motions_data(const Views& views) {
   const MechanismInfo& info = views.mechanism.info();
   Json motions = Json::array();
   for (const NamedMotion& named : views.motions) {
@@ -107,13 +104,13 @@ std::string motions_data(const Views& views) {
       if (view.workspace) json["designs"].push_back(along(views, view, *named.motion));
     if (!json["designs"].empty()) motions.push_back(std::move(json));
   }
-  if (motions.empty()) return "";
+  if (motions.empty()) return {};
   Json chain = Json::array();
   if (const AuxiliaryChain* const shafts = views.mechanism.chain()) chain = {shafts->input(), shafts->output()};
-  return json_text(Json{{"coordinates", axes_data<Json>(info.coordinates)},
-                        {"joints", axes_data<Json>(info.joints)},
-                        {"chain", chain},
-                        {"motions", motions}});
+  return {{"coordinates", axes_data(info.coordinates)},
+          {"joints", axes_data(info.joints)},
+          {"chain", chain},
+          {"motions", motions}};
 }
 
 }  // namespace pkm

@@ -1,17 +1,12 @@
 #include <algorithm>
 #include <numeric>
 
-#include <nlohmann/json.hpp>
-
-#include "engine/report/json_text.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
 #include "engine/report/thinning.hpp"
 
 namespace pkm {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostSteps = 101;    // of a stage
 constexpr std::size_t kMostMembers = 200;  // of a step
@@ -66,7 +61,7 @@ Shown choose(const StageRecord& stage, std::int64_t first_kept) {
 
 }  // namespace
 
-std::string populations_data(const StudyContents& contents) {
+Json populations_data(const StudyContents& contents) {
   const ProblemRecord& problem = contents.problem;
   const std::size_t width =
       problem.variables.size() + problem.objectives.size() + problem.margins.size() + problem.reports.size();
@@ -94,13 +89,13 @@ std::string populations_data(const StudyContents& contents) {
                       {"members_thinned", shown.members_thinned},
                       {"steps", shown.steps}});
   }
-  if (evaluation.empty()) return "";
+  if (evaluation.empty()) return {};
   Json packed = Json::array();
   for (const auto& column : columns) packed.push_back(packed_floats(column));
-  return json_text(Json{{"stages", stages},
-                        {"columns", packed},
-                        {"evaluation", packed_integers(evaluation)},
-                        {"status", packed_bytes(status)}});
+  return {{"stages", stages},
+          {"columns", packed},
+          {"evaluation", packed_integers(evaluation)},
+          {"status", packed_bytes(status)}};
 }
 
 }  // namespace pkm

@@ -1,23 +1,8 @@
-#include <nlohmann/json.hpp>
-
-#include "engine/report/json_text.hpp"
 #include "engine/report/sections.hpp"
 
 namespace pkm {
-namespace {
 
-using Json = nlohmann::ordered_json;
-
-template <class Infos>
-Json named(const Infos& infos) {
-  Json list = Json::array();
-  for (const auto& info : infos) list.push_back({{"name", info.name}, {"unit", info.unit}, {"meaning", info.meaning}});
-  return list;
-}
-
-}  // namespace
-
-std::string problem_data(const PageStudy& page) {
+Json problem_data(const PageStudy& page) {
   const ProblemRecord& problem = page.contents.problem;
   Json json = {{"mechanism", problem.mechanism}};
   if (page.study) {
@@ -36,20 +21,15 @@ std::string problem_data(const PageStudy& page) {
     json["objectives"][k]["maximise"] = problem.objectives[k].direction == Direction::maximise;
   json["margins"] = named(problem.margins);
   json["reports"] = named(problem.reports);
-  return json_text(json);
+  return json;
 }
 
-std::string design_data(const Views& views) {
+Json design_data(const Views& views) {
   const MechanismInfo& info = views.mechanism.info();
   const View& design = views.designs.front();
-  Json parameters = Json::array();
-  for (std::size_t i = 0; i < info.parameters.size(); ++i)
-    parameters.push_back({{"name", info.parameters[i].name},
-                          {"unit", info.parameters[i].unit},
-                          {"meaning", info.parameters[i].meaning},
-                          {"value", design.parameters[i]}});
-  return json_text(
-      Json{{"mechanism", info.name}, {"title", info.title}, {"name", design.name}, {"parameters", parameters}});
+  Json parameters = named(info.parameters);
+  for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i]["value"] = design.parameters[i];
+  return {{"mechanism", info.name}, {"title", info.title}, {"name", design.name}, {"parameters", parameters}};
 }
 
 }  // namespace pkm

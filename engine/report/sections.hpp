@@ -1,39 +1,38 @@
 // The sections of the page, each as the data that it draws.
 //
-// Each function gives JSON text, or "" where there is nothing to show: the page then leaves the section out. Numbers
+// Each function gives null where there is nothing to show: the page then leaves the section out. Numbers
 // that are shown as values are exact; long columns are packed (engine/report/packed.hpp). What the numbers mean and how
 // they look is said in engine/report/page/, in the file of the same name.
 #pragma once
 
-#include <string>
-
+#include "engine/report/json_text.hpp"
 #include "engine/report/views.hpp"
 
 namespace pkm {
 
 /// Mechanism, parameters, variables, objectives, constraints, reports: what the other sections give names and units by.
-std::string problem_data(const PageStudy& page);
+Json problem_data(const PageStudy& page);
 /// State, best design beside the others, what holds it back, where the time went, how to repeat it.
-std::string summary_data(const PageStudy& page);
+Json summary_data(const PageStudy& page);
 /// Each stage's generations: best, median and quartiles of the objectives, shares, indicators; starts of solvers.
-std::string convergence_data(const StudyContents& contents);
+Json convergence_data(const StudyContents& contents);
 /// The designs of the populations, thinned, and which of them each generation has.
-std::string populations_data(const StudyContents& contents);
+Json populations_data(const StudyContents& contents);
 /// The trade-offs, with knees and compromise.
-std::string front_data(const StudyContents& contents);
+Json front_data(const StudyContents& contents);
 
 /// The parameters of a design that no study has found.
-std::string design_data(const Views& views);
+Json design_data(const Views& views);
 /// The feasible cells of each design with their fields, and the surface around them.
-std::string workspace_data(const Views& views);
+Json workspace_data(const Views& views);
 /// The same of the map that the file itself holds, which has no fields.
-std::string workspace_data(const StudyContents& contents);
+Json workspace_data(const StudyContents& contents);
 /// The links of each design at the poses that the page's sliders reach.
-std::string mechanism_data(const Views& views);
+Json mechanism_data(const Views& views);
 /// Coupling indices against the first rotation, where there is one; maps and histograms are drawn from the workspace's
 /// fields.
-std::string coupling_data(const Views& views);
+Json coupling_data(const Views& views);
 /// Joints, forces and power along the study's motions.
-std::string motions_data(const Views& views);
+Json motions_data(const Views& views);
 
 }  // namespace pkm

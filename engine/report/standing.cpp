@@ -12,7 +12,7 @@ std::optional<Gain> gain_over(double baseline, double value, Direction direction
 
 std::optional<DesignRecord> best_so_far(const StudyContents& contents) {
   if (contents.best.row < 0) return {};
-  const EvaluationTable& table = contents.stages[static_cast<std::size_t>(contents.best.stage)].table;
+  const EvaluationTable& table = contents.best_stage().table;
   const auto row = static_cast<std::size_t>(contents.best.row);
   const auto copy = [](std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); };
   DesignRecord record;

@@ -1,7 +1,6 @@
 #include "engine/report/study_tables.hpp"
 
 #include <algorithm>
-#include <span>
 
 #include "engine/problem/front.hpp"
 #include "engine/report/standing.hpp"
@@ -17,12 +16,6 @@ void add_names(Names& columns, const std::string& kind, const std::vector<Named>
   for (const Named& item : items) columns.push_back(header(kind + item.name, item.unit));
 }
 
-void add(CsvTable& table, std::span<const double> values) {
-  for (const double value : values) table.add(value);
-}
-
-std::int64_t numbered(std::size_t index) { return static_cast<std::int64_t>(index) + 1; }
-
 CsvTable evaluations(const StudyContents& contents) {
   const ProblemRecord& problem = contents.problem;
   Names columns = {"stage", "evaluation", "generation", "status"};
@@ -34,14 +27,9 @@ CsvTable evaluations(const StudyContents& contents) {
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const EvaluationTable& rows = contents.stages[s].table;
     const auto generation = contents.stages[s].generations.generation_of_rows(rows.size());
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      table.begin_row();
-      for (const std::int64_t number : {numbered(s), static_cast<std::int64_t>(row), generation[row]})
-        table.add(number);
-      table.add(words(rows.status[row]));
-      for (const auto values : {rows.design(row), rows.objective_row(row), rows.margin_row(row), rows.report_row(row)})
-        add(table, values);
-    }
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      table.row(s + 1, row, generation[row], words(rows.status[row]), rows.design(row), rows.objective_row(row),
+                rows.margin_row(row), rows.report_row(row));
   }
   return table;
 }
@@ -55,16 +43,12 @@ CsvTable generations(const StudyContents& contents) {
     const StageRecord& stage = contents.stages[s];
     const GenerationRecords& list = stage.generations;
     for (std::size_t g = 0; g < list.size(); ++g) {
-      const auto end = static_cast<std::int64_t>(stage.table.size());
-      table.begin_row();
-      for (const std::int64_t number :
-           {numbered(s), static_cast<std::int64_t>(g), g + 1 < list.size() ? list.first_row[g + 1] : end})
-        table.add(number);
+      table.row(s + 1, g, list.end_of(g, stage.table.size()));
       if (list.best_row[g] < 0) {
         table.add_empty(1 + contents.problem.objectives.size());
       } else {
         table.add(list.best_row[g]);
-        add(table, stage.table.objective_row(static_cast<std::size_t>(list.best_row[g])));
+        table.add(stage.table.objective_row(static_cast<std::size_t>(list.best_row[g])));
       }
       for (const double value : {list.feasible_share[g], list.diversity[g], list.seconds[g]}) table.add(value);
       for (const auto indicator : {&FrontRecord::hypervolume, &FrontRecord::spread, &FrontRecord::igd_plus})
@@ -83,11 +67,7 @@ CsvTable populations(const StudyContents& contents) {
     const GenerationRecords& list = contents.stages[s].generations;
     for (std::size_t g = 0; g < list.size(); ++g) {
       const auto population = list.population_of(g);
-      for (std::size_t k = 0; k < population.size(); ++k) {
-        table.begin_row();
-        for (const std::int64_t number : {numbered(s), static_cast<std::int64_t>(g), numbered(k), population[k]})
-          table.add(number);
-      }
+      for (std::size_t k = 0; k < population.size(); ++k) table.row(s + 1, g, k + 1, population[k]);
     }
   }
   return table;
@@ -110,13 +90,9 @@ CsvTable best(const StudyContents& contents) {
   Names columns = {"kind", "name", "unit"};
   for (const auto& [name, design] : designs) columns.push_back(name);
   CsvTable table(columns);
-  const auto begin_row = [&](const char* kind, const std::string& name, const std::string& unit) {
-    table.begin_row();
-    for (const std::string& text : {std::string(kind), name, unit}) table.add(text);
-  };
   const auto add_rows = [&](const auto& items, std::vector<double> DesignRecord::*values, const auto& kind) {
     for (std::size_t i = 0; i < items.size(); ++i) {
-      begin_row(kind(items[i]), items[i].name, items[i].unit);
+      table.row(kind(items[i]), items[i].name, items[i].unit);
       for (const auto& named : designs) table.add((named.second.*values)[i]);
     }
   };
@@ -127,15 +103,13 @@ CsvTable best(const StudyContents& contents) {
   add_rows(problem.margins, &DesignRecord::margins, [](const auto&) { return "margin"; });
   add_rows(problem.reports, &DesignRecord::reports, [](const auto&) { return "report"; });
   if (final) {
-    begin_row("workspace", "volume", final->volume_unit);
+    table.row("workspace", "volume", final->volume_unit);
     for (const auto& named : designs) table.add(named.second.volume);
   }
-  begin_row("status", "status", "");
+  table.row("status", "status", "");
   for (const auto& named : designs) table.add(words(named.second.status));
   return table;
 }
-
-bool has_front(const StageRecord& stage) { return stage.front && !stage.front->rows.empty(); }
 
 CsvTable front(const StudyContents& contents) {
   const ProblemRecord& problem = contents.problem;
@@ -145,19 +119,16 @@ CsvTable front(const StudyContents& contents) {
   CsvTable table(columns);
   for (std::size_t s = 0; s < contents.stages.size(); ++s) {
     const StageRecord& stage = contents.stages[s];
-    if (!has_front(stage)) continue;
+    if (!stage.has_front()) continue;
     const std::vector<std::int64_t>& rows = stage.front->rows;
     const Scores scores = scores_of(problem.objectives, stage.table, rows);
-    std::vector<std::int64_t> knee(rows.size(), 0);
-    for (const std::size_t k : knees(scores)) knee[k] = 1;
+    std::vector<bool> knee(rows.size());
+    for (const std::size_t k : knees(scores)) knee[k] = true;
     const std::size_t middle = compromise(scores);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const auto row = static_cast<std::size_t>(rows[k]);
-      table.begin_row();
-      for (const std::int64_t number : {numbered(s), numbered(k), rows[k], knee[k], std::int64_t{k == middle}})
-        table.add(number);
-      add(table, stage.table.objective_row(row));
-      add(table, stage.table.design(row));
+      table.row(s + 1, k + 1, rows[k], bool{knee[k]}, k == middle, stage.table.objective_row(row),
+                stage.table.design(row));
     }
   }
   return table;
@@ -170,7 +141,7 @@ std::vector<NamedTable> study_tables(const StudyContents& contents) {
                                     {"generations.csv", generations(contents)},
                                     {"populations.csv", populations(contents)}};
   if (contents.best.row >= 0) tables.push_back({"best.csv", best(contents)});
-  if (std::ranges::any_of(contents.stages, has_front)) tables.push_back({"front.csv", front(contents)});
+  if (std::ranges::any_of(contents.stages, &StageRecord::has_front)) tables.push_back({"front.csv", front(contents)});
   return tables;
 }
 

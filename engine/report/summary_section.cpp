@@ -1,109 +1,34 @@
 #include <array>
-#include <cmath>
-#include <functional>
 
-#include <nlohmann/json.hpp>
-
-#include "engine/report/json_text.hpp"
+#include "engine/report/design_table.hpp"
 #include "engine/report/sections.hpp"
-#include "engine/report/standing.hpp"
 
 namespace pkm {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Found = std::optional<DesignRecord>;
-
-/// A design of the table: "best", and the same on exact columns where there are both.
-struct Column {
-  std::string name;
-  Found record, exact;
-};
-
-std::vector<Column> columns(const StudyContents& contents) {
-  if (!contents.final || !contents.final->best) return {{"best so far", best_so_far(contents), {}}};
-  const FinalRecord& final = *contents.final;
-  std::vector<Column> list = {
-      {contents.problem.objectives.size() > 1 ? "compromise" : "best", final.best, final.best_exact}};
-  if (final.rounded) list.push_back({"rounded", final.rounded, {}});
-  if (final.baseline) list.push_back({"baseline", final.baseline, final.baseline_exact});
-  return list;
-}
-
-/// The best and the baseline among the columns; the latter may be missing.
-const Column* baseline_of(const std::vector<Column>& list) {
-  return list.back().name == "baseline" ? &list.back() : nullptr;
-}
-
-struct Table {
-  const PageStudy& page;
-  std::vector<Column> list = columns(page.contents);
-  Json rows = Json::array();
-
-  /// A row of one value per column, then of the references; nothing where no design has the value.
-  void add(const std::string& kind, const std::string& name, const std::string& unit, const std::string& meaning,
-           std::optional<Direction> direction, bool exact, const std::function<double(const DesignRecord&)>& of,
-           const std::function<std::optional<double>(const Reference&)>& reference = {}) {
-    Json values = Json::array();
-    const auto value = [&](const Column& column) -> std::optional<double> {
-      const Found& record = exact ? column.exact : column.record;
-      return record ? std::optional(of(*record)) : std::nullopt;
-    };
-    const auto push = [&](std::optional<double> number) { values.push_back(number ? Json(*number) : Json()); };
-    for (const Column& column : list) push(value(column));
-    if (page.study)
-      for (const Reference& r : page.study->references) push(reference && !exact ? reference(r) : std::nullopt);
-    Json row = {{"kind", kind}, {"name", name}, {"unit", unit}, {"meaning", meaning}, {"values", values}};
-    const Column* const baseline = baseline_of(list);
-    if (direction && baseline && value(list[0]) && value(*baseline))
-      if (const auto gain = gain_over(*value(*baseline), *value(list[0]), *direction))
-        row["gain"] = {{"percent", gain->percent}, {"worse", gain->worse}};
-    rows.push_back(row);
-  }
-};
-
-std::optional<double> value_of_reference(const Reference& reference, const std::string& name) {
-  for (const auto& [key, value] : reference.values)
-    if (key == name) return value;
-  return {};
-}
-
+/// A number per column, then one per reference; null where there is none.
 Json table(const PageStudy& page) {
-  const ProblemRecord& problem = page.contents.problem;
-  Table table{page};
-  if (!table.list[0].record) return Json();
-  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-    const ParameterRecord& p = problem.parameters[i];
-    if (p.variable < 0) continue;
-    const auto variable = static_cast<std::size_t>(p.variable);
-    table.add(
-        "variable", p.name, p.unit, "", {}, false, [i](const DesignRecord& r) { return r.parameters[i]; },
-        [variable](const Reference& r) { return r.design.empty() ? std::nullopt : r.design[variable]; });
+  const std::vector<Reference> references = page.study ? page.study->references : std::vector<Reference>();
+  const DesignTable designs = design_table(page.contents, references);
+  if (designs.columns.empty()) return Json();
+  Json heads = Json::array(), rows = Json::array();
+  for (const auto& [name, record, exact] : designs.columns)
+    heads.push_back(
+        {{"name", name}, {"status", words(record->status)}, {"reason", record->reason}, {"reference", false}});
+  for (const Reference& r : references)
+    heads.push_back({{"name", r.name}, {"seconds", r.seconds ? Json(*r.seconds) : Json()}, {"reference", true}});
+  for (const DesignTable::Line& line : designs.lines) {
+    Json numbers = Json::array();
+    for (const auto* const part : {&line.values, &line.published})
+      for (const auto& value : *part) numbers.push_back(value ? Json(*value) : Json());
+    rows.push_back({{"kind", line.kind},
+                    {"name", line.name},
+                    {"unit", line.unit},
+                    {"meaning", line.meaning},
+                    {"values", numbers}});
+    if (line.gain) rows.back()["gain"] = {{"percent", line.gain->percent}, {"worse", line.gain->worse}};
   }
-  const auto add = [&](const char* kind, const auto& info, std::optional<Direction> direction, const auto& of) {
-    const auto reference = [&info](const Reference& r) { return value_of_reference(r, info.name); };
-    table.add(kind, info.name, info.unit, info.meaning, direction, false, of, reference);
-    if (table.list[0].exact) table.add(kind, info.name + ", exact", info.unit, info.meaning, direction, true, of);
-  };
-  for (std::size_t i = 0; i < problem.objectives.size(); ++i)
-    add("objective", problem.objectives[i], problem.objectives[i].direction,
-        [i](const DesignRecord& r) { return r.objectives[i]; });
-  for (std::size_t i = 0; i < problem.reports.size(); ++i)
-    add("report", problem.reports[i], {}, [i](const DesignRecord& r) { return r.reports[i]; });
-  for (std::size_t i = 0; i < problem.margins.size(); ++i)
-    table.add("constraint", problem.margins[i].name, problem.margins[i].unit, problem.margins[i].meaning, {}, false,
-              [i](const DesignRecord& r) { return r.margins[i]; });
-
-  Json heads = Json::array();
-  for (const Column& column : table.list)
-    heads.push_back({{"name", column.name},
-                     {"status", words(column.record->status)},
-                     {"reason", column.record->reason},
-                     {"reference", false}});
-  if (page.study)
-    for (const Reference& r : page.study->references)
-      heads.push_back({{"name", r.name}, {"seconds", r.seconds ? Json(*r.seconds) : Json()}, {"reference", true}});
-  return {{"columns", heads}, {"rows", table.rows}};
+  return {{"columns", heads}, {"rows", rows}};
 }
 
 /// Where the time went: wall time, time of the evaluations, and the evaluations by how they ended.
@@ -136,7 +61,7 @@ Json stages(const StudyContents& contents) {
 /// First-order optimality of the best design: of the stage that found it, else of the last.
 Json optimality(const StudyContents& contents) {
   if (contents.best.row < 0) return Json();
-  const StageRecord& of_best = contents.stages[static_cast<std::size_t>(contents.best.stage)];
+  const StageRecord& of_best = contents.best_stage();
   const auto& record = of_best.optimality ? of_best.optimality : contents.stages.back().optimality;
   if (!record) return Json();
   Json json = {{"optimality", record->optimality}, {"active", Json::array()}, {"sensitivities", Json::array()}};
@@ -168,7 +93,7 @@ Json origin(const PageStudy& page) {
 
 }  // namespace
 
-std::string summary_data(const PageStudy& page) {
+Json summary_data(const PageStudy& page) {
   const StudyContents& contents = page.contents;
   Json json = {{"state", words(contents.state)},
                {"seconds", contents.seconds},
@@ -184,7 +109,7 @@ std::string summary_data(const PageStudy& page) {
     json["active"] = contents.final->active;
     json["touches_box"] = contents.final->best && contents.final->best->touches_box;
   }
-  return json_text(json);
+  return json;
 }
 
 }  // namespace pkm

@@ -25,10 +25,7 @@ std::array<double, 2> range_of(const WorkspaceAxis& held, const Views& views, co
   constexpr std::size_t kPoses = 100;
   constexpr int kSteps = 60;
   const WorkspaceFields& workspace = *view.workspace;
-  const std::vector<double>& feasible = workspace.field("feasible").values;
-  std::vector<std::size_t> cells;
-  for (std::size_t cell = 0; cell < feasible.size(); ++cell)
-    if (feasible[cell] > 0) cells.push_back(cell);
+  const std::vector<std::size_t> cells = workspace.feasible_cells();
   std::vector<Pose<double>> poses;
   for (const std::size_t i : Thinning(cells.size(), kPoses).indices) poses.push_back(workspace.pose(cells[i]));
 
@@ -88,14 +85,12 @@ Views views_of(const PageStudy& page) {
   const ProblemParts& parts = page.study->problem->parts();
   Views views = no_views(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions);
   if (contents.best.row >= 0) {
-    const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
-    const auto design = stage.table.design(static_cast<std::size_t>(contents.best.row));
     const bool one = contents.problem.objectives.size() < 2;
     add_view(views,
              !one             ? "compromise"
              : contents.final ? "best"
                               : "best so far",
-             page.study->problem->parameters(design));
+             page.study->problem->parameters(contents.best_design()));
   }
   if (page.study->baseline) add_view(views, "baseline", *page.study->baseline);
   return views;

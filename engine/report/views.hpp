@@ -5,10 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "engine/report/page_study.hpp"
 #include "engine/report/workspace_fields.hpp"
+#include "engine/setup/study.hpp"
+#include "engine/storage/study_contents.hpp"
 
 namespace pkm {
+
+/// A study as a page is given it.
+struct PageStudy {
+  std::string file;             ///< as it is called
+  StudyContents contents;       ///< all that the file holds
+  std::optional<Study> study;   ///< built from the text in the file; none: this program cannot read it ...
+  std::string unreadable = {};  ///< ... and why
+};
 
 /// A design with its workspace.
 struct View {

@@ -5,13 +5,16 @@
 
 #include "engine/report/csv_table.hpp"
 #include "engine/report/isosurface.hpp"
-#include "engine/storage/vtk_image_file.hpp"
+#include "engine/storage/safe_file.hpp"
 
 namespace pkm {
 
-/// For ParaView: every field, the values of the held coordinates, the volume and the design's parameters.
-VtkImage vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, std::span<const double> parameters,
-                   const std::string& title);
+/// For ParaView, as ImageData of the VTKHDF format: every field, the values of the held coordinates, the volume and the
+/// design's parameters. The cells' centres become the image's points: that is where the fields were evaluated, what
+/// contours are drawn from, and all that VTK 9.1 reads, which takes arrays of cells for arrays of points.
+/// Written as write_file does. Throws StorageError.
+void write_vtk_image(const std::string& path, const WorkspaceFields& workspace, const MechanismInfo& info,
+                     std::span<const double> parameters, const std::string& title, Existing existing);
 
 /// A row per cell, its centre's coordinates and all fields.
 CsvTable workspace_table(const WorkspaceFields& workspace);

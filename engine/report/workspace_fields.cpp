@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "engine/core/team.hpp"
-#include "engine/dynamics/coupling.hpp"
 #include "engine/survey/picture_plan.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/survey_set.hpp"
 
 namespace pkm {
@@ -15,26 +15,16 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-WorkspaceAxis axis_of(const MechanismInfo& info, int coordinate) {
-  WorkspaceAxis axis;
-  axis.coordinate = coordinate;
-  axis.name = info.coordinates[static_cast<std::size_t>(coordinate)].name;
-  axis.unit = info.coordinates[static_cast<std::size_t>(coordinate)].unit;
-  return axis;
+WorkspaceAxis axis_of(const MechanismInfo& info, int coordinate, double lower, double upper, std::int64_t cells) {
+  const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
+  return {coordinate, axis.name, axis.unit, lower, upper, cells};
 }
 
 std::string note_of(const HeldCoordinate& held) {
-  switch (held.kind) {
-    case HeldCoordinate::Kind::value:
-      return "as given";
-    case HeldCoordinate::Kind::middle:
-      return "the middle of the design";
-    case HeldCoordinate::Kind::listed:
-      return "the first of those listed";
-    case HeldCoordinate::Kind::integrated:
-      break;
-  }
-  return "the middle of what the plan integrates over";
+  using Kind = HeldCoordinate::Kind;
+  if (held.kind == Kind::value) return "as given";
+  if (held.kind == Kind::middle) return "the middle of the design";
+  return held.kind == Kind::listed ? "the first of those listed" : "the middle of what the plan integrates over";
 }
 
 /// Fills fields in, one row of cells along the last axis after the other.
@@ -50,25 +40,14 @@ class Rows {
         mode_(mode.empty() ? info_.modes.front() : mode),
         found_(found),
         size_(static_cast<std::size_t>(found.grid().cells[2])) {
-    const std::size_t cells = found_.fields[kFeasible].values.size();
-    const auto add = [&](std::string name, std::string unit, std::string meaning) {
-      found_.fields.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
-      found_.fields.back().values.assign(cells, kNone);
-    };
     const PoseMargins* const margins = mechanism.pose_margins();
     const bool mixed = !margins;
     add("margin", mixed ? "mixed" : margins->margin_unit(),
         std::string("least margin of the pose, > 0 where it is feasible") + (mixed ? ", in m, rad or 1" : ""));
-    add("conditioning", "1",
-        "inverse condition number of the Jacobian" + (info_.characteristic_length.empty()
-                                                          ? std::string()
-                                                          : ", characteristic length " + info_.characteristic_length));
+    add_quantities(false);
+    joints_ = found_.fields.size();
     for (const AxisInfo& joint : info_.joints) add(joint.name, joint.unit, "position of joint " + joint.name);
-    if (!mechanism.dynamics()) return;
-    for (std::size_t limb = 1; limb <= info_.joints.size(); ++limb)
-      add("dci_" + std::to_string(limb), "1", "dynamic coupling index of limb " + std::to_string(limb));
-    add("dci_worst", "1", "largest dynamic coupling index of the limbs");
-    add("inertia_condition", "1", "inverse condition number of the joint-space inertia");
+    if (!no_joint_forces(mechanism)) add_quantities(true);
   }
 
   static constexpr std::size_t kFeasible = 0;  ///< the field that is there before
@@ -84,11 +63,48 @@ class Rows {
   void fill(std::size_t row, Room& room) const {
     const std::size_t first = row * size_;
     for (std::size_t cell = first; cell < first + size_; ++cell) fill_pose(cell, room);
-    if (mechanism_.dynamics()) fill_inertia(first, room);
+    if (!no_joint_forces(mechanism_)) fill_inertia(first, room);
   }
 
  private:
-  enum Field : std::size_t { kMargin = 1, kConditioning, kJoints };
+  static constexpr std::size_t kMargin = 1, kQuantities = 2;  ///< fields; those of inertia come behind the joints
+
+  void add(std::string name, std::string unit, std::string meaning) {
+    found_.fields.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
+    found_.fields.back().values.assign(found_.fields[kFeasible].values.size(), kNone);
+  }
+  void add_quantities(bool of_inertia) {
+    const std::string& length = info_.characteristic_length;
+    for (const PoseQuantity* const quantity : pose_quantities()) {
+      if (quantity->needs_inertia() != of_inertia) continue;
+      const std::string name = quantity->name, meaning = quantity->meaning;
+      if (!quantity->per_joint) {
+        add(name, quantity->unit, meaning + (of_inertia || length.empty() ? "" : ", characteristic length " + length));
+        continue;
+      }
+      for (std::size_t limb = 1; limb <= info_.joints.size(); ++limb)
+        add(name + "_" + std::to_string(limb), quantity->unit, meaning + " of limb " + std::to_string(limb));
+      add(name + "_worst", quantity->unit, (is_least(*quantity) ? "least " : "largest ") + meaning + " of the limbs");
+    }
+  }
+  static bool is_least(const PoseQuantity& quantity) { return quantity.worst == PoseQuantity::Worst::least; }
+
+  /// Fills a cell of the fields from `field` on, in the order in which they were added.
+  /// @param evaluate  (quantity, values) computes them
+  template <class Evaluate>
+  void put(std::size_t field, std::size_t cell, bool of_inertia, const Evaluate& evaluate) const {
+    std::array<double, kMostJoints> values;
+    for (const PoseQuantity* const quantity : pose_quantities()) {
+      if (quantity->needs_inertia() != of_inertia) continue;
+      evaluate(*quantity, values.data());
+      const std::size_t count = quantity->per_joint ? info_.joints.size() : 1;
+      for (std::size_t i = 0; i < count; ++i) at(field++, cell) = values[i];
+      if (!quantity->per_joint) continue;
+      const auto end = values.begin() + info_.joints.size();
+      at(field++, cell) =
+          *(is_least(*quantity) ? std::min_element(values.begin(), end) : std::max_element(values.begin(), end));
+    }
+  }
 
   double& at(std::size_t field, std::size_t cell) const { return found_.fields[field].values[cell]; }
   bool feasible(std::size_t cell) const { return at(kFeasible, cell) > 0; }
@@ -98,8 +114,9 @@ class Rows {
     at(kMargin, cell) = on_its_side(margin_(pose, room.margins), feasible(cell));
     if (!feasible(cell)) return;
     const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
-    at(kConditioning, cell) = report.conditioning.value_or(kNone);
-    for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(kJoints + i, cell) = (*report.joints)[i];
+    put(kQuantities, cell, false,
+        [&](const PoseQuantity& quantity, double* values) { quantity.of_report(report, values); });
+    for (std::size_t i = 0; report.joints && i < info_.joints.size(); ++i) at(joints_ + i, cell) = (*report.joints)[i];
   }
 
   /// Rounding, or a pose without margins, must not put a cell on the other side of the surface.
@@ -121,14 +138,11 @@ class Rows {
     }
     dynamics.resize(states.size());
     mechanism_.dynamics()->equations(parameters_, mode_, states, dynamics);
-    const std::size_t joints = info_.joints.size(), first_index = kJoints + joints;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (!dynamics[k].assembles) continue;
       const AxisMatrix<double> inertia = joint_inertia(dynamics[k]);
-      const AxisVector<double> index = coupling_indices(inertia);
-      for (std::size_t i = 0; i < joints; ++i) at(first_index + i, cells[k]) = index[i];
-      at(first_index + joints, cells[k]) = *std::max_element(index.begin(), index.end());
-      at(first_index + joints + 1, cells[k]) = inertia_condition(inertia);
+      put(joints_ + info_.joints.size(), cells[k], true,
+          [&](const PoseQuantity& quantity, double* values) { quantity.of_inertia(inertia, values); });
     }
   }
 
@@ -140,9 +154,18 @@ class Rows {
   std::string mode_;
   WorkspaceFields& found_;
   std::size_t size_;
+  std::size_t joints_ = 0;  ///< field of the first
 };
 
 }  // namespace
+
+std::vector<std::size_t> WorkspaceFields::feasible_cells() const {
+  const std::vector<double>& feasible = field("feasible").values;
+  std::vector<std::size_t> list;
+  for (std::size_t cell = 0; cell < feasible.size(); ++cell)
+    if (feasible[cell] > 0) list.push_back(cell);
+  return list;
+}
 
 VoxelGrid WorkspaceFields::grid() const {
   std::array<std::int64_t, 3> n = {1, 1, 1};
@@ -209,15 +232,11 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
 
   WorkspaceFields found;
   found.mechanism = info.name;
-  for (std::size_t i = 0; i < sweep.swept.size(); ++i) {
-    WorkspaceAxis& axis = found.axes.emplace_back(axis_of(info, sweep.swept[i]));
-    axis.lower = map.lower[i];
-    axis.upper = map.upper[i];
-    axis.cells = map.cells[i];
-  }
+  for (std::size_t i = 0; i < sweep.swept.size(); ++i)
+    found.axes.push_back(axis_of(info, sweep.swept[i], map.lower[i], map.upper[i], map.cells[i]));
   for (const int coordinate : sweep.held) {
-    WorkspaceAxis& held = found.held.emplace_back(axis_of(info, coordinate));
-    held.lower = held.upper = held_value(mechanism, parameters, picture, coordinate);
+    const double value = held_value(mechanism, parameters, picture, coordinate);
+    found.held.push_back(axis_of(info, coordinate, value, value, 0));
     found.held_note.push_back(note_of(how_held(plan, coordinate)));
   }
   found.fields.push_back({"feasible",

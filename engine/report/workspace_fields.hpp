@@ -1,7 +1,8 @@
 // What a design's workspace is made of, cell by cell: what pictures and exports are drawn from.
 //
 // The cells are those of voxel_map() on one value of each held coordinate. Fields have a value per cell; those
-// that describe the mechanism at a pose exist at the centres of feasible cells and are NaN elsewhere.
+// that describe the mechanism at a pose exist at the centres of feasible cells and are NaN elsewhere. The joints stand
+// between the quantities of poses (engine/survey/pose_quantities.hpp) that need no inertia and those that do.
 //
 //   feasible           1 or 0, as every voxel survey counts it
 //   margin             least margin of the pose: > 0 in feasible cells, < 0 in the others; the surface is where it is 0
@@ -54,6 +55,8 @@ struct WorkspaceFields {
   std::string volume_unit;
   bool touches_box = false;  ///< feasible cells lie on the outer layer of a box that the plan gives
 
+  /// Rising.
+  std::vector<std::size_t> feasible_cells() const;
   std::size_t cells() const { return fields.front().values.size(); }
   /// Along each axis; behind them as in a VoxelMap.
   VoxelGrid grid() const;

@@ -1,30 +1,15 @@
-#include <nlohmann/json.hpp>
-
 #include "engine/report/isosurface.hpp"
-#include "engine/report/json_text.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
 
 namespace pkm {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// The values of a field in feasible cells, in their order.
-std::vector<double> of_feasible(const WorkspaceFields& workspace, const WorkspaceField& field) {
-  const std::vector<double>& feasible = workspace.field("feasible").values;
-  std::vector<double> values;
-  for (std::size_t cell = 0; cell < feasible.size(); ++cell)
-    if (feasible[cell] > 0) values.push_back(field.values[cell]);
-  return values;
-}
-
 /// Vertices by coordinate, each with the feasible cell next to it: its number among the feasible ones.
 Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
   const Isosurface found = isosurface(workspace, margin);
-  const std::vector<double>& feasible = workspace.field("feasible").values;
-  std::vector<std::int64_t> number(feasible.size(), 0), cells, corners;
-  for (std::size_t cell = 1; cell < feasible.size(); ++cell) number[cell] = number[cell - 1] + (feasible[cell - 1] > 0);
+  std::vector<std::int64_t> number(workspace.cells()), cells, corners;
+  for (std::int64_t k = 0; const std::size_t cell : workspace.feasible_cells()) number[cell] = k++;
   for (const std::size_t cell : found.cell) cells.push_back(number[cell]);
   for (const auto& triangle : found.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
   Json vertices = Json::array();
@@ -37,7 +22,7 @@ Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
 }
 
 Json axis_of(const WorkspaceAxis& axis) {
-  Json json = axis_data<Json>(axis.name, axis.unit);
+  Json json = axis_data(axis.name, axis.unit);
   json["coordinate"] = axis.coordinate;
   return json;
 }
@@ -57,12 +42,13 @@ Json workspace(const std::string& name, const WorkspaceFields& found, const Pose
   const std::vector<double>& feasible = found.field("feasible").values;
   json["feasible"] = packed_bits(std::vector<std::uint8_t>(feasible.begin(), feasible.end()));
   json["fields"] = Json::array();
-  for (const WorkspaceField& field : found.fields)
-    if (field.name != "feasible")
-      json["fields"].push_back({{"name", field.name},
-                                {"unit", field.unit},
-                                {"meaning", field.meaning},
-                                {"values", packed_levels(of_feasible(found, field))}});
+  for (const WorkspaceField& field : found.fields) {
+    if (field.name == "feasible") continue;
+    std::vector<double> values;
+    for (const std::size_t cell : found.feasible_cells()) values.push_back(field.values[cell]);
+    json["fields"].push_back(
+        {{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}, {"values", packed_levels(values)}});
+  }
   if (!refuse_surface(found)) json["surface"] = surface(found, margin);
   return json;
 }
@@ -84,7 +70,7 @@ WorkspaceFields fields_of(const MapRecord& map, const DesignRecord& best, const 
 
 }  // namespace
 
-std::string workspace_data(const Views& views) {
+Json workspace_data(const Views& views) {
   const SurveyPlan& plan = views.plan;
   const MechanismInfo& info = views.mechanism.info();
   Json json = {{"column", info.coordinates[static_cast<std::size_t>(sweep_of(info, plan).column)].name},
@@ -98,15 +84,15 @@ std::string workspace_data(const Views& views) {
     const PoseMargin margin(views.mechanism, view.parameters, plan.limits);
     json["designs"].push_back(workspace(view.name, *view.workspace, &margin));
   }
-  return json_text(json);
+  return json;
 }
 
-std::string workspace_data(const StudyContents& contents) {
-  if (!contents.final || !contents.final->map || !contents.final->best) return "";
+Json workspace_data(const StudyContents& contents) {
+  if (!contents.final || !contents.final->map || !contents.final->best) return {};
   const FinalRecord& final = *contents.final;
   Json design = workspace("best", fields_of(*final.map, *final.best, final.volume_unit), nullptr);
   design["fields"].clear();  // the margin is only made up for the surface
-  return json_text(Json{{"column", design["axes"].back()["name"]}, {"designs", {design}}, {"problems", Json::array()}});
+  return {{"column", design["axes"].back()["name"]}, {"designs", {design}}, {"problems", Json::array()}};
 }
 
 }  // namespace pkm

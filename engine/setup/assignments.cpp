@@ -1,8 +1,6 @@
 #include "engine/setup/assignments.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <stdexcept>
 #include <string_view>
 
 #include "engine/core/catalogue.hpp"
@@ -13,71 +11,61 @@
 namespace pkm {
 namespace {
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
+SourcePlace place_of(const std::string& option) { return {"", 0, option}; }
+
+/// What an option gives to a target; one without a name takes the option's whole text.
+double parse_value(const std::string& text, const std::string& option, const Assignable& target) {
+  const std::string found = target.name.empty() ? text : target.name + "=" + text;
+  const auto value = parse_quantity(text, target.unit);
+  if (!value) throw ConfigError(place_of(option), found, quantity_hint(target.unit));
+  if (const std::string hint = angle_hint(*value, target.unit); !hint.empty())
+    throw ConfigError(place_of(option), found, hint);
+  if (!(*value >= target.lower && *value <= target.upper))
+    throw ConfigError(place_of(option), found, range_text("a number", target.lower, target.upper, target.unit));
+  return *value;
 }
 
-double parse_value(const std::string& text, const SourcePlace& place, const Assignable& target) {
-  const std::string found = target.name + "=" + text;
-  double value = 0;
-  try {
-    value = parse_quantity(text, target.unit);
-  } catch (const std::invalid_argument&) {
-    throw ConfigError(place, found, quantity_hint(target.unit));
+std::vector<std::string> split(std::string_view text, char at) {
+  std::vector<std::string> parts;
+  for (auto end = text.find(at); end != std::string_view::npos; end = text.find(at)) {
+    parts.emplace_back(trimmed(text.substr(0, end)));
+    text.remove_prefix(end + 1);
   }
-  if (!(value >= target.lower && value <= target.upper))
-    throw ConfigError(place, found, range_text("a number", target.lower, target.upper, target.unit));
-  return value;
+  parts.emplace_back(trimmed(text));
+  return parts;
 }
 
 /// What stands after `name=` in comma-separated lists, in the order of `known`.
-std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::string>& lists, const SourcePlace& place,
+std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::string>& lists, const std::string& option,
                                                        const std::string& form, const std::vector<Assignable>& known) {
+  const SourcePlace place = place_of(option);
   const auto names = names_of(known);
   std::vector<std::optional<std::string>> texts(known.size());
-  for (const auto& list : lists) {
-    std::string_view rest = list;
-    for (bool more = true; more;) {
-      const auto comma = rest.find(',');
-      more = comma != std::string_view::npos;
-      const std::string_view item = rest.substr(0, comma);
-      if (more) rest.remove_prefix(comma + 1);
+  for (const auto& list : lists)
+    for (const std::string& item : split(list, ',')) {
       const auto equals = item.find('=');
-      if (equals == std::string_view::npos)
-        throw ConfigError(place, '"' + trimmed(item) + '"', form + ", with names out of " + join(names));
-      const std::string name = trimmed(item.substr(0, equals));
-      const auto target = std::find(names.begin(), names.end(), name);
-      if (target == names.end())
+      if (equals == std::string::npos)
+        throw ConfigError(place, '"' + item + '"', form + ", with names out of " + join(names));
+      const std::string name{trimmed(std::string_view(item).substr(0, equals))};
+      const Assignable* const target = find_named(known, name);
+      if (!target)
         throw ConfigError(place, "the unknown name '" + name + "'", "one of " + join(names), nearest_name(name, names));
-      const auto i = static_cast<std::size_t>(target - names.begin());
-      if (texts[i]) throw ConfigError(place, name + " twice", "each name once");
-      texts[i] = trimmed(item.substr(equals + 1));
+      auto& text = texts[static_cast<std::size_t>(target - known.data())];
+      if (text) throw ConfigError(place, name + " twice", "each name once");
+      text = trimmed(std::string_view(item).substr(equals + 1));
     }
-  }
   return texts;
 }
 
-/// Throws for the names of `known` that have no text.
-void expect_all(const std::vector<std::optional<std::string>>& texts, const SourcePlace& place,
+/// Throws for the names of `known` that have nothing.
+template <class T>
+void expect_all(const std::vector<std::optional<T>>& given, const std::string& option,
                 const std::vector<Assignable>& known) {
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < known.size(); ++i)
-    if (!texts[i]) missing.push_back(known[i].name);
+    if (!given[i]) missing.push_back(known[i].name);
   if (!missing.empty())
-    throw ConfigError(place, "no value for " + join(missing), "values for " + join(names_of(known)));
-}
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts;
-  std::size_t from = 0;
-  for (std::size_t to = text.find(at); to != std::string::npos; to = text.find(at, from)) {
-    parts.push_back(trimmed(std::string_view(text).substr(from, to - from)));
-    from = to + 1;
-  }
-  parts.push_back(trimmed(std::string_view(text).substr(from)));
-  return parts;
+    throw ConfigError(place_of(option), "no value for " + join(missing), "values for " + join(names_of(known)));
 }
 
 }  // namespace
@@ -88,28 +76,15 @@ std::vector<Assignable> assignable_parameters(const MechanismInfo& info) {
   return known;
 }
 
-std::vector<Assignable> assignable_coordinates(const MechanismInfo& info) {
+std::vector<Assignable> assignable_axes(const std::vector<AxisInfo>& axes, const std::string& per) {
   std::vector<Assignable> known;
-  for (const AxisInfo& coordinate : info.coordinates) known.push_back({coordinate.name, coordinate.unit});
-  return known;
-}
-
-std::vector<Assignable> assignable_joints(const MechanismInfo& info) {
-  std::vector<Assignable> known;
-  for (const auto& joint : info.joints) known.push_back({joint.name, joint.unit});
+  for (const AxisInfo& axis : axes) known.push_back({axis.name, per.empty() ? axis.unit : axis.unit + "/" + per});
   return known;
 }
 
 std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::string& per) {
-  std::vector<Assignable> known;
-  for (const AxisInfo& axis : mechanism.info().coordinates) known.push_back({axis.name, axis.unit + "/" + per});
+  std::vector<Assignable> known = assignable_axes(mechanism.info().coordinates, per);
   if (const AuxiliaryChain* const chain = mechanism.chain()) known.push_back({chain->input(), "rad/" + per});
-  return known;
-}
-
-std::vector<Assignable> assignable_joint_rates(const MechanismInfo& info, const std::string& per) {
-  std::vector<Assignable> known;
-  for (const AxisInfo& joint : info.joints) known.push_back({joint.name, joint.unit + "/" + per});
   return known;
 }
 
@@ -119,38 +94,25 @@ std::vector<Assignable> assignable_forces(const MechanismInfo& info) {
   return known;
 }
 
-std::vector<Assignable> assignable_wrench() {
-  std::vector<Assignable> known;
-  for (const auto& name : wrench_names()) known.push_back({name, name[0] == 'F' ? "N" : "N m"});
-  return known;
-}
-
 double parse_number(const std::string& text, const std::string& option, const std::string& unit) {
-  try {
-    return parse_quantity(text, unit);
-  } catch (const std::invalid_argument&) {
-    throw ConfigError({"", 0, option}, text, quantity_hint(unit));
-  }
+  return parse_value(text, option, {"", unit});
 }
 
 std::vector<std::optional<double>> parse_assignments(const std::vector<std::string>& lists, const std::string& option,
                                                      const std::vector<Assignable>& known) {
   std::vector<std::optional<double>> values(known.size());
-  const SourcePlace place{"", 0, option};
-  const auto texts = assigned_texts(lists, place, "name=value", known);
+  const auto texts = assigned_texts(lists, option, "name=value", known);
   for (std::size_t i = 0; i < known.size(); ++i)
-    if (texts[i]) values[i] = parse_value(*texts[i], place, known[i]);
+    if (texts[i]) values[i] = parse_value(*texts[i], option, known[i]);
   return values;
 }
 
 std::vector<double> parse_all_assignments(const std::vector<std::string>& lists, const std::string& option,
                                           const std::vector<Assignable>& known) {
-  const SourcePlace place{"", 0, option};
-  const auto texts = assigned_texts(lists, place, "name=value", known);
+  const auto given = parse_assignments(lists, option, known);
+  expect_all(given, option, known);
   std::vector<double> values;
-  for (std::size_t i = 0; i < known.size(); ++i)
-    if (texts[i]) values.push_back(parse_value(*texts[i], place, known[i]));
-  expect_all(texts, place, known);
+  for (const auto& value : given) values.push_back(*value);
   return values;
 }
 
@@ -162,45 +124,46 @@ std::vector<double> parse_some_assignments(const std::vector<std::string>& lists
 }
 
 Wrench<double> parse_wrench(const std::vector<std::string>& lists) {
-  const std::vector<double> values = parse_some_assignments(lists, "--wrench", assignable_wrench());
+  std::vector<Assignable> known;
+  for (const auto& name : wrench_names()) known.push_back({name, name[0] == 'F' ? "N" : "N m"});
   Wrench<double> wrench;
-  std::copy(values.begin(), values.end(), wrench.m.begin());
+  std::ranges::copy(parse_some_assignments(lists, "--wrench", known), wrench.m.begin());
   return wrench;
 }
 
 std::vector<double> parse_values(const std::string& text, const std::string& option, const Assignable& what) {
   constexpr int kMostValues = 10000;
-  const SourcePlace place{"", 0, option};
   std::vector<double> values;
   const auto ends = split(text, ':');
   if (ends.size() == 1) {
-    for (const std::string& value : split(text, ',')) values.push_back(parse_value(value, place, what));
+    for (const std::string& value : split(text, ',')) values.push_back(parse_value(value, option, what));
     return values;
   }
-  const std::string form = "values 'a,b,..' or 'from:to:count' with a count of 2 to " + std::to_string(kMostValues);
-  if (ends.size() != 3) throw ConfigError(place, '"' + text + '"', form);
-  const double from = parse_value(ends[0], place, what), to = parse_value(ends[1], place, what);
-  int count = 0;
-  const char* const end = ends[2].data() + ends[2].size();
-  const auto [stop, error] = std::from_chars(ends[2].data(), end, count);
-  if (error != std::errc() || stop != end || count < 2 || count > kMostValues)
-    throw ConfigError(place, '"' + text + '"', form);
-  for (int k = 0; k < count; ++k) values.push_back(k == count - 1 ? to : from + (to - from) * k / (count - 1));
+  const ConfigError wrong_form(
+      place_of(option), '"' + text + '"',
+      "values 'a,b,..' or 'from:to:count' with a count of 2 to " + std::to_string(kMostValues));
+  if (ends.size() != 3) throw wrong_form;
+  const double from = parse_value(ends[0], option, what), to = parse_value(ends[1], option, what);
+  const std::int64_t count = parse_integer(ends[2]).value_or(0);
+  if (count < 2 || count > kMostValues) throw wrong_form;
+  for (std::int64_t k = 0; k < count; ++k)
+    values.push_back(k == count - 1 ? to
+                                    : from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1));
   return values;
 }
 
 std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,
                                                 const std::vector<Assignable>& known) {
-  const SourcePlace place{"", 0, option};
-  const auto texts = assigned_texts(lists, place, "name=from:to", known);
-  expect_all(texts, place, known);
+  const auto texts = assigned_texts(lists, option, "name=from:to", known);
+  expect_all(texts, option, known);
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto ends = split(*texts[i], ':');
-    if (ends.size() != 2) throw ConfigError(place, known[i].name + "=" + *texts[i], "name=from:to");
-    ranges.push_back({parse_value(ends[0], place, known[i]), parse_value(ends[1], place, known[i])});
+    const std::string found = known[i].name + "=" + *texts[i];
+    if (ends.size() != 2) throw ConfigError(place_of(option), found, "name=from:to");
+    ranges.push_back({parse_value(ends[0], option, known[i]), parse_value(ends[1], option, known[i])});
     if (!(ranges.back()[0] < ranges.back()[1]))
-      throw ConfigError(place, known[i].name + "=" + *texts[i], "a range whose first end is the lower one");
+      throw ConfigError(place_of(option), found, "a range whose first end is the lower one");
   }
   return ranges;
 }

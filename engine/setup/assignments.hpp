@@ -19,16 +19,14 @@ struct Assignable {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// The mechanism's parameters, pose coordinates and joints as assignable names.
+/// The mechanism's parameters as assignable names.
 std::vector<Assignable> assignable_parameters(const MechanismInfo& info);
-std::vector<Assignable> assignable_coordinates(const MechanismInfo& info);
-std::vector<Assignable> assignable_joints(const MechanismInfo& info);
-/// The pose coordinates as names of their rates, per "s" or "s^2", and behind them the auxiliary chain's input where
-/// there is one; the joints as names of theirs and of their forces; force and moment on the platform.
+/// Coordinates or joints as assignable names, or as names of their rates, per "s" or "s^2".
+std::vector<Assignable> assignable_axes(const std::vector<AxisInfo>& axes, const std::string& per = "");
+/// Rates of the pose coordinates, and behind them of the auxiliary chain's input where there is one.
 std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::string& per);
-std::vector<Assignable> assignable_joint_rates(const MechanismInfo& info, const std::string& per);
+/// The joints as names of their forces.
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);
-std::vector<Assignable> assignable_wrench();
 
 /// The value [SI] of an option that takes one number. Throws ConfigError.
 double parse_number(const std::string& text, const std::string& option, const std::string& unit);

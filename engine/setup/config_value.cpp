@@ -1,82 +1,14 @@
 #include "engine/setup/config_value.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 
 namespace pkm {
 namespace {
 
-double quantity(const ConfigValue& value, const std::string& text, std::string_view unit) {
-  try {
-    return parse_quantity(text, unit);
-  } catch (const std::invalid_argument&) {
-    throw value.error(quantity_hint(unit));
-  }
-}
-
-NamedNumbers read_named_numbers(const ConfigValue& table, std::string_view unit, double lower, double upper) {
-  table.expect_table("a table of numbers, { name = number, ... }");
-  NamedNumbers numbers;
-  for (const auto& key : table.keys()) numbers[key] = table.find(key)->number(unit, lower, upper);
-  return numbers;
-}
-
-/// { name = number, ... } with the names and units of `fields`.
-NamedNumbers read_fields(const ConfigValue& table, const OptionSpec& spec) {
-  std::vector<std::string> names;
-  for (const auto& field : spec.fields) names.push_back(field.first);
-  table.expect_table("a table of numbers, { name = number, ... }").allow(names, "name");
-  NamedNumbers numbers;
-  for (const auto& [name, unit] : spec.fields) {
-    if (spec.field_names == FieldNames::objectives) table.at(name, "a value for every objective: " + join(names));
-    if (const auto value = table.find(name)) numbers[name] = value->number(unit);
-  }
-  return numbers;
-}
-
-/// [{ name = number, ... }, ...] with the names and units of `fields`.
-std::vector<NamedNumbers> read_list_of_numbers(const ConfigValue& array, const OptionSpec& spec) {
-  std::vector<NamedNumbers> list;
-  for (const auto& table : array.elements("a list of tables, [{ name = number, ... }, ...]"))
-    list.push_back(read_fields(table, spec));
-  return list;
-}
-
-NamedSettings read_named_settings(const ConfigValue& table) {
-  table.expect_table("a table, { name = number or text, ... }");
-  NamedSettings settings;
-  for (const auto& key : table.keys()) settings[key] = table.find(key)->setting();
-  return settings;
-}
-
-OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
-  switch (spec.kind) {
-    case OptionKind::integer:
-      return value.integer(spec.lower, spec.upper);
-    case OptionKind::flag:
-      return value.flag();
-    case OptionKind::word:
-      if (spec.choices.empty()) return value.text("text");
-      if (value.is_integer()) {  // "limb = 2" is as good as limb = "2"
-        const std::string word = std::to_string(value.integer());
-        if (std::ranges::find(spec.choices, word) != spec.choices.end()) return word;
-      }
-      return value.word(spec.choices);
-    case OptionKind::named_numbers:
-      return spec.fields.empty() ? read_named_numbers(value, spec.unit, spec.lower, spec.upper)
-                                 : read_fields(value, spec);
-    case OptionKind::list_of_numbers:
-      return read_list_of_numbers(value, spec);
-    case OptionKind::named_settings:
-      return read_named_settings(value);
-    case OptionKind::number:
-      break;
-  }
-  return value.number(spec.unit, spec.lower, spec.upper);
-}
+constexpr const char* kNumbers = "a table of numbers, { name = number, ... }";
 
 std::string expectation(const OptionSpec& spec) {
   switch (spec.kind) {
@@ -87,7 +19,7 @@ std::string expectation(const OptionSpec& spec) {
     case OptionKind::word:
       return spec.choices.empty() ? "text" : "one of " + join(spec.choices);
     case OptionKind::named_numbers:
-      return "a table of numbers, { name = number, ... }";
+      return kNumbers;
     case OptionKind::list_of_numbers:
       return "a list of tables, [{ name = number, ... }, ...]";
     case OptionKind::named_settings:
@@ -96,6 +28,55 @@ std::string expectation(const OptionSpec& spec) {
       break;
   }
   return range_text("a number", spec.lower, spec.upper, spec.unit);
+}
+
+/// { name = number, ... } with the names and units of `fields`.
+NamedNumbers read_fields(const ConfigValue& table, const OptionSpec& spec) {
+  std::vector<std::string> names;
+  for (const auto& field : spec.fields) names.push_back(field.first);
+  table.expect_table(kNumbers).allow(names, "name");
+  NamedNumbers numbers;
+  for (const auto& [name, unit] : spec.fields) {
+    if (spec.field_names == FieldNames::objectives) table.at(name, "a value for every objective: " + join(names));
+    if (const auto number = table.find_number(name, unit)) numbers[name] = *number;
+  }
+  return numbers;
+}
+
+OptionValue read_option(const ConfigValue& value, const OptionSpec& spec) {
+  switch (spec.kind) {
+    case OptionKind::integer:
+      return value.integer(spec.lower, spec.upper);
+    case OptionKind::flag:
+      return value.flag();
+    case OptionKind::word:
+      if (spec.choices.empty()) return value.text(expectation(spec));
+      if (value.is_integer()) {  // "limb = 2" is as good as limb = "2"
+        const std::string word = std::to_string(value.integer());
+        if (contains(spec.choices, word)) return word;
+      }
+      return value.word(spec.choices);
+    case OptionKind::named_numbers: {
+      if (!spec.fields.empty()) return read_fields(value, spec);
+      NamedNumbers numbers;
+      for (const auto& key : value.expect_table(kNumbers).keys())
+        numbers[key] = value.find(key)->number(spec.unit, spec.lower, spec.upper);
+      return numbers;
+    }
+    case OptionKind::list_of_numbers: {
+      std::vector<NamedNumbers> list;
+      for (const auto& table : value.elements(expectation(spec))) list.push_back(read_fields(table, spec));
+      return list;
+    }
+    case OptionKind::named_settings: {
+      NamedSettings settings;
+      for (const auto& key : value.expect_table(expectation(spec)).keys()) settings[key] = value.find(key)->setting();
+      return settings;
+    }
+    case OptionKind::number:
+      break;
+  }
+  return value.number(spec.unit, spec.lower, spec.upper);
 }
 
 }  // namespace
@@ -116,13 +97,13 @@ ConfigValue::ConfigValue(const TomlValue& value, std::string file, std::string p
 
 double ConfigValue::number(std::string_view unit, double lower, double upper) const {
   using Kind = TomlValue::Kind;
-  double result = value_->number;
-  if (is_text())
-    result = quantity(*this, value_->text, unit);
-  else if ((value_->kind != Kind::number && value_->kind != Kind::integer) || !std::isfinite(result))
-    throw error(quantity_hint(unit));
-  if (!(result >= lower && result <= upper)) throw error(range_text("a number", lower, upper, unit));
-  return result;
+  std::optional<double> result;
+  if (is_text()) result = parse_quantity(value_->text, unit);
+  if (value_->kind == Kind::number || value_->kind == Kind::integer) result = value_->number;
+  if (!result || !std::isfinite(*result)) throw error(quantity_hint(unit));
+  if (!(*result >= lower && *result <= upper)) throw error(range_text("a number", lower, upper, unit));
+  if (const std::string hint = angle_hint(*result, unit); !hint.empty()) throw error(hint);
+  return *result;
 }
 
 std::int64_t ConfigValue::integer(double lower, double upper) const {
@@ -152,8 +133,7 @@ const std::string& ConfigValue::text(std::string_view expected) const {
 const std::string& ConfigValue::word(const std::vector<std::string>& choices) const {
   const std::string expected = "one of " + join(choices);
   const std::string& found = text(expected);
-  if (std::find(choices.begin(), choices.end(), found) == choices.end())
-    throw error(expected, nearest_name(found, choices));
+  if (!contains(choices, found)) throw error(expected, nearest_name(found, choices));
   return found;
 }
 
@@ -167,7 +147,7 @@ std::vector<ConfigValue> ConfigValue::elements(std::string_view expected) const 
 
 void ConfigValue::allow(const std::vector<std::string>& known, std::string_view what) const {
   for (const auto& key : keys())
-    if (std::find(known.begin(), known.end(), key) == known.end())
+    if (!contains(known, key))
       throw find(key)->error_of("an unknown " + std::string(what), "one of " + join(known), nearest_name(key, known));
 }
 
@@ -175,6 +155,12 @@ std::optional<ConfigValue> ConfigValue::find(const std::string& key) const {
   const TomlValue* child = value_->find(key);
   if (!child) return std::nullopt;
   return ConfigValue(*child, file_, path_.empty() ? key : path_ + "." + key);
+}
+
+std::optional<double> ConfigValue::find_number(const std::string& key, std::string_view unit, double lower,
+                                               double upper) const {
+  const auto found = find(key);
+  return found ? std::optional(found->number(unit, lower, upper)) : std::nullopt;
 }
 
 ConfigValue ConfigValue::at(const std::string& key, std::string_view expected) const {

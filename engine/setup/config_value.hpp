@@ -15,6 +15,8 @@
 
 namespace pkm {
 
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
 /// "a number in [0, 1]", "a number >= 0 s", "any number": a range for messages; `noun` is "a number" or "an integer".
 std::string range_text(std::string_view noun, double lower, double upper, std::string_view unit = "1");
 
@@ -30,11 +32,9 @@ class ConfigValue {
   bool is_text() const { return value_->kind == TomlValue::Kind::text; }
 
   /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].
-  double number(std::string_view unit, double lower = -std::numeric_limits<double>::infinity(),
-                double upper = std::numeric_limits<double>::infinity()) const;
+  double number(std::string_view unit, double lower = -kUnbounded, double upper = kUnbounded) const;
   /// A whole number written without point or exponent.
-  std::int64_t integer(double lower = -std::numeric_limits<double>::infinity(),
-                       double upper = std::numeric_limits<double>::infinity()) const;
+  std::int64_t integer(double lower = -kUnbounded, double upper = kUnbounded) const;
   bool flag() const;
   const std::string& text(std::string_view expected) const;
   /// A number, an integer or text, whichever it is.
@@ -50,6 +50,8 @@ class ConfigValue {
   const std::vector<std::string>& keys() const { return value_->keys; }
   bool has(const std::string& key) const { return value_->find(key) != nullptr; }
   std::optional<ConfigValue> find(const std::string& key) const;
+  std::optional<double> find_number(const std::string& key, std::string_view unit, double lower = -kUnbounded,
+                                    double upper = kUnbounded) const;
   /// The value of a key that must be there.
   ConfigValue at(const std::string& key, std::string_view expected) const;
   /// Refuses anything but a table.
@@ -63,6 +65,15 @@ class ConfigValue {
   ConfigError error_of(std::string_view found, std::string_view expected, std::string_view nearest = {}) const;
   /// A message that is a sentence of its own.
   ConfigError refusal(std::string_view sentence) const;
+  /// Does `work`; what it refuses by std::invalid_argument is a refusal of this value.
+  template <class Work>
+  auto explained(Work work) const {
+    try {
+      return work();
+    } catch (const std::invalid_argument& reason) {
+      throw refusal(reason.what());
+    }
+  }
 
  private:
   const TomlValue* value_;

@@ -1,9 +1,9 @@
 // The text of `pkmopt check`.
 
-#include <algorithm>
 #include <sstream>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/core/printable.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/setup/study.hpp"
@@ -15,6 +15,10 @@ using Row = std::vector<std::string>;
 
 std::string range(double lower, double upper, const std::string& unit) {
   return shortest(lower) + " .. " + with_unit(upper, unit);
+}
+
+void write_table(std::ostream& out, const std::string& title, const std::vector<Row>& rows) {
+  out << '\n' << title << (rows.empty() ? ": none" : "") << '\n' << aligned(rows);
 }
 
 void write_parameters(std::ostream& out, const Study& study) {
@@ -35,29 +39,15 @@ void write_parameters(std::ostream& out, const Study& study) {
     varying.push_back({variable.name, bounds, base, known[i].meaning});
   }
   for (std::size_t i = 0; i < known.size(); ++i) {
-    if (std::find(parts.varies.begin(), parts.varies.end(), i) != parts.varies.end()) continue;
+    if (contains(parts.varies, i)) continue;
     const double value = parts.parameters[i];
     std::string note = value == known[i].nominal ? "(default)" : "";
     if (study.baseline && (*study.baseline)[i] != value)
       note += (note.empty() ? "" : " ") + ("baseline " + with_unit((*study.baseline)[i], known[i].unit));
     fixed.push_back({known[i].name, with_unit(value, known[i].unit), note, known[i].meaning});
   }
-  out << "\nvariables" << (varying.empty() ? ": none" : "") << '\n';
-  out << aligned(varying);
-  out << "\nfixed parameters" << (fixed.empty() ? ": none" : "") << '\n';
-  out << aligned(fixed);
-}
-
-/// "x = 0 m to 0.4 m, ..."
-std::string box_text(const MechanismInfo& info, const SurveyPlan& plan) {
-  std::string text;
-  const Sweep& sweep = sweep_of(info, plan);
-  for (std::size_t k = 0; k < sweep.swept.size(); ++k) {
-    const AxisInfo& swept = info.coordinates[static_cast<std::size_t>(sweep.swept[k])];
-    const auto& [lower, upper] = (*plan.box())[k];
-    text += (k == 0 ? "" : ", ") + swept.name + " = " + range(lower, upper, swept.unit);
-  }
-  return text;
+  write_table(out, "variables", varying);
+  write_table(out, "fixed parameters", fixed);
 }
 
 /// How a coordinate is held.
@@ -66,37 +56,31 @@ std::string held_text(const HeldCoordinate& held, const std::string& unit) {
   if (held.kind == Kind::middle) return "middle of each design";
   if (held.kind == Kind::integrated) return "integrated over its range";
   if (held.kind == Kind::value) return with_unit(held.value, unit);
-  std::string values;
-  for (const double value : held.values) values += (values.empty() ? "" : ", ") + with_unit(value, unit);
-  return values;
+  return join_of(held.values, [&unit](double value) { return with_unit(value, unit); });
 }
 
 std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
   const Sweep& sweep = sweep_of(info, plan);
-  std::vector<Row> rows;
-  if (const VoxelOptions* const voxels = plan.voxels()) {
-    std::string cells;
-    for (std::size_t k = 0; k < sweep.swept.size(); ++k)
-      cells += (k == 0 ? "" : ", ") + coordinate(sweep.swept[k]).name + " = " + std::to_string(voxels->cells[k]);
-    for (const HeldCoordinate& held : plan.held)
-      if (held.cells > 0) cells += ", " + coordinate(held.coordinate).name + " = " + std::to_string(held.cells);
-    rows = {{"method", "voxels"},
-            {"cells", cells},
-            {"box", voxels->box ? box_text(info, plan) : "derived from each design"}};
-  } else {
-    const ColumnOptions& columns = *plan.columns();
-    rows = {{"method", "columns"}};
-    std::string nodes;
-    std::size_t k = 0;
-    for (const int swept : sweep.swept)
-      if (swept != sweep.column)
-        nodes += (nodes.empty() ? "" : ", ") + coordinate(swept).name + " = " + std::to_string(columns.nodes[k++]);
-    if (columns.box) rows.push_back({"box", box_text(info, plan)});
-    if (columns.nodes[0] > 0)
-      rows.push_back({"nodes", nodes + " per piece"});
+  std::vector<std::string> cells, nodes, box;
+  for (std::size_t k = 0; k < sweep.swept.size(); ++k) {
+    const AxisInfo swept = coordinate(sweep.swept[k]);
+    if (plan.voxels()) cells.push_back(swept.name + " = " + std::to_string(plan.voxels()->cells[k]));
+    if (plan.columns() && sweep.swept[k] != sweep.column)
+      nodes.push_back(swept.name + " = " + std::to_string(plan.columns()->nodes[nodes.size()]));
+    if (const auto& given = plan.box())
+      box.push_back(swept.name + " = " + range((*given)[k][0], (*given)[k][1], swept.unit));
+  }
+  for (const HeldCoordinate& held : plan.held)
+    if (held.cells > 0) cells.push_back(coordinate(held.coordinate).name + " = " + std::to_string(held.cells));
+  std::vector<Row> rows = {{"method", plan.voxels() ? "voxels" : "columns"}};
+  if (plan.voxels()) rows.push_back({"cells", join(cells)});
+  if (plan.voxels() || !box.empty()) rows.push_back({"box", box.empty() ? "derived from each design" : join(box)});
+  if (const ColumnOptions* const columns = plan.columns()) {
+    if (columns->nodes[0] > 0)
+      rows.push_back({"nodes", join(nodes) + " per piece"});
     else
-      rows.push_back({"tolerance", shortest(columns.tolerance) + " relative"});
+      rows.push_back({"tolerance", shortest(columns->tolerance) + " relative"});
   }
   for (const int held : sweep.held)
     rows.push_back({coordinate(held).name, held_text(how_held(plan, held), coordinate(held).unit)});
@@ -141,8 +125,8 @@ void write_options(std::ostream& out, const std::vector<OptionSpec>& specs, cons
 void write_entries(std::ostream& out, const std::string& title, const std::vector<StudyEntry>& entries) {
   out << '\n' << title << (entries.empty() ? ": none" : "") << '\n';
   for (const auto& entry : entries) {
-    out << "  " << entry.name << (entry.name == entry.type ? "" : " (" + entry.type + ")") << ": " << entry.role
-        << '\n';
+    out << "  " << printable(entry.name) << (entry.name == entry.type ? "" : " (" + entry.type + ")") << ": "
+        << entry.role << '\n';
     write_options(out, entry.specs, entry.options);
   }
 }
@@ -159,18 +143,13 @@ std::string describe(const Study& study) {
                   {"output", study.output_file()},
                   {"mechanism", info.name + ": " + info.title}});
   write_parameters(out, study);
-  out << "\nworkspace\n";
-  out << aligned(survey_rows(info, parts.plan));
-  for (const Region& region : parts.regions) {
-    out << "\nregion " << region.name << '\n';
-    out << aligned(survey_rows(info, region.plan));
-  }
+  write_table(out, "workspace", survey_rows(info, parts.plan));
+  for (const Region& region : parts.regions) write_table(out, "region " + region.name, survey_rows(info, region.plan));
   std::vector<Row> motions;
   for (const NamedMotion& named : study.motions)
     motions.push_back({named.name, "takes " + with_unit(named.motion->duration(), "s")});
-  if (!motions.empty()) out << "\nmotions\n" << aligned(motions);
-  out << "\nlimits of a pose" << (info.limits.empty() ? ": none" : "") << '\n';
-  out << aligned(limit_rows(study));
+  if (!motions.empty()) write_table(out, "motions", motions);
+  write_table(out, "limits of a pose", limit_rows(study));
   write_entries(out, "objectives", study.objectives);
   write_entries(out, "constraints", study.constraints);
   write_entries(out, "reports", study.reports);
@@ -182,10 +161,10 @@ std::string describe(const Study& study) {
   }
   std::string round = "best design as it is";
   if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
-  out << "\nrun\n";
-  out << aligned({{"checkpoint", study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
-                                                        : "adapts: at most 2 % of the run time"},
-                  {"final", round}});
+  write_table(out, "run",
+              {{"checkpoint", study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
+                                                     : "adapts: at most 2 % of the run time"},
+               {"final", round}});
   for (const auto& warning : study.warnings) out << "\nwarning: " << warning << '\n';
   return out.str();
 }

@@ -1,7 +1,6 @@
 // [mechanism], [variables], [baseline]: which machine, what of it varies, what it is compared with.
 
 #include <algorithm>
-#include <cmath>
 
 #include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
@@ -9,31 +8,26 @@
 namespace pkm {
 namespace {
 
-std::size_t index_of(const std::vector<Parameter>& parameters, const std::string& name) {
-  const auto same = [&name](const Parameter& p) { return p.name == name; };
-  return static_cast<std::size_t>(std::find_if(parameters.begin(), parameters.end(), same) - parameters.begin());
-}
-
 /// Overwrites the parameters that `table` names.
 void read_parameters(const ConfigValue& table, const std::vector<Parameter>& known, std::vector<double>& values) {
   table.expect_table("a table of parameters, { name = value, ... }");
   table.allow(names_of(known), "parameter");
   for (const auto& key : table.keys()) {
-    const std::size_t i = index_of(known, key);
-    values[i] = table.find(key)->number(known[i].unit, known[i].lower, known[i].upper);
+    const Parameter& p = *find_named(known, key);
+    values[static_cast<std::size_t>(&p - known.data())] = table.find(key)->number(p.unit, p.lower, p.upper);
   }
 }
 
 Variable read_variable(const ConfigValue& table, const Parameter& parameter) {
   table.expect_table("a table { min = .., max = .., step = .. (if discrete) }");
   table.allow({"min", "max", "step"});
-  const std::string range = range_text("a number", parameter.lower, parameter.upper, parameter.unit);
-  Variable variable{parameter.name, parameter.unit, 0, 0, 0};
-  variable.lower = table.at("min", range).number(parameter.unit, parameter.lower, parameter.upper);
-  const ConfigValue max = table.at("max", range);
-  variable.upper = max.number(parameter.unit, parameter.lower, parameter.upper);
+  const auto bound = [&](const char* key) {
+    return table.at(key, range_text("a number", parameter.lower, parameter.upper, parameter.unit))
+        .number(parameter.unit, parameter.lower, parameter.upper);
+  };
+  Variable variable{parameter.name, parameter.unit, bound("min"), bound("max"), 0};
   if (variable.lower >= variable.upper)
-    throw max.error("a number above min = " + with_unit(variable.lower, parameter.unit));
+    throw table.find("max")->error("a number above min = " + with_unit(variable.lower, parameter.unit));
   if (const auto step = table.find("step")) {
     variable.step = step->number(parameter.unit);
     if (!(variable.step > 0 && variable.step <= variable.upper - variable.lower))
@@ -87,7 +81,7 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
       if (fixed && fixed->has(key))
         throw entry.refusal("the parameter is also fixed in mechanism.parameters (" + fixed->find(key)->line() +
                             "); it can either vary or be fixed");
-      const std::size_t i = index_of(known, key);
+      const auto i = static_cast<std::size_t>(find_named(known, key) - known.data());
       variables.push_back(read_variable(entry, known[i]));
       draft.parts.varies.push_back(i);
       nominal[i] = std::clamp(nominal[i], variables.back().lower, variables.back().upper);

@@ -1,8 +1,6 @@
 #include "engine/setup/motion_section.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "engine/core/unit.hpp"
 #include "engine/motion/motions.hpp"
@@ -15,7 +13,7 @@ namespace {
 using Coordinates = std::vector<AxisInfo>;
 using Keys = std::vector<std::string>;
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kLongestMotion = 1e9;  // [s], about 30 years
 
 double positive(const ConfigValue& value, const std::string& unit) {
   const double number = value.number(unit);
@@ -28,58 +26,49 @@ double positive_at(const ConfigValue& table, const std::string& key, const std::
   return positive(table.at(key, "a number > 0 " + unit), unit);
 }
 
-double number_or(const ConfigValue& table, const std::string& key, const std::string& unit, double otherwise) {
+std::optional<double> find_positive(const ConfigValue& table, const std::string& key, const std::string& unit) {
   const auto value = table.find(key);
-  return value ? value->number(unit) : otherwise;
+  return value ? std::optional(positive(*value, unit)) : std::nullopt;
 }
 
-double time_or_0(const ConfigValue& table, const std::string& key) {
-  const auto value = table.find(key);
-  return value ? value->number("s", 0) : 0;
-}
+double wait_of(const ConfigValue& table) { return table.find_number("wait", "s", 0).value_or(0); }
 
-bool flag_or_false(const ConfigValue& table, const std::string& key) {
-  const auto value = table.find(key);
-  return value && value->flag();
+double number_at(const ConfigValue& table, const std::string& key, const std::string& unit) {
+  return table.at(key, quantity_hint(unit)).number(unit);
 }
 
 TimeLaw law_of(const ConfigValue& table) {
   const auto law = table.find("law");
-  if (!law) return TimeLaw::quintic;
-  const auto& names = time_law_names();
-  return static_cast<TimeLaw>(std::find(names.begin(), names.end(), law->word(names)) - names.begin());
+  return law && law->word({"quintic", "cycloid"}) == "cycloid" ? TimeLaw::cycloid : TimeLaw::quintic;
 }
 
-void allow(const ConfigValue& table, const Coordinates& coordinates, Keys keys, const Keys& more_keys) {
+/// Refuses keys that are neither `type` nor a coordinate nor in one of the lists.
+void allow(const ConfigValue& table, const Coordinates& coordinates, const Keys& keys, const Keys& more_keys) {
   Keys known = more_keys;
   known.push_back("type");
-  for (const AxisInfo& axis : coordinates) known.push_back(axis.name);
-  known.insert(known.end(), keys.begin(), keys.end());
+  for (const Keys& more : {names_of(coordinates), keys}) known.insert(known.end(), more.begin(), more.end());
   table.allow(known);
 }
 
 /// Every coordinate of a pose.
 Pose<double> pose_at(const ConfigValue& table, const Coordinates& names) {
   Pose<double> pose(names.size());
-  for (std::size_t i = 0; i < names.size(); ++i)
-    pose[i] = table.at(names[i].name, quantity_hint(names[i].unit)).number(names[i].unit);
+  for (std::size_t i = 0; i < names.size(); ++i) pose[i] = number_at(table, names[i].name, names[i].unit);
   return pose;
 }
 
 /// What bounds the time of a move: `time`, or peak accelerations.
 struct Pace {
   std::optional<double> time;
-  double acceleration = kNone, angular_acceleration = kNone;
+  double acceleration = kUnbounded, angular_acceleration = kUnbounded;
 };
 const Keys kPaceKeys = {"time", "acceleration", "angular_acceleration"};
 
 /// The table's own pace, or `general` where it gives none.
 Pace pace_of(const ConfigValue& table, const Pace& general) {
-  Pace pace;
-  if (const auto time = table.find("time")) pace.time = positive(*time, "s");
-  if (const auto a = table.find("acceleration")) pace.acceleration = positive(*a, "m/s^2");
-  if (const auto a = table.find("angular_acceleration")) pace.angular_acceleration = positive(*a, "rad/s^2");
-  const bool bounded = pace.acceleration < kNone || pace.angular_acceleration < kNone;
+  const Pace pace{find_positive(table, "time", "s"), find_positive(table, "acceleration", "m/s^2").value_or(kUnbounded),
+                  find_positive(table, "angular_acceleration", "rad/s^2").value_or(kUnbounded)};
+  const bool bounded = pace.acceleration < kUnbounded || pace.angular_acceleration < kUnbounded;
   if (pace.time && bounded)
     throw table.find("time")->refusal("the time follows from the peak acceleration; give one of them");
   return pace.time || bounded ? pace : general;
@@ -93,18 +82,17 @@ double time_of(const ConfigValue& point, const Coordinates& names, const Pose<do
   for (std::size_t i = 0; i < names.size(); ++i)
     if (to[i] - from[i] != 0) (names[i].turns() ? turns : moves) = true;
   if (!moves && !turns) throw point.refusal("it is the point before; give the time to stay there as its wait");
-  if (moves && pace.acceleration == kNone)
+  if (moves && pace.acceleration == kUnbounded)
     throw point.refusal("nothing says how fast to move there; give time = .. or acceleration = ..");
-  if (turns && !moves && pace.angular_acceleration == kNone)
+  if (turns && !moves && pace.angular_acceleration == kUnbounded)
     throw point.refusal("nothing says how fast to turn there; give time = .. or angular_acceleration = ..");
   return time_within(law, names, from, to, pace.acceleration, pace.angular_acceleration);
 }
 
 std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Coordinates& names, const Keys& more_keys) {
-  Keys known = more_keys;
-  for (const char* key : {"type", "points", "law", "back"}) known.emplace_back(key);
-  known.insert(known.end(), kPaceKeys.begin(), kPaceKeys.end());
-  table.allow(known);
+  Keys keys = {"points", "law", "back"};
+  keys.insert(keys.end(), kPaceKeys.begin(), kPaceKeys.end());
+  allow(table, {}, keys, more_keys);
   const std::string expected = "a list of points, [{ " + names[0].name + " = .., " +
                                (names.size() > 1 ? names[1].name + " = .., " : "") + "... }, ...]";
   const ConfigValue list = table.at("points", expected);
@@ -112,28 +100,27 @@ std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Coordi
   if (points.size() < 2) throw list.error("two points at least");
   const TimeLaw law = law_of(table);
   const Pace general = pace_of(table, {});
-  Keys first_keys = names_of(names), keys = first_keys;
-  first_keys.emplace_back("wait");
+  keys = names_of(names);
   keys.emplace_back("wait");
+  points[0].expect_table("a table of coordinates, { name = value, ... }").allow(keys);
   keys.insert(keys.end(), kPaceKeys.begin(), kPaceKeys.end());
-  points[0].expect_table("a table of coordinates, { name = value, ... }").allow(first_keys);
   const Pose<double> start = pose_at(points[0], names);
-  double wait = time_or_0(points[0], "wait");
+  double wait = wait_of(points[0]);
   std::vector<Move> moves;
   Pose<double> at = start;
   for (std::size_t k = 1; k < points.size(); ++k) {
     const ConfigValue& point = points[k];
     point.expect_table("a table of coordinates, { name = value, ... }").allow(keys);
     Pose<double> to = at;
-    for (std::size_t i = 0; i < names.size(); ++i) to[i] = number_or(point, names[i].name, names[i].unit, at[i]);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      to[i] = point.find_number(names[i].name, names[i].unit).value_or(at[i]);
     moves.push_back({wait, to, time_of(point, names, at, to, pace_of(point, general), law)});
-    wait = time_or_0(point, "wait");
+    wait = wait_of(point);
     at = to;
   }
-  if (flag_or_false(table, "back"))
+  if (const auto back = table.find("back"); back && back->flag())
     for (std::size_t k = points.size() - 1; k > 0; --k) {
-      const double rest = time_or_0(points[k], "wait");
-      moves.push_back({rest, k == 1 ? start : moves[k - 2].to, moves[k - 1].duration});
+      moves.push_back({wait_of(points[k]), k == 1 ? start : moves[k - 2].to, moves[k - 1].duration});
       wait = 0;
     }
   return point_to_point(start, moves, wait, law);
@@ -142,12 +129,11 @@ std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Coordi
 std::shared_ptr<const Motion> read_oscillation(const ConfigValue& table, const Coordinates& names,
                                                const Keys& more_keys) {
   allow(table, names, {"amplitude", "period", "cycles"}, more_keys);
-  const auto cycles = table.find("cycles");
   const SpaceAxes axes = space_axes(names);
   if (!axes.x && !axes.y && !axes.z)
     throw table.refusal("an oscillation moves x, y and z, and the mechanism's poses have none of them");
   return oscillation(axes, pose_at(table, names), positive_at(table, "amplitude", "m"),
-                     positive_at(table, "period", "s"), cycles ? positive(*cycles, "1") : 1);
+                     positive_at(table, "period", "s"), find_positive(table, "cycles", "1").value_or(1));
 }
 
 std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, const Coordinates& names,
@@ -157,15 +143,14 @@ std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, cons
         more_keys);
   PickAndPlace cycle;
   cycle.start = pose_at(table, names);
-  cycle.lift = table.at("lift", quantity_hint("m")).number("m");
-  cycle.reach = table.at("reach", quantity_hint("m")).number("m");
+  cycle.lift = number_at(table, "lift", "m");
+  cycle.reach = number_at(table, "reach", "m");
   cycle.lift_time = positive_at(table, "lift_time", "s");
   cycle.reach_time = positive_at(table, "reach_time", "s");
-  if (const auto overlap = table.find("overlap"))
-    cycle.overlap = overlap->number("s", 0, std::fmin(cycle.lift_time, cycle.reach_time));
-  cycle.direction = number_or(table, "direction", "rad", 0);
-  cycle.turn = number_or(table, "turn", "rad", 0);
-  cycle.wait = time_or_0(table, "wait");
+  cycle.overlap = table.find_number("overlap", "s", 0, std::fmin(cycle.lift_time, cycle.reach_time)).value_or(0);
+  cycle.direction = table.find_number("direction", "rad").value_or(0);
+  cycle.turn = table.find_number("turn", "rad").value_or(0);
+  cycle.wait = wait_of(table);
   if (const auto kind = table.find("cycle")) cycle.back = kind->word({"half", "whole"}) == "whole";
   cycle.law = law_of(table);
   cycle.axes = space_axes(names);
@@ -185,15 +170,8 @@ std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, cons
 Formula coordinate_formula(const ConfigValue& value, const std::string& unit) {
   if (!value.is_text()) return Formula(shortest(value.number(unit)), time_name());
   const std::string& text = value.text("text");
-  try {
-    return Formula(shortest(parse_quantity(text, unit)), time_name());
-  } catch (const std::invalid_argument&) {  // no quantity: then it is a formula
-  }
-  try {
-    return Formula(text, time_name());
-  } catch (const std::invalid_argument& reason) {
-    throw value.refusal(reason.what());
-  }
+  if (const auto number = parse_quantity(text, unit)) return Formula(shortest(*number), time_name());
+  return value.explained([&text] { return Formula(text, time_name()); });
 }
 
 std::shared_ptr<const Motion> read_formulas(const ConfigValue& table, const Coordinates& names, const Keys& more_keys) {
@@ -208,17 +186,14 @@ std::shared_ptr<const Motion> read_formulas(const ConfigValue& table, const Coor
 }
 
 struct Kind {
-  std::string name;
+  const char* name;
   std::shared_ptr<const Motion> (*read)(const ConfigValue&, const Coordinates&, const Keys&);
 };
 
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> list = {{"points", read_points},
-                                         {"pick-and-place", read_pick_and_place},
-                                         {"oscillation", read_oscillation},
-                                         {"formulas", read_formulas}};
-  return list;
-}
+constexpr Kind kKinds[] = {{"points", read_points},
+                           {"pick-and-place", read_pick_and_place},
+                           {"oscillation", read_oscillation},
+                           {"formulas", read_formulas}};
 
 }  // namespace
 
@@ -228,11 +203,14 @@ MotionNames motion_names(const Mechanism& mechanism) {
 
 std::shared_ptr<const Motion> read_motion(const ConfigValue& table, const MotionNames& names,
                                           const std::vector<std::string>& more_keys) {
-  const std::string& type = type_of(table, "type", names_of(kinds()));
+  const std::string& type = type_of(table, "type", names_of(kKinds));
   const auto& [coordinates, input] = names;
   Keys keys = more_keys;
   if (!input.empty()) keys.push_back(input);
-  const auto motion = find_named(kinds(), type)->read(table, coordinates, keys);
+  const auto motion = find_named(kKinds, type)->read(table, coordinates, keys);
+  if (!(motion->duration() <= kLongestMotion))
+    throw table.refusal("the motion takes " + shortest(motion->duration()) + " s; expected at most " +
+                        shortest(kLongestMotion) + " s");
   const auto turning = input.empty() ? std::nullopt : table.find(input);
   return turning ? with_input(motion, coordinate_formula(*turning, "rad")) : motion;
 }
@@ -241,18 +219,14 @@ std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const Mo
   const std::string text = read_text_file(path, "a motion in TOML");
   const TomlValue document = parse_toml(text, path);
   if (document.keys.empty())
-    throw ConfigError({path, 0, ""}, "an empty file",
-                      "a motion in TOML, with type = one of " + join(names_of(kinds())));
+    throw ConfigError({path, 0, ""}, "an empty file", "a motion in TOML, with type = one of " + join(names_of(kKinds)));
   return read_motion(ConfigValue(document, path, ""), names);
 }
 
 void read_motions(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& table : tables_of(root, "motion")) {
-    const ConfigValue name = table.at("name", "a name for objectives to refer to");
-    const std::string& text = name.text("a name for objectives to refer to");
-    if (text.empty()) throw name.error("a name for objectives to refer to");
-    if (find_named(draft.study.motions, text)) throw name.refusal("there is already a motion called '" + text + "'");
-    draft.study.motions.push_back({text, read_motion(table, motion_names(*draft.parts.mechanism), {"name"})});
+    const std::string name = new_name(table, "motion", draft.study.motions, "a name for objectives to refer to");
+    draft.study.motions.push_back({name, read_motion(table, motion_names(*draft.parts.mechanism), {"name"})});
   }
 }
 

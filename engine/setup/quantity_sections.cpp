@@ -1,8 +1,6 @@
 // [[objective]], [[constraint]], [[report]]: entries of the catalogues become named quantities of the problem.
 
 #include <algorithm>
-#include <iterator>
-#include <stdexcept>
 
 #include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
@@ -16,34 +14,29 @@ std::string in_unit(const std::string& unit) { return unit == "1" ? "dimensionle
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
   const std::string name = given ? given->text("text") : type;
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
-           c == '.';
-  };
-  if (name.empty() || !std::all_of(name.begin(), name.end(), allowed))
+  constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+  if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
     throw given->error("a name of letters, digits, '-', '_' and '.'");
-  for (const auto& other : before)
-    if (other.name == name)
-      throw table.refusal("there is already one called '" + name + "'; tell them apart with name = \"...\"");
+  if (find_named(before, name))
+    throw table.refusal("there is already one called '" + name + "'; tell them apart with name = \"...\"");
   return name;
 }
 
 /// Adds what an entry needs to the demands of those before it. All samples of a survey share one characteristic length
 /// and one working mode.
 void add_demand(const ConfigValue& table, const Demand& own, Demand& demand) {
-  if (own.conditioning && demand.conditioning && own.characteristic_length != demand.characteristic_length)
-    throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
-  if (own.conditioning) {
-    demand.conditioning = true;
+  if (own.needs_jacobian()) {
+    if (demand.needs_jacobian() && own.characteristic_length != demand.characteristic_length)
+      throw table.refusal("conditioning is asked for with two different characteristic lengths; a study has one");
     demand.characteristic_length = own.characteristic_length;
   }
-  if (!own.dci && !own.inertia_condition) return;
-  if ((demand.dci || demand.inertia_condition) && own.mode != demand.mode)
-    throw table.refusal("the inertia is asked for in two different working modes, " + demand.mode + " and " + own.mode +
-                        "; a survey has one (name another [[region]] for the other)");
-  demand.dci = demand.dci || own.dci;
-  demand.inertia_condition = demand.inertia_condition || own.inertia_condition;
-  demand.mode = own.mode;
+  if (own.needs_inertia()) {
+    if (demand.needs_inertia() && own.mode != demand.mode)
+      throw table.refusal("the inertia is asked for in two different working modes, " + demand.mode + " and " +
+                          own.mode + "; a survey has one (name another [[region]] for the other)");
+    demand.mode = own.mode;
+  }
+  for (const PoseQuantity* const quantity : own.fields) demand.add(*quantity);
 }
 
 /// The survey that an entry reads: 0 the workspace's, k that of the k-th region, which `region = ".."` names.
@@ -52,23 +45,30 @@ std::size_t survey_read(const ConfigValue& table, const ObjectiveEntry& entry, c
   if (!named) return 0;
   if (!entry.reads_survey)
     throw named->refusal("the objective " + entry.name + " reads no survey, so it has no region");
-  std::vector<std::string> names;
-  for (const Region& region : draft.parts.regions) names.push_back(region.name);
+  const auto names = names_of(draft.parts.regions);
   if (names.empty()) throw named->refusal("the study names no [[region]]");
-  const std::string& name = named->word(names);
-  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()) + 1;
+  return static_cast<std::size_t>(std::ranges::find(names, named->word(names)) - names.begin()) + 1;
+}
+
+/// Refuses an entry that the mechanism cannot serve.
+template <class Entry>
+void expect_served(const ConfigValue& table, const Entry& entry, const StudyDraft& draft) {
+  if (const Refusal reason = entry.refusal(*draft.parts.mechanism)) throw table.find("type")->refusal(*reason);
 }
 
 /// What an [[objective]], [[constraint]] or [[report]] made from an entry of the catalogue of objectives has in common.
-NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, const std::string& name,
-                             const Options& options, StudyDraft& draft) {
-  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
-    throw table.find("type")->refusal(reason);
+/// It is listed in `entries`, without its role.
+NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, std::vector<StudyEntry>& entries,
+                             StudyDraft& draft) {
+  const Options options = read_options(table, entry.options);
+  const std::string name = entry_name(table, entry.name, entries);
+  entries.push_back({entry.name, name, "", entry.options, options});
+  expect_served(table, entry, draft);
   const std::size_t survey = survey_read(table, entry, draft);
   Region* const region = survey > 0 ? &draft.parts.regions[survey - 1] : nullptr;
   const EntryContext context{*draft.parts.mechanism, region ? region->plan : draft.parts.plan, options,
                              draft.parts.regions, draft.study.motions};
-  try {
+  return table.explained([&]() -> NamedQuantity {
     Demand own;
     entry.demand(context, own);
     add_demand(table, own, region ? region->demand : draft.parts.demand);
@@ -79,22 +79,18 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
             .quantity = entry.make(context),
             .survey = survey,
             .reads_survey = entry.reads_survey};
-  } catch (const std::invalid_argument& reason) {
-    throw table.refusal(reason.what());
-  }
+  });
 }
 
 /// [[objective]], or a [[report]].
 void read_objective(const ConfigValue& table, StudyDraft& draft, bool optimised) {
   const auto& catalogue = draft.catalogues.objectives;
-  const std::string& type = type_of(table, "type", names_of(catalogue));
-  const ObjectiveEntry& entry = *find_named(catalogue, type);
+  const ObjectiveEntry& entry = *find_named(catalogue, type_of(table, "type", names_of(catalogue)));
   std::vector<std::string> keys = {"type", "name", "region"};
   if (optimised) keys.insert(keys.begin() + 2, "direction");
   allow_options(table, keys, entry.options);
-  const Options options = read_options(table, entry.options);
   auto& entries = optimised ? draft.study.objectives : draft.study.reports;
-  NamedQuantity made = make_objective(table, entry, entry_name(table, type, entries), options, draft);
+  NamedQuantity made = make_objective(table, entry, entries, draft);
   std::string role = in_unit(made.unit);
   if (optimised) {
     if (const auto direction = table.find("direction"))
@@ -102,7 +98,7 @@ void read_objective(const ConfigValue& table, StudyDraft& draft, bool optimised)
           direction->word({"minimise", "maximise"}) == "maximise" ? Direction::maximise : Direction::minimise;
     role = (made.direction == Direction::maximise ? "maximise, " : "minimise, ") + role;
   }
-  entries.push_back({type, made.name, role, entry.options, options});
+  entries.back().role = role;
   (optimised ? draft.parts.objectives : draft.parts.reports).push_back(std::move(made));
 }
 
@@ -114,14 +110,12 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
     throw table.refusal("the objective " + entry.name + " becomes a constraint by min = .. or max = ..; give one");
   if (least && greatest)
     throw table.refusal("found both min and max; a constraint has one of them (write two [[constraint]] tables)");
-  const Options options = read_options(table, entry.options);
-  NamedQuantity made =
-      make_objective(table, entry, entry_name(table, entry.name, draft.study.constraints), options, draft);
+  NamedQuantity made = make_objective(table, entry, draft.study.constraints, draft);
   const double bound = (least ? least : greatest)->number(made.unit);
   (least ? made.least : made.greatest) = bound;
   const std::string role = (least ? ">= " : "<= ") + with_unit(bound, made.unit);
   made.meaning = "margin of " + role + ": " + made.meaning;
-  draft.study.constraints.push_back({entry.name, made.name, role, entry.options, options});
+  draft.study.constraints.back().role = role;
   // Those that read no survey come first: they may save it.
   (entry.reads_survey ? draft.parts.survey_margins : draft.parts.design_margins).push_back(std::move(made));
 }
@@ -130,49 +124,38 @@ void read_bounded_objective(const ConfigValue& table, const ObjectiveEntry& entr
 void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
   auto specs = entry.options(draft.info());
   allow_options(table, {"type", "name"}, specs);
-  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
-    throw table.find("type")->refusal(reason);
+  expect_served(table, entry, draft);
   // The margin's unit may follow from some options and be that of others, which are read after it is known.
-  std::vector<OptionSpec> first;
-  std::copy_if(specs.begin(), specs.end(), std::back_inserter(first),
-               [](const OptionSpec& spec) { return spec.unit != kUnitOfEntry; });
+  auto first = specs;
+  std::erase_if(first, [](const OptionSpec& spec) { return spec.unit == kUnitOfEntry; });
   Options options = read_options(table, first);
   const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions,
                              draft.study.motions};
   NamedQuantity made;
   made.name = entry_name(table, entry.name, draft.study.constraints);
-  bool after_survey = false;
-  try {
+  table.explained([&] {
     made.unit = entry.unit(context);
     specs = with_entry_unit(std::move(specs), made.unit);
     options = read_options(table, specs);
     made.quantity = entry.make(context);
     made.meaning = entry.detail ? entry.detail(context) : entry.meaning;
-    after_survey = entry.needs_survey && entry.needs_survey(context);
+    made.reads_survey = entry.needs_survey && entry.needs_survey(context);
     Demand own;
-    if (entry.demand) entry.demand(context, own);
+    entry.demand(context, own);
     add_demand(table, own, draft.parts.demand);
-  } catch (const std::invalid_argument& reason) {
-    throw table.refusal(reason.what());
-  }
+  });
   draft.study.constraints.push_back({entry.name, made.name, "margin >= 0, " + in_unit(made.unit), specs, options});
-  (after_survey ? draft.parts.survey_margins : draft.parts.design_margins).push_back(std::move(made));
+  (made.reads_survey ? draft.parts.survey_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
 void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
   const MechanismInfo& info = draft.info();
   const auto specs = entry.options(info);
   allow_options(table, {"type"}, specs);
-  if (const std::string reason = entry.refusal(*draft.parts.mechanism); !reason.empty())
-    throw table.find("type")->refusal(reason);
+  expect_served(table, entry, draft);
   const Options options = read_options(table, specs);
   LimitSpec& all = draft.parts.plan.limits;
-  LimitSpec own;
-  try {
-    own = entry.limits(info, options);
-  } catch (const std::invalid_argument& reason) {
-    throw table.refusal(reason.what());
-  }
+  const LimitSpec own = table.explained([&] { return entry.limits(info, options); });
   std::vector<std::string> set;
   for (std::size_t i = 0; i < info.limits.size(); ++i) {
     if (!own.given[i] && !own.derived[i]) continue;
@@ -188,16 +171,21 @@ void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry
   draft.study.constraints.push_back({entry.name, entry.name, role, specs, options});
 }
 
-/// Calls `read` for each [[constraint]] whose entry is of the wanted level; objectives' names count as design level.
-template <class Read>
-void for_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level, Read read) {
+/// Reads each [[constraint]] of the wanted level; objectives' names count as design level.
+void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level) {
   std::vector<std::string> names = names_of(draft.catalogues.constraints);
   for (const auto& name : names_of(draft.catalogues.objectives))
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (!contains(names, name)) names.push_back(name);
   for (const auto& table : tables_of(root, "constraint")) {
     const std::string& type = type_of(table, "type", names);
-    const ConstraintEntry* entry = find_named(draft.catalogues.constraints, type);
-    if ((entry && entry->pose_level) == pose_level) read(table, entry, type);
+    const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, type);
+    if ((entry && entry->pose_level()) != pose_level) continue;
+    if (pose_level)
+      read_pose_constraint(table, *entry, draft);
+    else if (entry)
+      read_margin_constraint(table, *entry, draft);
+    else
+      read_bounded_objective(table, *find_named(draft.catalogues.objectives, type), draft);
   }
 }
 
@@ -215,21 +203,13 @@ void check_thresholds(const ConfigValue& root, const StudyDraft& draft) {
 }  // namespace
 
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
-  for_constraints(root, draft, true, [&](const ConfigValue& table, const ConstraintEntry* entry, const std::string&) {
-    read_pose_constraint(table, *entry, draft);
-  });
+  read_constraints(root, draft, true);
   check_thresholds(root, draft);
 }
 
 void read_quantities(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& table : tables_of(root, "objective")) read_objective(table, draft, true);
-  for_constraints(root, draft, false,
-                  [&](const ConfigValue& table, const ConstraintEntry* entry, const std::string& type) {
-                    if (entry)
-                      read_margin_constraint(table, *entry, draft);
-                    else
-                      read_bounded_objective(table, *find_named(draft.catalogues.objectives, type), draft);
-                  });
+  read_constraints(root, draft, false);
   for (const auto& table : tables_of(root, "report")) read_objective(table, draft, false);
 }
 

@@ -16,26 +16,23 @@ std::string unit_of(const std::string& name, const ProblemParts& parts) {
 }  // namespace
 
 void read_references(const ConfigValue& root, StudyDraft& draft) {
-  std::vector<std::string> variables = names_of(draft.parts.space.variables());
-  std::vector<std::string> values = names_of(draft.parts.objectives);
-  for (const auto& name : names_of(draft.parts.reports)) values.push_back(name);
+  const auto variables = names_of(draft.parts.space.variables());
+  const auto values = names_of(draft.parts.objectives, draft.parts.reports);
   for (const auto& table : tables_of(root, "reference")) {
     table.allow({"name", "design", "values", "seconds"});
     Reference reference;
     reference.name = table.at("name", "where the result was published").text("text");
     if (const auto design = table.find("design")) {
       design->expect_table("a table of variables").allow(variables, "variable");
-      for (const auto& variable : draft.parts.space.variables()) {
-        const auto value = design->find(variable.name);
-        reference.design.push_back(value ? std::optional(value->number(variable.unit)) : std::nullopt);
-      }
+      for (const auto& variable : draft.parts.space.variables())
+        reference.design.push_back(design->find_number(variable.name, variable.unit));
     }
     if (const auto list = table.find("values")) {
       list->expect_table("a table of objectives and reports").allow(values, "objective or report");
       for (const auto& name : list->keys())
         reference.values.emplace_back(name, list->find(name)->number(unit_of(name, draft.parts)));
     }
-    if (const auto seconds = table.find("seconds")) reference.seconds = seconds->number("s", 0);
+    reference.seconds = table.find_number("seconds", "s", 0);
     draft.study.references.push_back(std::move(reference));
   }
 }

@@ -1,7 +1,5 @@
 // [[stage]]: optimisers with their options, checked against what the problem asks of them.
 
-#include <stdexcept>
-
 #include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
 
@@ -24,8 +22,7 @@ Refusal refusal_of(const OptimiserEntry& entry, const Options& options, const De
     return who + "handles " + std::to_string(can.max_objectives) + " objective" + (can.max_objectives == 1 ? "" : "s") +
            ", but the study has " + std::to_string(parts.objectives.size()) + " (" + join(names_of(parts.objectives)) +
            ")" + (*can.objectives_hint ? std::string("; ") + can.objectives_hint : "");
-  auto margins = names_of(parts.design_margins);
-  for (const auto& name : names_of(parts.survey_margins)) margins.push_back(name);
+  const auto margins = names_of(parts.design_margins, parts.survey_margins);
   if (!can.constraints && !margins.empty()) return who + "handles no constraints, but the study has " + join(margins);
   for (const auto& variable : parts.space.variables())
     if (!can.discrete && variable.step > 0)
@@ -80,11 +77,7 @@ void read_stages(const ConfigValue& root, StudyDraft& draft) {
       if (!table.has(spec.name) && stage.options.has(spec.name)) spec.initial = stage.options.values().at(spec.name);
     stage.specs = std::move(specs);
     check_designs(table, stage, draft.parts.space);
-    try {
-      stage.optimiser = entry.make(stage.options, draft.parts.space);
-    } catch (const std::invalid_argument& reason) {
-      throw table.refusal(reason.what());
-    }
+    stage.optimiser = table.explained([&] { return entry.make(stage.options, draft.parts.space); });
     draft.study.stages.push_back(std::move(stage));
   }
 }

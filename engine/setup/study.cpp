@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 
 #include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
@@ -25,7 +24,7 @@ void read_study_section(const ConfigValue& root, Study& study) {
   if (const auto seed = table->find("seed")) study.seed = static_cast<std::uint64_t>(seed->integer(0));
   if (const auto output = table->find("output")) {
     study.output = output->text("a file name");
-    if (study.output->empty()) throw output->error("a file name");
+    if (study.output->empty() || study.output->find('\0') != std::string::npos) throw output->error("a file name");
   }
 }
 
@@ -33,7 +32,7 @@ void read_study_section(const ConfigValue& root, Study& study) {
 void read_run_sections(const ConfigValue& root, StudyDraft& draft) {
   if (const auto table = root.find("checkpoint")) {
     table->expect_table("a table [checkpoint]").allow({"every"});
-    if (const auto every = table->find("every")) draft.study.checkpoint_every = every->number("s", 0);
+    draft.study.checkpoint_every = table->find_number("every", "s", 0);
   }
   if (const auto table = root.find("final")) {
     table->expect_table("a table [final]").allow({"round"});
@@ -144,11 +143,9 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_regions(root, draft);
   read_motions(root, draft);
   read_quantities(root, draft);
-  try {
-    draft.study.problem = std::make_shared<const DesignProblem>(draft.parts);
-  } catch (const std::invalid_argument& reason) {
-    throw root.find("workspace").value_or(*root.find("mechanism")).refusal(reason.what());
-  }
+  draft.study.problem = root.find("workspace").value_or(*root.find("mechanism")).explained([&draft] {
+    return std::make_shared<const DesignProblem>(draft.parts);
+  });
   read_references(root, draft);
   read_stages(root, draft);
   read_run_sections(root, draft);

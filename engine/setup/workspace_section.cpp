@@ -26,25 +26,21 @@ std::vector<std::string> names_of(const MechanismInfo& info, const std::vector<i
   return names;
 }
 
-/// Those that the plan integrates over.
-std::vector<HeldCoordinate*> integrated(SurveyPlan& plan) {
-  std::vector<HeldCoordinate*> held;
-  for (HeldCoordinate& each : plan.held)
-    if (each.kind == HeldCoordinate::Kind::integrated) held.push_back(&each);
-  return held;
-}
+bool integrated(const HeldCoordinate& held) { return held.kind == HeldCoordinate::Kind::integrated; }
 
 void read_cells(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan, VoxelOptions& voxels) {
   const std::vector<int>& swept = sweep_of(info, plan).swept;
   std::vector<std::string> known = names_of(info, swept);
-  for (const HeldCoordinate* held : integrated(plan)) known.push_back(axis_of(info, held->coordinate).name);
+  for (const HeldCoordinate& held : plan.held)
+    if (integrated(held)) known.push_back(axis_of(info, held.coordinate).name);
   table.expect_table("a table of cell numbers for " + join(known)).allow(known, "coordinate");
   const auto read = [&table](const std::string& name) {
     return table.at(name, "a number of cells").integer(1, kMostCellsPerAxis);
   };
   std::int64_t all = 1;
   for (std::size_t k = 0; k < swept.size(); ++k) all *= voxels.cells[k] = read(known[k]);  // at most 2^60
-  for (HeldCoordinate* held : integrated(plan)) held->cells = read(axis_of(info, held->coordinate).name);
+  for (HeldCoordinate& held : plan.held)
+    if (integrated(held)) held.cells = read(axis_of(info, held.coordinate).name);
   if (all > kMostCells)
     throw table.error_of(std::to_string(all) + " cells",
                          "at most " + std::to_string(kMostCells) + " (a voxel map takes a byte of memory per cell)");
@@ -77,9 +73,9 @@ Box read_box(const ConfigValue& table, const MechanismInfo& info, const std::vec
 }
 
 void read_nodes(const ConfigValue& table, const MechanismInfo& info, const Sweep& sweep, ColumnOptions& columns) {
-  std::vector<std::string> names;
-  for (const int coordinate : sweep.swept)
-    if (coordinate != sweep.column) names.push_back(axis_of(info, coordinate).name);
+  std::vector<int> others = sweep.swept;
+  std::erase(others, sweep.column);
+  const std::vector<std::string> names = names_of(info, others);
   table.expect_table("a table of node numbers for " + join(names)).allow(names, "coordinate");
   for (std::size_t k = 0; k < names.size(); ++k)
     columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer(1, kMostNodes));
@@ -120,12 +116,9 @@ HeldCoordinate read_held_values(const ConfigValue& list, const MechanismInfo& in
   return held;
 }
 
-/// Whether some sweep of the mechanism holds all of these coordinates.
-bool can_hold(const MechanismInfo& info, const std::vector<int>& coordinates) {
-  return std::ranges::any_of(info.sweeps, [&](const Sweep& sweep) {
-    return std::ranges::all_of(coordinates,
-                               [&](int c) { return std::ranges::find(sweep.held, c) != sweep.held.end(); });
-  });
+/// Whether the sweep holds all of these coordinates.
+bool holds(const Sweep& sweep, const std::vector<int>& coordinates) {
+  return std::ranges::all_of(coordinates, [&](int c) { return contains(sweep.held, c); });
 }
 
 /// The coordinates that some sweep holds, those of the usual one first.
@@ -133,7 +126,7 @@ std::vector<int> holdable(const MechanismInfo& info) {
   std::vector<int> coordinates;
   for (const Sweep& sweep : info.sweeps)
     for (const int coordinate : sweep.held)
-      if (std::ranges::find(coordinates, coordinate) == coordinates.end()) coordinates.push_back(coordinate);
+      if (!contains(coordinates, coordinate)) coordinates.push_back(coordinate);
   return coordinates;
 }
 
@@ -144,12 +137,11 @@ void read_held_coordinates(const ConfigValue& table, const MechanismInfo& info, 
     const auto value = table.find(axis_of(info, coordinate).name);
     if (!value) continue;
     named.push_back(coordinate);
-    if (!can_hold(info, named))
+    if (std::ranges::none_of(info.sweeps, [&](const Sweep& sweep) { return holds(sweep, named); }))
       throw value->refusal("a survey holds one coordinate and sweeps the others, but both " +
                            axis_of(info, named.front()).name + " and " + axis_of(info, coordinate).name + " are given");
-    const bool integrates = std::ranges::any_of(info.sweeps, [&](const Sweep& sweep) {
-      return sweep.integrates && std::ranges::find(sweep.held, coordinate) != sweep.held.end();
-    });
+    const bool integrates = std::ranges::any_of(
+        info.sweeps, [&](const Sweep& sweep) { return sweep.integrates && contains(sweep.held, coordinate); });
     plan.held.push_back(of_region && value->is_list() ? read_held_values(*value, info, coordinate, integrates)
                                                       : read_held(*value, info, coordinate, integrates));
   }
@@ -165,22 +157,19 @@ void read_limits(const ConfigValue& table, StudyDraft& draft) {
     }
 }
 
-/// The keys of a survey, which [workspace] and [[region]] share.
-std::vector<std::string> survey_keys(const MechanismInfo& info) {
+/// Refuses keys that are neither those of a survey, which [workspace] and [[region]] share, nor `own`.
+void allow_survey(const ConfigValue& table, const MechanismInfo& info, const std::string& own) {
   std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box"};
   for (const int coordinate : holdable(info)) keys.push_back(axis_of(info, coordinate).name);
-  return keys;
+  keys.push_back(own);
+  table.allow(keys);
 }
 
 void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_region, SurveyPlan& plan) {
   const MechanismInfo& info = mechanism.info();
   const bool columns_take_box = mechanism.columns() && mechanism.columns()->take_box();
-  if (const auto method = table.find("method")) {
-    if (method->word({"columns", "voxels"}) == "voxels")
-      plan.method = VoxelOptions{};
-    else
-      plan.method = ColumnOptions{};
-  }
+  if (const auto method = table.find("method"); method && method->word({"columns", "voxels"}) == "voxels")
+    plan.method = VoxelOptions{};
   for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
     const bool of_voxels = key == "cells" || key == "box", of_both = key == "box" && columns_take_box;
     if (!of_both && of_voxels != (plan.voxels() != nullptr) && table.has(key))
@@ -200,7 +189,8 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
   } else {
     VoxelOptions& voxels = std::get<VoxelOptions>(plan.method);
     std::copy_n(kPaperCells.begin(), sweep.swept.size(), voxels.cells.begin());
-    for (HeldCoordinate* held : integrated(plan)) held->cells = kHeldCells;
+    for (HeldCoordinate& held : plan.held)
+      if (integrated(held)) held.cells = kHeldCells;
     if (const auto cells = table.find("cells")) read_cells(*cells, info, plan, voxels);
   }
   if (const auto given = table.find("box"))
@@ -216,25 +206,16 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   draft.study.limit_origins.resize(info.limits.size());
   const auto table = root.find("workspace");
   if (!table) return;
-  std::vector<std::string> keys = survey_keys(info);
-  keys.push_back("limits");
-  table->expect_table("a table [workspace]").allow(keys, "key");
+  allow_survey(table->expect_table("a table [workspace]"), info, "limits");
   read_survey(*table, *draft.parts.mechanism, false, plan);
   if (const auto limits = table->find("limits")) read_limits(*limits, draft);
 }
 
 void read_regions(const ConfigValue& root, StudyDraft& draft) {
-  const MechanismInfo& info = draft.info();
   for (const auto& table : tables_of(root, "region")) {
-    std::vector<std::string> keys = survey_keys(info);
-    keys.push_back("name");
-    table.allow(keys, "key");
+    allow_survey(table, draft.info(), "name");
     Region region;
-    const ConfigValue name = table.at("name", "the region's name");
-    region.name = name.text("the region's name");
-    if (region.name.empty()) throw name.error("the region's name");
-    for (const Region& other : draft.parts.regions)
-      if (other.name == region.name) throw name.refusal("there is already a region called '" + region.name + "'");
+    region.name = new_name(table, "region", draft.parts.regions, "the region's name");
     region.plan.limits = draft.parts.plan.limits;
     read_survey(table, *draft.parts.mechanism, true, region.plan);
     draft.parts.regions.push_back(std::move(region));

@@ -16,10 +16,9 @@ CheckpointClock::CheckpointClock(std::optional<double> every, std::function<doub
     : every_(every), now_(now ? std::move(now) : steady_seconds), start_(now_()), last_(start_) {}
 
 void CheckpointClock::first(const std::function<void()>& write) {
-  const double begin = now_();
-  write();
-  start_ = last_ = now_();
-  cost_ = last_ - begin;
+  checkpoint(write);
+  start_ = last_;
+  spent_ = 0;
 }
 
 bool CheckpointClock::due() const {

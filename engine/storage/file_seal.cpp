@@ -21,8 +21,10 @@ std::string make_seal(int schema, unsigned long long bytes, unsigned long long h
   return block + '\n';
 }
 
-unsigned long long hash_of(const std::string& file) {
-  return XXH64(file.data() + kSealBytes, file.size() - kSealBytes, 0);
+/// From schema 4 on the schema is part of what is summed up: another digit does not match.
+unsigned long long hash_of(const std::string& file, int schema) {
+  return XXH64(file.data() + kSealBytes, file.size() - kSealBytes,
+               schema < 4 ? 0 : static_cast<unsigned long long>(schema));
 }
 
 /// They may begin at byte 0, 512, 1024, 2048, ...
@@ -39,14 +41,16 @@ bool starts_hdf5(const std::string& file, std::size_t at) {
   return at <= file.size() && file.compare(at, signature.size(), signature) == 0;
 }
 
+bool is_sealed(const std::string& beginning) { return beginning.starts_with(kMark); }
+
 void seal(std::string& file, int schema) {
   PKM_EXPECTS(file.size() >= kSealBytes);
-  file.replace(0, kSealBytes, make_seal(schema, file.size() - kSealBytes, hash_of(file)));
+  file.replace(0, kSealBytes, make_seal(schema, file.size() - kSealBytes, hash_of(file, schema)));
 }
 
 int verify_seal(const std::string& file, const std::string& path, int newest_schema) {
   if (file.empty()) throw StorageError(path + ": the file is empty");
-  if (file.compare(0, kMark.size(), kMark) != 0) {
+  if (!is_sealed(file)) {
     if (std::string_view(kMark).starts_with(file)) throw StorageError(path + ": the file is truncated");
     throw StorageError(path + (has_hdf5_data(file) ? ": an HDF5 file, but not a pkmopt study (no pkmopt mark)"
                                                    : ": not a pkmopt study (neither pkmopt mark nor HDF5 data)"));
@@ -56,8 +60,8 @@ int verify_seal(const std::string& file, const std::string& path, int newest_sch
   unsigned long long bytes = 0, hash = 0;
   const std::string line = file.substr(kMark.size(), kSealBytes - kMark.size());
   const int found = std::sscanf(line.c_str(), "%d bytes=%llu xxh64=%llx", &schema, &bytes, &hash);
-  // Only the first number is promised to newer versions.
-  if (found >= 1 && schema > newest_schema)
+  // Only the first number is promised to newer versions. Where all is as this version writes it, the digit is damaged.
+  if (found >= 1 && schema > newest_schema && !(found == 3 && hash == hash_of(file, newest_schema)))
     throw StorageError(path + ": written with study schema " + std::to_string(schema) +
                        ", but this program reads schemas up to " + std::to_string(newest_schema) +
                        "; use a newer pkmopt");
@@ -67,7 +71,7 @@ int verify_seal(const std::string& file, const std::string& path, int newest_sch
   if (present < bytes)
     throw StorageError(path + ": the file is truncated (" + std::to_string(present) + " of " + std::to_string(bytes) +
                        " bytes)");
-  if (present > bytes || hash_of(file) != hash)
+  if (present > bytes || hash_of(file, schema) != hash)
     throw StorageError(path + ": the file is damaged or was changed by another program (its checksum differs)");
   return schema;
 }

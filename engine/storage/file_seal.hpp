@@ -1,9 +1,9 @@
 // The block of 512 bytes in front of a study's HDF5 data: format mark, schema, size and checksum, as text that `head`
 // shows:
 //
-//   pkmopt-study schema=2 bytes=51200 xxh64=0123456789abcdef
+//   pkmopt-study schema=4 bytes=51200 xxh64=0123456789abcdef
 //
-// `bytes` and `xxh64` are size and XXH64 (seed 0) of all that follows the block.
+// `bytes` and `xxh64` are size and XXH64 of all that follows the block; its seed is the schema, 0 for schemas 1 to 3.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +15,9 @@ inline constexpr std::size_t kSealBytes = 512;
 
 /// HDF5 data begin at byte `at`.
 bool starts_hdf5(const std::string& file, std::size_t at);
+
+/// Whether a file that begins so claims to be a study.
+bool is_sealed(const std::string& beginning);
 
 /// Fills the first kSealBytes of `file`, whose remainder is complete.
 void seal(std::string& file, int schema);

@@ -3,11 +3,11 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "engine/storage/file_seal.hpp"
-#include "engine/storage/packed_text.hpp"
 
 namespace pkm {
 namespace {
@@ -66,23 +66,19 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-// Little-endian in the file, whatever the machine.
-template <class T>
-hid_t file_type() {
-  if constexpr (std::is_same_v<T, double>) return H5T_IEEE_F64LE;
-  if constexpr (std::is_same_v<T, float>) return H5T_IEEE_F32LE;
-  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_STD_I64LE;
-  if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
-  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_STD_U8LE;
-}
+/// A type in the file, and the same in memory.
+struct TypePair {
+  hid_t file, memory;
+};
 
+/// Little-endian in the file, whatever the machine.
 template <class T>
-hid_t memory_type() {
-  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
-  if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
-  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
-  if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_NATIVE_UINT64;
-  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
+TypePair number_type() {
+  if constexpr (std::is_same_v<T, double>) return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE};
+  if constexpr (std::is_same_v<T, float>) return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT};
+  if constexpr (std::is_same_v<T, std::int64_t>) return {H5T_STD_I64LE, H5T_NATIVE_INT64};
+  if constexpr (std::is_same_v<T, std::uint64_t>) return {H5T_STD_U64LE, H5T_NATIVE_UINT64};
+  if constexpr (std::is_same_v<T, std::uint8_t>) return {H5T_STD_U8LE, H5T_NATIVE_UINT8};
 }
 
 /// In datasets, text is UTF-8 of fixed length, padded with NUL: it compresses and lies inside its dataset.
@@ -130,10 +126,13 @@ Handle dataset_properties(const Extent& extent, std::size_t value_bytes, const s
   return properties;
 }
 
-void write_attribute(hid_t object, const std::string& name, hid_t type, hid_t as_type, hid_t space, const void* data,
-                     const std::string& what) {
-  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, what);
-  check(H5Awrite(attribute.get(), as_type, data), what);
+/// @param size  of a list; none: a single value
+void write_attribute(hid_t object, const std::string& name, std::optional<hsize_t> size, const TypePair& type,
+                     const void* data, const std::string& what) {
+  const Handle space(size ? H5Screate_simple(1, &*size, nullptr) : H5Screate(H5S_SCALAR), H5Sclose, what);
+  const Handle attribute(H5Acreate2(object, name.c_str(), type.file, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                         what);
+  check(H5Awrite(attribute.get(), type.memory, data), what);
 }
 
 /// In attributes, text is UTF-8 of variable length: h5py hands it out as str.
@@ -144,22 +143,17 @@ Handle attribute_text_type() {
   return type;
 }
 
-void write_text(hid_t object, const std::string& name, const std::string& text, const std::string& what) {
+void write_texts(hid_t object, const std::string& name, std::optional<hsize_t> size,
+                 const std::vector<std::string>& texts, const std::string& what) {
   const Handle type = attribute_text_type();
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
-  const char* pointer = text.c_str();
-  write_attribute(object, name, type.get(), type.get(), space.get(), &pointer, what);
-}
-
-void write_texts(hid_t object, const std::string& name, const std::vector<std::string>& texts,
-                 const std::string& what) {
-  const Handle type = attribute_text_type();
-  const hsize_t size = texts.size();
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
   std::vector<const char*> pointers;
   pointers.reserve(texts.size() + 1);  // HDF5 takes no null pointer, even for no text at all
   for (const std::string& text : texts) pointers.push_back(text.c_str());
-  write_attribute(object, name, type.get(), type.get(), space.get(), pointers.data(), what);
+  write_attribute(object, name, size, {type.get(), type.get()}, pointers.data(), what);
+}
+
+void write_text(hid_t object, const std::string& name, const std::string& text, const std::string& what) {
+  write_texts(object, name, {}, {text}, what);
 }
 
 std::string read_text(hid_t attribute, const std::string& what) {
@@ -175,11 +169,9 @@ std::string read_text(hid_t attribute, const std::string& what) {
 
 void write_labels(hid_t dataset, const Leaf& leaf) {
   write_text(dataset, "description", leaf.description, leaf.path);
-  if (!leaf.columns.empty()) write_texts(dataset, "columns", leaf.columns, leaf.path);
-  if (leaf.columns.empty() && leaf.units.size() == 1)
-    write_text(dataset, "unit", leaf.units[0], leaf.path);
-  else
-    write_texts(dataset, "unit", leaf.units, leaf.path);
+  if (!leaf.columns.empty()) write_texts(dataset, "columns", leaf.columns.size(), leaf.columns, leaf.path);
+  const bool one = leaf.columns.empty() && leaf.units.size() == 1;
+  write_texts(dataset, "unit", one ? std::optional<hsize_t>() : leaf.units.size(), leaf.units, leaf.path);
 }
 
 Handle core_access(const std::string& what) {
@@ -222,6 +214,9 @@ std::string in_words(const Extent& extent) {
 
 struct ImageWriter::Parts {
   explicit Parts(std::size_t block) : user_block(block), file(create_file(block)) {}
+  Handle object(const std::string& path, const std::string& what) const {
+    return {H5Oopen(file.get(), path.c_str(), H5P_DEFAULT), H5Oclose, what};
+  }
   std::size_t user_block;
   QuietErrors quiet;
   Handle file;
@@ -241,35 +236,29 @@ void ImageWriter::group(const std::string& path, const std::string& description)
 }
 
 template <class T>
-void ImageWriter::attribute(const std::string& group, const std::string& name, const T& value, Repeats) {
+void ImageWriter::attribute(const std::string& group, const std::string& name, const T& value) {
   const std::string what = group + "@" + name;
-  const Handle object(H5Oopen(parts_->file.get(), group.c_str(), H5P_DEFAULT), H5Oclose, what);
+  const Handle object = parts_->object(group, what);
   if constexpr (std::is_same_v<T, std::string>) {
     write_text(object.get(), name, value, what);
   } else {
     using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
     const auto stored = static_cast<Stored>(value);
-    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
-    write_attribute(object.get(), name, file_type<Stored>(), memory_type<Stored>(), space.get(), &stored, what);
+    write_attribute(object.get(), name, {}, number_type<Stored>(), &stored, what);
   }
 }
 
 template <class T>
 void ImageWriter::list_attribute(const std::string& group, const std::string& name, const std::vector<T>& values) {
   const std::string what = group + "@" + name;
-  const Handle object(H5Oopen(parts_->file.get(), group.c_str(), H5P_DEFAULT), H5Oclose, what);
-  const hsize_t size = values.size();
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, what);
-  write_attribute(object.get(), name, file_type<T>(), memory_type<T>(), space.get(), values.data(), what);
+  write_attribute(parts_->object(group, what).get(), name, values.size(), number_type<T>(), values.data(), what);
 }
 
 void ImageWriter::ascii_attribute(const std::string& group, const std::string& name, const std::string& text) {
   const std::string what = group + "@" + name;
-  const Handle object(H5Oopen(parts_->file.get(), group.c_str(), H5P_DEFAULT), H5Oclose, what);
   const Handle type = text_type(text.size());
   check(H5Tset_cset(type.get(), H5T_CSET_ASCII), what);
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
-  write_attribute(object.get(), name, type.get(), type.get(), space.get(), text.data(), what);
+  write_attribute(parts_->object(group, what).get(), name, {}, {type.get(), type.get()}, text.data(), what);
 }
 
 template <class T>
@@ -279,20 +268,23 @@ void ImageWriter::array(const Leaf& leaf, const std::vector<T>& values, const Ex
   if (product(extent) != values.size()) refuse_size(leaf, {values.size()}, extent);
   const hid_t file = parts_->file.get();
   const Handle space = make_space(extent, leaf.path);
-  const auto write = [&](hid_t type, hid_t as_type, std::size_t value_bytes, const void* data) {
+  const auto write = [&](const TypePair& type, std::size_t value_bytes, const void* data) {
     const Handle properties = dataset_properties(extent, value_bytes, leaf.path);
     const Handle dataset(
-        H5Dcreate2(file, leaf.path.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose,
-        leaf.path);
-    if (!values.empty()) check(H5Dwrite(dataset.get(), as_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), leaf.path);
+        H5Dcreate2(file, leaf.path.c_str(), type.file, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+        H5Dclose, leaf.path);
+    if (!values.empty()) check(H5Dwrite(dataset.get(), type.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), leaf.path);
     write_labels(dataset.get(), leaf);
   };
   if constexpr (std::is_same_v<T, std::string>) {
-    const PackedText packed = pack(values);
-    const Handle type = text_type(packed.length);
-    write(type.get(), type.get(), packed.length, packed.bytes.data());
+    std::size_t length = 1;
+    for (const std::string& text : values) length = std::max(length, text.size());
+    std::string bytes(length * values.size(), '\0');
+    for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(&bytes[i * length], length);
+    const Handle type = text_type(length);
+    write({type.get(), type.get()}, length, bytes.data());
   } else {
-    write(file_type<T>(), memory_type<T>(), sizeof(T), values.data());
+    write(number_type<T>(), sizeof(T), values.data());
   }
 }
 
@@ -310,6 +302,58 @@ std::string ImageWriter::finish() {
   return bytes;
 }
 
+namespace {
+
+/// Every step of the path lies in this file: a soft link may go round in circles, an external one shows another file.
+void refuse_links(hid_t file, const std::string& path) {
+  for (std::size_t end = 0; end != std::string::npos;) {
+    end = path.find('/', end + 1);
+    const std::string step = path.substr(0, end);
+    if (step == "/") return;
+    H5L_info_t link;
+    check(H5Lget_info(file, step.c_str(), &link, H5P_DEFAULT), step);
+    if (link.type != H5L_TYPE_HARD) throw ImageError(step + ": is a link to another place");
+  }
+}
+
+/// The values lie in this file, as ImageWriter leaves them: chunked or one value, deflated at most.
+void refuse_storage(hid_t dataset, const std::string& what) {
+  const Handle properties(H5Dget_create_plist(dataset), H5Pclose, what);
+  const H5D_layout_t layout = H5Pget_layout(properties.get());
+  if (layout != H5D_CHUNKED && layout != H5D_CONTIGUOUS && layout != H5D_COMPACT)
+    throw ImageError(what + ": is a view of other datasets");
+  if (H5Pget_external_count(properties.get()) != 0) throw ImageError(what + ": has its values in another file");
+  for (int i = 0; i < H5Pget_nfilters(properties.get()); ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(properties.get(), static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, &config);
+    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
+      throw ImageError(what + ": is packed by a filter that pkmopt does not use");
+  }
+}
+
+/// Bytes of the dataset's values: no more than deflate can have packed into what the file holds of them, so that no
+/// forged size is asked for.
+std::size_t bytes_of(hid_t dataset, const Extent& extent, std::size_t value_bytes, const std::string& what) {
+  constexpr std::size_t kMostDeflated = 1032;  // bytes in one
+  if (std::ranges::find(extent, std::size_t{0}) != extent.end()) return 0;
+  const std::size_t most = H5Dget_storage_size(dataset) * kMostDeflated;
+  std::size_t bytes = value_bytes;
+  for (const std::size_t size : extent) {
+    if (bytes > most / size) throw ImageError(what + ": is larger than the values that the file holds");
+    bytes *= size;
+  }
+  return bytes;
+}
+
+/// Other programs may have changed width or order of the bytes, which HDF5 converts.
+void refuse_type(hid_t stored, hid_t expected, const std::string& what) {
+  if (H5Tget_class(stored) != H5Tget_class(expected)) throw ImageError(what + ": has values of another type");
+}
+
+}  // namespace
+
 struct ImageReader::Parts {
   explicit Parts(const std::string& bytes) : file(open_image(bytes)) {}
   QuietErrors quiet;
@@ -321,6 +365,7 @@ ImageReader::ImageReader(const std::string& file, int schema)
 ImageReader::~ImageReader() = default;
 
 void ImageReader::group(const std::string& path, const std::string&) const {
+  refuse_links(parts_->file.get(), path);
   const Handle group(H5Gopen2(parts_->file.get(), path.c_str(), H5P_DEFAULT), H5Gclose, path);
 }
 
@@ -328,8 +373,14 @@ bool ImageReader::has(const std::string& path) const {
   return H5Lexists(parts_->file.get(), path.c_str(), H5P_DEFAULT) > 0;
 }
 
+std::size_t ImageReader::members(const std::string& path) const {
+  H5G_info_t info;
+  check(H5Gget_info_by_name(parts_->file.get(), path.c_str(), &info, H5P_DEFAULT), path);
+  return info.nlinks;
+}
+
 template <class T>
-void ImageReader::attribute(const std::string& group, const std::string& name, T& value, Repeats) const {
+void ImageReader::attribute(const std::string& group, const std::string& name, T& value) const {
   const std::string what = group + "@" + name;
   const Handle attribute(H5Aopen_by_name(parts_->file.get(), group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose, what);
@@ -340,14 +391,18 @@ void ImageReader::attribute(const std::string& group, const std::string& name, T
   } else {
     using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
     Stored stored{};
-    check(H5Aread(attribute.get(), memory_type<Stored>(), &stored), what);
+    refuse_type(Handle(H5Aget_type(attribute.get()), H5Tclose, what).get(), number_type<Stored>().file, what);
+    check(H5Aread(attribute.get(), number_type<Stored>().memory, &stored), what);
     value = static_cast<T>(stored);
   }
 }
 
 template <class T>
 void ImageReader::array(const Leaf& leaf, std::vector<T>& values, const Extent& extent) const {
+  refuse_links(parts_->file.get(), leaf.path);
   const Handle dataset(H5Dopen2(parts_->file.get(), leaf.path.c_str(), H5P_DEFAULT), H5Dclose, leaf.path);
+  refuse_storage(dataset.get(), leaf.path);
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose, leaf.path);
   const Handle space(H5Dget_space(dataset.get()), H5Sclose, leaf.path);
   const int rank = H5Sget_simple_extent_ndims(space.get());
   if (rank < 0) fail(leaf.path);
@@ -357,23 +412,27 @@ void ImageReader::array(const Leaf& leaf, std::vector<T>& values, const Extent& 
   if (!extent.empty() && extent[0] == kAnyRows && rank > 0) expected[0] = size[0];
   const Extent present(size.begin(), size.end());
   if (present != expected) refuse_size(leaf, present, expected);
-  const std::size_t count = product(present);
   if constexpr (std::is_same_v<T, std::string>) {
-    const Handle type(H5Dget_type(dataset.get()), H5Tclose, leaf.path);
     const std::size_t length = text_length(type.get(), leaf.path);
-    std::string bytes(length * count, '\0');
+    std::string bytes(bytes_of(dataset.get(), present, length, leaf.path), '\0');
+    const std::size_t count = bytes.size() / length;
     if (count > 0) check(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), leaf.path);
-    values = unpack(bytes, length, count);
+    values.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      values.push_back(bytes.substr(i * length, length));
+      values.back().erase(values.back().find_last_not_of('\0') + 1);
+    }
   } else {
-    values.resize(count);
-    if (count > 0)
-      check(H5Dread(dataset.get(), memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), leaf.path);
+    refuse_type(type.get(), number_type<T>().file, leaf.path);
+    values.resize(bytes_of(dataset.get(), present, sizeof(T), leaf.path) / sizeof(T));
+    if (!values.empty())
+      check(H5Dread(dataset.get(), number_type<T>().memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), leaf.path);
   }
 }
 
-#define PKM_ATTRIBUTE(T)                                                                           \
-  template void ImageWriter::attribute(const std::string&, const std::string&, const T&, Repeats); \
-  template void ImageReader::attribute(const std::string&, const std::string&, T&, Repeats) const;
+#define PKM_ATTRIBUTE(T)                                                                  \
+  template void ImageWriter::attribute(const std::string&, const std::string&, const T&); \
+  template void ImageReader::attribute(const std::string&, const std::string&, T&) const;
 #define PKM_ARRAY(T)                                                                   \
   template void ImageWriter::array(const Leaf&, const std::vector<T>&, const Extent&); \
   template void ImageReader::array(const Leaf&, std::vector<T>&, const Extent&) const;

@@ -1,4 +1,4 @@
-// HDF5 files in memory: one class builds the bytes of a file, one reads them. Private to engine/storage.
+// HDF5 files in memory: one class builds the bytes of a file, one reads them. Private to the engine.
 //
 // Everything happens in memory (HDF5's core driver), so HDF5 never meets a full disk, a lock or a half-written file,
 // and its errors are limited to what lies in the data. Writing to disk is plain write(2), see safe_file.hpp.
@@ -18,16 +18,12 @@ class ImageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Does a resumed run have to repeat this bit for bit?
-enum class Repeats { yes, no };
-
 /// One dataset and what is written beside its values.
 struct Leaf {
   std::string path;
   std::string description;
-  std::vector<std::string> units;    ///< one for all values, or one per column
-  std::vector<std::string> columns;  ///< names along the last dimension; empty where it has none
-  Repeats repeats = Repeats::yes;
+  std::vector<std::string> units = std::vector<std::string>(1, "1");  ///< one for all values, or one per column
+  std::vector<std::string> columns = {};  ///< names along the last dimension; empty where it has none
 };
 
 /// Sizes of a dataset, slowest first; {} is a single value.
@@ -39,14 +35,13 @@ inline constexpr std::size_t kAnyRows = static_cast<std::size_t>(-1);
 class ImageWriter {
  public:
   static constexpr bool kReads = false;
-  static constexpr bool kDerives = true;  ///< also writes what readers like but nothing reads back
 
   /// @param user_block  bytes in front of the HDF5 data, left empty: 512 or a multiple of it, or 0
   explicit ImageWriter(std::size_t user_block);
   ~ImageWriter();
   void group(const std::string& path, const std::string& description);
   template <class T>
-  void attribute(const std::string& group, const std::string& name, const T& value, Repeats = Repeats::yes);
+  void attribute(const std::string& group, const std::string& name, const T& value);
   /// A list of numbers, double or std::int64_t.
   template <class T>
   void list_attribute(const std::string& group, const std::string& name, const std::vector<T>& values);
@@ -63,19 +58,21 @@ class ImageWriter {
   std::unique_ptr<Parts> parts_;
 };
 
+/// Takes what ImageWriter writes, and refuses by ImageError all else that HDF5 could read: links, values in other
+/// files, other types, sizes that the file cannot hold.
 class ImageReader {
  public:
   static constexpr bool kReads = true;
-  static constexpr bool kDerives = false;
 
   /// @param schema  of the layout, for whoever describes it
   ImageReader(const std::string& file, int schema);
   ~ImageReader();
   void group(const std::string& path, const std::string& description) const;  ///< must be there
   bool has(const std::string& path) const;
+  std::size_t members(const std::string& group) const;  ///< how many groups and datasets lie in it
   int schema() const { return schema_; }
   template <class T>
-  void attribute(const std::string& group, const std::string& name, T& value, Repeats = Repeats::yes) const;
+  void attribute(const std::string& group, const std::string& name, T& value) const;
   /// @param extent  must equal the dataset's; a first size of kAnyRows takes what is there
   template <class T>
   void array(const Leaf& leaf, std::vector<T>& values, const Extent& extent) const;

@@ -13,29 +13,49 @@
 
 namespace pkm::schema {
 
-inline constexpr std::array<const char*, 2> kDirectionWords{"minimise", "maximise"};
-inline constexpr std::array<const char*, 3> kStateWords{"running", "interrupted", "finished"};
-inline constexpr std::array<const char*, 3> kDetailWords{"enough", "complete", "derivatives"};
-inline constexpr std::array<const char*, 4> kStatusWords{"feasible", "infeasible", "rejected", "failed"};
+// The words of enumerations.
+constexpr std::array<const char*, 2> words_of(Direction) { return {"minimise", "maximise"}; }
+constexpr std::array<const char*, 3> words_of(StudyState) { return {"running", "interrupted", "finished"}; }
+constexpr std::array<const char*, 3> words_of(Detail) { return {"enough", "complete", "derivatives"}; }
+constexpr std::array<const char*, 4> words_of(Status) { return {"feasible", "infeasible", "rejected", "failed"}; }
 
-template <class Enum, std::size_t n>
-Enum from_word(const std::string& word, const std::array<const char*, n>& words, const std::string& where) {
-  const auto at = std::find(words.begin(), words.end(), word);
-  if (at == words.end()) throw ImageError(where + ": the unknown word '" + word + "'");
-  return static_cast<Enum>(at - words.begin());
+/// What is kept of a value: itself, or an enumeration's word.
+template <class T>
+auto kept(const T& value) {
+  if constexpr (std::is_enum_v<T>)
+    return std::string(words_of(value)[static_cast<std::size_t>(value)]);
+  else
+    return value;
+}
+
+/// The value of which this was kept.
+template <class T, class Kept>
+void take(T& value, const Kept& from, const std::string& where) {
+  if constexpr (std::is_enum_v<T>) {
+    const auto words = words_of(value);
+    const auto at = std::find(words.begin(), words.end(), from);
+    if (at == words.end()) throw ImageError(where + ": the unknown word '" + from + "'");
+    value = static_cast<T>(at - words.begin());
+  } else {
+    value = from;
+  }
 }
 
 /// An enumeration, kept as a word.
-template <class Archive, class Enum, std::size_t n>
-void choice(Archive& archive, const std::string& group, const std::string& name, Enum& value,
-            const std::array<const char*, n>& words) {
-  if constexpr (Archive::kReads) {
-    std::string word;
-    archive.attribute(group, name, word);
-    value = from_word<Enum>(word, words, group + "@" + name);
-  } else {
-    archive.attribute(group, name, std::string(words[static_cast<std::size_t>(value)]));
-  }
+template <class Archive, class Enum>
+void choice(Archive& archive, const std::string& group, const std::string& name, Enum& value) {
+  std::string word = kept(value);
+  archive.attribute(group, name, word);
+  if constexpr (Archive::kReads) take(value, word, group + "@" + name);
+}
+
+/// The file has what came with a version of the schema.
+template <class Archive>
+bool since(const Archive& archive, int schema) {
+  if constexpr (Archive::kReads)
+    return archive.schema() >= schema;
+  else
+    return true;
 }
 
 /// Something that a study may not have: its group is there, or it is not.
@@ -62,27 +82,13 @@ Field(const char*, Member Record::*, const char*, const char*) -> Field<Record, 
 
 template <class Archive, class Items, class Record, class Member>
 void column(Archive& archive, const std::string& group, Items& items, bool first, const Field<Record, Member>& field) {
-  constexpr bool is_direction = std::is_same_v<Member, Direction>;
-  using Stored = std::conditional_t<is_direction, std::string, Member>;
-  std::vector<Stored> values;
-  if constexpr (!Archive::kReads) {
-    for (const Record& item : items) {
-      if constexpr (is_direction)
-        values.push_back(kDirectionWords[static_cast<std::size_t>(item.*field.member)]);
-      else
-        values.push_back(item.*field.member);
-    }
-  }
-  const Leaf leaf{group + "/" + field.name, field.description, {field.unit}, {}};
+  std::vector<decltype(kept(Member{}))> values;
+  for (const Record& item : items) values.push_back(kept(item.*field.member));
+  const Leaf leaf{group + "/" + field.name, field.description, {field.unit}};
   archive.array(leaf, values, {Archive::kReads && first ? kAnyRows : items.size()});
   if constexpr (Archive::kReads) {
-    if (first) items.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if constexpr (is_direction)
-        items[i].*field.member = from_word<Direction>(values[i], kDirectionWords, leaf.path);
-      else
-        items[i].*field.member = values[i];
-    }
+    items.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) take(items[i].*field.member, values[i], leaf.path);
   }
 }
 
@@ -95,24 +101,24 @@ void records(Archive& archive, const std::string& group, const std::string& desc
   ((column(archive, group, items, first, fields), first = false), ...);
 }
 
-template <class Items>
-std::vector<std::string> names(const Items& items) {
-  std::vector<std::string> result;
-  for (const auto& item : items) result.push_back(item.name);
-  return result;
-}
-
-template <class Items>
-std::vector<std::string> units(const Items& items) {
-  std::vector<std::string> result;
-  for (const auto& item : items) result.push_back(item.unit);
-  return result;
+/// Values of things that have names and units: a column each.
+/// @param extent  of what lies before the columns: a number of rows, or nothing
+template <class Archive, class Items, class Values>
+void columns(Archive& archive, const std::string& path, const char* description, const Items& items, Values&& values,
+             Extent extent = {}) {
+  Leaf leaf{path, description, {}};
+  for (const auto& item : items) {
+    leaf.units.push_back(item.unit);
+    leaf.columns.push_back(item.name);
+  }
+  extent.push_back(items.size());
+  archive.array(leaf, values, extent);
 }
 
 /// VoxelMap keeps plain arrays of three; the archives know vectors.
-template <class Archive, class Number, class Plain>
+template <class Archive, class Plain>
 void triple(Archive& archive, const Leaf& leaf, Plain& values) {
-  std::vector<Number> copy(values, values + 3);
+  std::vector copy(std::begin(values), std::end(values));
   archive.array(leaf, copy, {3});
   if constexpr (Archive::kReads) std::copy(copy.begin(), copy.end(), values);
 }

@@ -14,11 +14,9 @@ std::span<const std::int64_t> GenerationRecords::population_of(std::size_t g) co
 
 std::vector<std::int64_t> GenerationRecords::generation_of_rows(std::size_t rows) const {
   std::vector<std::int64_t> number(rows, 0);
-  for (std::size_t g = 0; g < size(); ++g) {
-    const std::size_t end = g + 1 < size() ? static_cast<std::size_t>(first_row[g + 1]) : rows;
-    for (auto row = static_cast<std::size_t>(first_row[g]); row < end; ++row)
+  for (std::size_t g = 0; g < size(); ++g)
+    for (auto row = static_cast<std::size_t>(first_row[g]); row < end_of(g, rows); ++row)
       number[row] = static_cast<std::int64_t>(g);
-  }
   return number;
 }
 
@@ -35,7 +33,7 @@ bool StudyContents::reproducible() const {
   return true;
 }
 
-std::string words(Status status) { return schema::kStatusWords[static_cast<std::size_t>(status)]; }
-std::string words(StudyState state) { return schema::kStateWords[static_cast<std::size_t>(state)]; }
+std::string words(Status status) { return schema::kept(status); }
+std::string words(StudyState state) { return schema::kept(state); }
 
 }  // namespace pkm

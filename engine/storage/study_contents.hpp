@@ -17,7 +17,7 @@
 namespace pkm {
 
 /// Version of the file's layout. A file of a newer one is refused by name.
-inline constexpr int kStudySchema = 3;
+inline constexpr int kStudySchema = 4;
 
 /// One parameter of the study's mechanism, in the mechanism's order.
 struct ParameterRecord {
@@ -61,6 +61,10 @@ struct GenerationRecords {
   std::size_t size() const { return first_row.size(); }
   /// Rows of the table that form the population of generation g.
   std::span<const std::int64_t> population_of(std::size_t g) const;
+  /// The row behind the last one that generation g evaluated, of a table of `rows`.
+  std::size_t end_of(std::size_t g, std::size_t rows) const {
+    return g + 1 < size() ? static_cast<std::size_t>(first_row[g + 1]) : rows;
+  }
   /// Of each of the table's `rows` rows the generation that evaluated it.
   std::vector<std::int64_t> generation_of_rows(std::size_t rows) const;
 };
@@ -110,6 +114,8 @@ struct StageRecord {
   std::vector<StartOutcome> starts;            ///< solvers: the starts that have ended
   std::optional<OptimalityRecord> optimality;  ///< one objective, stages with derivatives, once finished
   std::optional<FrontRecord> front;            ///< several objectives
+
+  bool has_front() const { return front && !front->rows.empty(); }
 };
 
 /// One design, evaluated with everything that the problem asks for.
@@ -178,14 +184,13 @@ struct StudyContents {
   std::optional<FinalRecord> final;
   std::vector<std::string> notes;  ///< sentences on what happened to the study; not part of what must repeat
 
+  /// What holds the best evaluation so far, and its variables; only where there is one.
+  const StageRecord& best_stage() const { return stages[static_cast<std::size_t>(best.stage)]; }
+  std::span<const double> best_design() const { return best_stage().table.design(static_cast<std::size_t>(best.row)); }
   /// Evaluations of all stages.
   std::int64_t evaluations() const;
   /// False where a start of a solver was ended by the clock: another run may end it elsewhere.
   bool reproducible() const;
 };
-
-/// Compares everything that a resumed run must repeat bit for bit: all but times, machine, program and the TOML file's
-/// place. "" when equal, otherwise one line with the first difference: its place in the file and both values.
-std::string first_difference(const StudyContents& a, const StudyContents& b);
 
 }  // namespace pkm

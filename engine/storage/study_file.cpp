@@ -1,6 +1,9 @@
 #include "engine/storage/study_file.hpp"
 
+#include <algorithm>
+
 #include "engine/core/error.hpp"
+#include "engine/storage/contained_reading.hpp"
 #include "engine/storage/file_seal.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/schema.hpp"
@@ -14,20 +17,44 @@ void require(bool holds, const std::string& where, const char* what) {
 
 /// True when 0 <= values[0] <= values[1] <= ... <= last.
 bool ascends(const std::vector<std::int64_t>& values, std::size_t last) {
-  std::int64_t before = 0;
-  for (const std::int64_t value : values) {
-    if (value < before) return false;
-    before = value;
-  }
-  return before <= static_cast<std::int64_t>(last);
+  return std::ranges::is_sorted(values) &&
+         (values.empty() || (values.front() >= 0 && values.back() <= static_cast<std::int64_t>(last)));
 }
 
 bool is_row(std::int64_t row, std::size_t rows) { return row >= 0 && row < static_cast<std::int64_t>(rows); }
 bool is_row_or_none(std::int64_t row, std::size_t rows) { return row == -1 || is_row(row, rows); }
 
+void check_final(const FinalRecord& final, bool has_stages) {
+  require(has_stages, "/final", "a study without stages has none");
+  for (const auto& [name, design] : {std::pair{"best", &final.best},
+                                     {"rounded", &final.rounded},
+                                     {"baseline", &final.baseline},
+                                     {"best_exact", &final.best_exact},
+                                     {"baseline_exact", &final.baseline_exact}})
+    require(!*design || ((*design)->feasible_cells >= 0 && (*design)->feasible_cells <= (*design)->cells),
+            std::string("/final/") + name, "has more feasible cells than cells, or fewer than 0");
+  if (final.map)
+    for (const std::int64_t cells : final.map->voxels.cells) require(cells > 0, "/final/map", "has no cells");
+}
+
+/// One parameter for each variable, in any order.
+void check_variables(const ProblemRecord& problem) {
+  std::vector<bool> varied(problem.variables.size(), false);
+  for (const ParameterRecord& parameter : problem.parameters) {
+    if (parameter.variable == -1) continue;
+    require(is_row(parameter.variable, varied.size()), "/problem/parameters", "variable is no index of a variable");
+    const auto v = static_cast<std::size_t>(parameter.variable);
+    require(!varied[v], "/problem/parameters", "two parameters have one variable");
+    varied[v] = true;
+  }
+  require(std::ranges::find(varied, false) == varied.end(), "/problem/variables", "one is no parameter's");
+}
+
 /// Every index points at something: checked before writing, because nothing could read such a file, and after reading,
 /// so that nobody after this has to ask.
 void check_indices(const StudyContents& study) {
+  check_variables(study.problem);
+  require(study.stages.empty() || !study.problem.objectives.empty(), "/problem/objectives", "there are none");
   for (std::size_t i = 0; i < study.stages.size(); ++i) {
     const std::string group = "/stages/" + std::to_string(i + 1);
     const StageRecord& stage = study.stages[i];
@@ -43,6 +70,11 @@ void check_indices(const StudyContents& study) {
               "starts do not follow one another within evaluations");
       next += start.rows;
       require(start.end_row >= start.first_row && start.end_row < next, group, "a start's end is not among its rows");
+    }
+    if (stage.optimality) {
+      require(study.problem.objectives.size() == 1, group, "optimality is there of studies with one objective only");
+      require(stage.optimality->sensitivities.size() == study.problem.parameters.size(), group,
+              "optimality has not one sensitivity per parameter");
     }
     if (stage.front) {
       for (const std::int64_t row : stage.front->rows)
@@ -65,14 +97,12 @@ void check_indices(const StudyContents& study) {
   require(best.row == -1 || (is_row(best.stage, study.stages.size()) &&
                              is_row(best.row, study.stages[static_cast<std::size_t>(best.stage)].table.size())),
           "/best", "row is no row of evaluations");
-  for (const ParameterRecord& parameter : study.problem.parameters)
-    require(is_row_or_none(parameter.variable, study.problem.variables.size()), "/problem/parameters",
-            "variable is no index of a variable");
+  if (study.final) check_final(*study.final, !study.stages.empty());
 }
 
 }  // namespace
 
-void write_study(const std::string& path, const StudyContents& contents) {
+void write_study(const std::string& path, const StudyContents& contents, Existing existing) {
   std::string bytes;
   try {
     check_indices(contents);
@@ -83,18 +113,25 @@ void write_study(const std::string& path, const StudyContents& contents) {
     throw StorageError(path + ": cannot be written (" + error.what() + ")");
   }
   seal(bytes, kStudySchema);
-  replace_file(path, bytes);
+  write_file(path, bytes, existing);
+}
+
+StudyContents parse_study(const std::string& bytes, int schema) {
+  StudyContents contents;
+  const ImageReader image(bytes, schema);
+  schema::describe(image, contents);
+  check_indices(contents);
+  return contents;
 }
 
 StudyContents read_study(const std::string& path) {
-  const std::string bytes = read_file(path);
+  constexpr std::size_t kBeginning = std::size_t{1} << 16;  // tells what kind of file it is, however large
+  std::string bytes = read_file(path, kBeginning);
+  if (bytes.size() == kBeginning && is_sealed(bytes)) bytes = read_file(path);
   const int schema = verify_seal(bytes, path, kStudySchema);
   try {
-    StudyContents contents;
-    const ImageReader image(bytes, schema);
-    schema::describe(image, contents);
-    check_indices(contents);
-    return contents;
+    check_contained(bytes, path);
+    return parse_study(bytes, schema);
   } catch (const ImageError& error) {
     throw StorageError(path + ": not laid out as schema " + std::to_string(schema) + " says (" + error.what() + ")");
   }

@@ -21,10 +21,28 @@ bool switched_off() {
   return value && std::string_view(value) == "off";
 }
 
+constexpr std::string_view kLockMark = "pkmopt-lock ";
+constexpr std::size_t kMostBytes = 256;
+
+/// At most kMostBytes.
+std::string text_of(int fd) {
+  char text[kMostBytes];
+  const ssize_t n = ::pread(fd, text, sizeof text, 0);
+  return n > 0 ? std::string(text, static_cast<std::size_t>(n)) : "";
+}
+
+/// Made by pkmopt, as far as can be seen, and by no other name that of another file.
+bool is_lock_file(int fd) {
+  struct stat status {};
+  if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink > 1) return false;
+  if (status.st_size > static_cast<off_t>(kMostBytes)) return false;
+  const std::string text = text_of(fd);
+  return text.starts_with(kLockMark) || kLockMark.starts_with(text);  // a full disk may have kept it from its mark
+}
+
 std::string holder(int fd) {
-  char text[256] = {};
-  const ssize_t n = ::pread(fd, text, sizeof text - 1, 0);
-  return n > 0 ? "process " + std::string(text) : "another process";
+  const std::string text = text_of(fd);
+  return text.starts_with(kLockMark) ? "process " + text.substr(kLockMark.size()) : "another process";
 }
 
 std::string own_name() {
@@ -37,7 +55,7 @@ std::string own_name() {
 bool still_named(int fd, const std::string& path) {
   struct stat ours {
   }, named{};
-  return ::fstat(fd, &ours) == 0 && ::stat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino &&
+  return ::fstat(fd, &ours) == 0 && ::lstat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino &&
          ours.st_dev == named.st_dev;
 }
 
@@ -46,7 +64,12 @@ bool still_named(int fd, const std::string& path) {
 StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(study_path) + ".lock") {
   if (switched_off()) return;
   for (;;) {
-    const int fd = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int fd = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (fd < 0 ? errno == ELOOP : !is_lock_file(fd)) {
+      if (fd >= 0) ::close(fd);
+      throw StorageError(study_path + ": cannot be locked: " + lock_path_ +
+                         " is no lock of pkmopt and is left alone; give the study another name");
+    }
     if (fd < 0)
       throw StorageError(study_path + ": the lock file " + lock_path_ + " cannot be created (" + std::strerror(errno) +
                          ")");
@@ -66,13 +89,15 @@ StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(stu
     ::close(fd);
   }
   // The name of the holder serves messages only, so failing to write it (a full disk) does no harm.
-  const std::string name = own_name();
+  const std::string name = (std::string(kLockMark) + own_name()).substr(0, kMostBytes);
   if (::ftruncate(fd_, 0) == 0) static_cast<void>(!::pwrite(fd_, name.data(), name.size(), 0));
 }
 
+bool StudyLock::held() const { return fd_ < 0 || still_named(fd_, lock_path_); }
+
 StudyLock::~StudyLock() {
   if (fd_ < 0) return;
-  ::unlink(lock_path_.c_str());
+  if (held()) ::unlink(lock_path_.c_str());
   ::close(fd_);
 }
 

@@ -1,7 +1,8 @@
 // Keeps a second process off a running study.
 //
 // The lock is a file of its own, "<study>.lock", because the study file itself is replaced by rename. The kernel holds
-// the lock (flock), so it ends with the process, however that dies; a lock file left behind blocks nobody.
+// the lock (flock), so it ends with the process, however that dies; a lock file left behind blocks nobody. Only a file
+// that pkmopt has made is taken for one: it begins with our mark, or is empty.
 #pragma once
 
 #include <string>
@@ -11,12 +12,16 @@ namespace pkm {
 class StudyLock {
  public:
   /// A symbolic link locks what it points to, so all names of a study share a lock.
-  /// Throws StorageError naming the process that holds the lock, or the system's reason. With
+  /// Throws StorageError naming the process that holds the lock, or a file of another program that has the lock's name,
+  /// or the system's reason. With
   /// PKMOPT_LOCK=off in the environment nothing is locked (for file systems without locks).
   explicit StudyLock(const std::string& study_path);
   ~StudyLock();
   StudyLock(const StudyLock&) = delete;
   StudyLock& operator=(const StudyLock&) = delete;
+
+  /// False once the lock file was removed or replaced: another process may have locked the study.
+  bool held() const;
 
  private:
   std::string lock_path_;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace pkm {
 namespace {
@@ -28,32 +27,31 @@ double share_done(const ProgressReport& r) {
   return r.evaluation_limit > 0 ? double(r.evaluations) / double(r.evaluation_limit) : 0;
 }
 
-/// What a line shows.
-struct Layout {
-  int bar = 0;  ///< width; 0: none
-  bool evaluations = true, full_words = true, share = true, rate = true, stage = true, left = true;
-};
+/// What a line that is too long goes without, in this order.
+enum Cut { kEvaluations = 1, kLongBar, kWords, kBar, kShare, kRate, kStage, kLeft };
 
-std::string line(const ProgressReport& r, const Layout& layout) {
-  std::string text = layout.bar > 0 ? bar(share_done(r), layout.bar) : "";
-  if (layout.stage && r.stages > 1)
+/// @param cuts  how many of them are made
+std::string line(const ProgressReport& r, bool with_bar, int cuts) {
+  const auto shows = [&](Cut what) { return cuts < what; };
+  const bool full_words = shows(kWords);
+  std::string text = with_bar && shows(kBar) ? bar(share_done(r), shows(kLongBar) ? 20 : 8) : "";
+  if (shows(kStage) && r.stages > 1)
     text += "stage " + std::to_string(r.stage + 1) + " of " + std::to_string(r.stages) + ": ";
-  text += (layout.full_words ? r.optimiser + " " : "") + "generation " + std::to_string(r.generation);
-  if (layout.evaluations) text += ", " + std::to_string(r.evaluations) + " evaluations";
-  if (layout.rate && r.evaluations_per_second > 0) text += format(", %.3g/s", r.evaluations_per_second);
+  text += (full_words ? r.optimiser + " " : "") + "generation " + std::to_string(r.generation);
+  if (shows(kEvaluations)) text += ", " + std::to_string(r.evaluations) + " evaluations";
+  if (shows(kRate) && r.evaluations_per_second > 0) text += format(", %.3g/s", r.evaluations_per_second);
   if (r.front > 0)
     text += format(", front %zu", r.front) +
-            (std::isnan(r.hypervolume) ? ""
-                                       : format(layout.full_words ? ", hypervolume %.6g" : ", hv %.4g", r.hypervolume));
+            (std::isnan(r.hypervolume) ? "" : format(full_words ? ", hypervolume %.6g" : ", hv %.4g", r.hypervolume));
   else if (r.has_best)
-    text += layout.full_words ? ", " + r.objective + format(" %.8g", r.best) : format(", best %.6g", r.best);
+    text += full_words ? ", " + r.objective + format(" %.8g", r.best) : format(", best %.6g", r.best);
   else if (!r.objective.empty())
     text += format(", nothing feasible yet (violation %.3g)", r.violation);
-  if (layout.share) text += format(", %.0f %% feasible", 100 * r.feasible_share);
+  if (shows(kShare)) text += format(", %.0f %% feasible", 100 * r.feasible_share);
   // The rate of the first moments is that of starting up and says nothing about the rest.
   constexpr double kSettled = 1;  // s
-  if (layout.left && r.seconds >= kSettled && share_done(r) > 0 && share_done(r) < 1 && r.evaluations_per_second > 0)
-    text += std::string(layout.full_words ? ", at most " : ", ") +
+  if (shows(kLeft) && r.seconds >= kSettled && share_done(r) > 0 && share_done(r) < 1 && r.evaluations_per_second > 0)
+    text += std::string(full_words ? ", at most " : ", ") +
             duration_text(double(r.evaluation_limit - r.evaluations) / r.evaluations_per_second) + " left";
   return text;
 }
@@ -75,21 +73,11 @@ std::string duration_text(double seconds) {
   return format("%ld h %02ld min", whole / 3600, whole / 60 % 60);
 }
 
-std::string progress_line(const ProgressReport& r) { return line(r, {}); }
+std::string progress_line(const ProgressReport& r) { return line(r, false, 0); }
 
 std::string progress_bar_line(const ProgressReport& r, std::size_t width) {
-  Layout layout{.bar = 20};
-  // One after the other, until the line fits.
-  const std::function<void()> cuts[] = {[&] { layout.evaluations = false; }, [&] { layout.bar = 8; },
-                                        [&] { layout.full_words = false; },  [&] { layout.bar = 0; },
-                                        [&] { layout.share = false; },       [&] { layout.rate = false; },
-                                        [&] { layout.stage = false; },       [&] { layout.left = false; }};
-  std::string text = line(r, layout);
-  for (const auto& cut : cuts) {
-    if (text.size() <= width) break;
-    cut();
-    text = line(r, layout);
-  }
+  std::string text = line(r, true, 0);
+  for (int cuts = 1; cuts <= kLeft && text.size() > width; ++cuts) text = line(r, true, cuts);
   if (text.size() > width) text.resize(width);
   return text;
 }

@@ -8,7 +8,9 @@
 #include <stdexcept>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/math/rounding.hpp"
 #include "engine/optimisers/solvers/optimality.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/survey/picture_plan.hpp"
@@ -124,6 +126,26 @@ StudyContents new_contents(const Study& study) {
   return c;
 }
 
+Refusal text_against_record(const Study& study, const StudyContents& contents) {
+  const ProblemRecord told = problem_record(study);
+  const ProblemRecord& recorded = contents.problem;
+  if (told.mechanism != recorded.mechanism) return told.mechanism + " as mechanism, and " + recorded.mechanism;
+  const std::string variables = join(names_of(told.variables));
+  if (const std::string other = join(names_of(recorded.variables)); variables != other)
+    return "the variables " + variables + ", and " + other;
+  if (contents.stages.size() > study.stages.size())
+    return std::to_string(study.stages.size()) + " stages, and " + std::to_string(contents.stages.size());
+  for (std::size_t s = 0; s < contents.stages.size(); ++s)
+    if (study.stages[s].entry->name != contents.stages[s].optimiser)
+      return "stage " + std::to_string(s + 1) + " by " + study.stages[s].entry->name + ", and by " +
+             contents.stages[s].optimiser;
+  for (const Extension& extension : contents.extensions)
+    if (extension.stage < 0 || extension.stage >= static_cast<std::int64_t>(study.stages.size()))
+      return std::to_string(study.stages.size()) + " stages, and a new limit of stage " +
+             std::to_string(extension.stage + 1);
+  return {};
+}
+
 ProblemRecord continued_problem(const Study& study, const ProblemRecord& begun) {
   ProblemRecord now = problem_record(study);
   for (const ParameterRecord& before : begun.parameters) {
@@ -185,12 +207,20 @@ std::optional<OptimalityRecord> optimality_record(const Study& study, const Stag
   const std::vector<double> slopes = problem.slopes(problem.parameters(design), all);
   const auto& parameters = parts.mechanism->info().parameters;
   for (std::size_t p = 0; p < count; ++p) {
-    double follow = slopes[1 + p];
-    for (const ActiveMargin& m : found.margins)
-      follow += (maximise ? 1 : -1) * m.multiplier * slopes[(problem.objectives().size() + m.margin) * width + 1 + p];
+    double follow = slopes[1 + p], steepest = 0;  // of the objective, by any parameter of this unit
+    for (std::size_t other = 0; other < count; ++other)
+      if (parameters[other].unit == parameters[p].unit) steepest = std::fmax(steepest, std::fabs(slopes[1 + other]));
+    double greatest_term = steepest;
+    for (const ActiveMargin& m : found.margins) {
+      const double term =
+          (maximise ? 1 : -1) * m.multiplier * slopes[(problem.objectives().size() + m.margin) * width + 1 + p];
+      follow += term;
+      greatest_term = std::fmax(greatest_term, std::fabs(term));
+    }
     const bool varies = std::ranges::find(parts.varies, p) != parts.varies.end();
-    record.sensitivities.push_back({parameters[p].name, parameters[p].unit, slopes[1 + p],
-                                    varies ? std::numeric_limits<double>::quiet_NaN() : follow});
+    record.sensitivities.push_back(
+        {parameters[p].name, parameters[p].unit, beyond_rounding(slopes[1 + p], steepest),
+         varies ? std::numeric_limits<double>::quiet_NaN() : beyond_rounding(follow, greatest_term)});
   }
   return record;
 }
@@ -207,9 +237,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
     if (exact) f.baseline_exact = evaluated(*exact, *study.baseline);
   }
   if (contents.best.row < 0) return f;
-  const auto design = contents.stages[static_cast<std::size_t>(contents.best.stage)].table.design(
-      static_cast<std::size_t>(contents.best.row));
-  const auto best = problem.parameters(design);
+  const auto best = problem.parameters(contents.best_design());
   f.best = evaluated(problem, best);
   if (exact) f.best_exact = evaluated(*exact, best);
   f.active = active_sentences(problem, *f.best);

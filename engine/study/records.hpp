@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "engine/core/refusal.hpp"
 #include "engine/setup/study.hpp"
 #include "engine/storage/study_contents.hpp"
 
@@ -10,6 +11,9 @@ namespace pkm {
 
 /// Header and problem of a study that has not begun.
 StudyContents new_contents(const Study& study);
+
+/// Why a file's records cannot be those of the study that its text describes, as of a forged file.
+Refusal text_against_record(const Study& study, const StudyContents& contents);
 
 /// The problem of a study that goes on, as this program records it. A parameter that the mechanism has gained since the
 /// study was begun is added. Throws std::invalid_argument with half a sentence where anything else has changed.

@@ -1,5 +1,7 @@
 #include "engine/study/run_study.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include "engine/storage/checkpoint_clock.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/storage/study_lock.hpp"
-#include "engine/study/extension.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/study/records.hpp"
 #include "engine/study/starts.hpp"
@@ -48,9 +49,13 @@ double feasible_share(const EvaluationTable& table, const std::vector<std::int64
 /// One run of one study into one file.
 class Run final : public Monitor {
  public:
-  Run(const Study& study, StudyContents contents, std::string path, const RunOptions& options, Progress& progress)
+  /// @param existing  what becomes of a file that is there at the first write
+  Run(const Study& study, StudyContents contents, std::string path, const StudyLock& lock, Existing existing,
+      const RunOptions& options, Progress& progress)
       : study_(study),
         path_(std::move(path)),
+        lock_(lock),
+        existing_(existing),
         options_(options),
         progress_(progress),
         clock_(study.checkpoint_every),
@@ -231,8 +236,8 @@ class Run final : public Monitor {
     if (!first) {
       // Earlier stages win ties, so that a stage that finds nothing better changes nothing.
       const auto& objectives = study_.problem->objectives();
-      const Ranked before = ranked(objectives, contents_.stages[static_cast<std::size_t>(contents_.best.stage)].table,
-                                   static_cast<std::size_t>(contents_.best.row));
+      const Ranked before =
+          ranked(objectives, contents_.best_stage().table, static_cast<std::size_t>(contents_.best.row));
       const Ranked candidate = ranked(objectives, table, static_cast<std::size_t>(row));
       // Of several objectives the best is a stage's compromise; the last one that is as feasible stands.
       if (objectives.size() > 1 ? candidate.status > before.status : !better(candidate, before)) return;
@@ -270,11 +275,25 @@ class Run final : public Monitor {
     contents_.state = state;
     contents_.seconds = seconds();
     contents_.updated = utc_now();
-    write_study(path_, contents_);
+    if (!lock_.held()) keep_elsewhere();
+    write_study(path_, contents_, existing_);
+    existing_ = Existing::replaced;
+  }
+
+  /// Another process may have the study by now: its file is left alone, and nothing of this run is lost.
+  [[noreturn]] void keep_elsewhere() {
+    const std::filesystem::path path(path_);
+    const std::string name = path.stem().string() + "-kept-" + std::to_string(::getpid()) + path.extension().string();
+    const std::string kept = (path.parent_path() / name).string();
+    write_study(kept, contents_, Existing::refused);
+    throw StorageError(path_ + ": its lock was removed while the study ran, so another process may write it; what " +
+                       "this run has found is in " + kept + ", and can be resumed there");
   }
 
   const Study& study_;
   std::string path_;
+  const StudyLock& lock_;
+  Existing existing_;
   RunOptions options_;
   Progress& progress_;
   CheckpointClock clock_;
@@ -295,6 +314,8 @@ class Run final : public Monitor {
 
 Study study_of(const StudyContents& contents, const Catalogues& catalogues) {
   Study study = read_study_toml(contents.toml, contents.toml_file, catalogues);
+  if (const Refusal difference = text_against_record(study, contents))
+    throw StorageError("the study's text and what is recorded of it disagree: " + *difference);
   study.seed = contents.seed;
   return study;
 }
@@ -303,9 +324,10 @@ RunOutcome run_study(const Study& study, const std::string& path, bool overwrite
                      Progress& progress) {
   const StopRequest listen;
   const StudyLock lock(path);
-  if (!overwrite && std::filesystem::exists(path))
+  std::error_code unseen;  // the attempt to write tells
+  if (!overwrite && std::filesystem::exists(path, unseen))
     throw StorageError(path + " exists already; resume it with --resume, or overwrite it with --force");
-  return Run(study, new_contents(study), path, options, progress).run();
+  return Run(study, new_contents(study), path, lock, if_forced(overwrite), options, progress).run();
 }
 
 namespace {
@@ -346,7 +368,7 @@ RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, c
   apply_extensions(study, contents.extensions);
   note_processor(contents);
   try {
-    return Run(study, std::move(contents), path, options, progress).run();
+    return Run(study, std::move(contents), path, lock, Existing::replaced, options, progress).run();
   } catch (const ReplayMismatch& mismatch) {
     throw StorageError(path + " cannot be continued: " + mismatch.what());
   }

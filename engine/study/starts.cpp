@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "engine/problem/front.hpp"
 #include "engine/problem/order.hpp"
@@ -25,8 +26,7 @@ std::vector<double> baseline_or_middle(const Study& study) {
 StartDesign best_so_far(const Study& study, const StudyContents& contents) {
   if (contents.best.row < 0)
     return {baseline_or_middle(study), study.baseline ? "the baseline" : "the middle of the ranges"};
-  const auto design = contents.stages[static_cast<std::size_t>(contents.best.stage)].table.design(
-      static_cast<std::size_t>(contents.best.row));
+  const auto design = contents.best_design();
   return {{design.begin(), design.end()}, "best of stage " + std::to_string(contents.best.stage + 1)};
 }
 
@@ -69,23 +69,23 @@ std::vector<StartDesign> basins(const Study& study, const StudyContents& content
   return found;
 }
 
-/// The last stage that has found a front; none: -1.
-std::int64_t stage_with_front(const StudyContents& contents) {
-  for (std::size_t s = contents.stages.size(); s-- > 0;)
-    if (contents.stages[s].front && !contents.stages[s].front->rows.empty()) return static_cast<std::int64_t>(s);
-  return -1;
+/// The last stage that has found a front; null: none.
+const StageRecord* stage_with_front(const StudyContents& contents) {
+  const auto found =
+      std::find_if(contents.stages.rbegin(), contents.stages.rend(), std::mem_fn(&StageRecord::has_front));
+  return found == contents.stages.rend() ? nullptr : &*found;
 }
 
 std::vector<StartDesign> on_front(const Study& study, const StudyContents& contents, std::size_t most) {
-  const std::int64_t s = stage_with_front(contents);
-  if (s < 0) return {best_so_far(study, contents)};
-  const StageRecord& stage = contents.stages[static_cast<std::size_t>(s)];
+  const StageRecord* const stage = stage_with_front(contents);
+  if (!stage) return {best_so_far(study, contents)};
+  const std::string number = std::to_string(stage - contents.stages.data() + 1);
   std::vector<StartDesign> starts;
   for (const std::size_t point :
-       spread_choice(scores_of(study.problem->objectives(), stage.table, stage.front->rows), most)) {
-    const auto design = stage.table.design(static_cast<std::size_t>(stage.front->rows[point]));
-    starts.push_back({{design.begin(), design.end()},
-                      "point " + std::to_string(point + 1) + " of the front of stage " + std::to_string(s + 1)});
+       spread_choice(scores_of(study.problem->objectives(), stage->table, stage->front->rows), most)) {
+    const auto design = stage->table.design(static_cast<std::size_t>(stage->front->rows[point]));
+    starts.push_back(
+        {{design.begin(), design.end()}, "point " + std::to_string(point + 1) + " of the front of stage " + number});
   }
   return starts;
 }
@@ -96,15 +96,12 @@ KnownFront known_front(const Study& study, const StudyContents& contents) {
   const auto& objectives = study.problem->objectives();
   if (objectives.size() < 2) return {};
   KnownFront known{std::vector<double>(objectives.size(), 1.0), {}};
-  const std::int64_t s = stage_with_front(contents);
   Scores scores{objectives.size()};
-  if (s >= 0) {
-    const StageRecord& stage = contents.stages[static_cast<std::size_t>(s)];
-    scores = scores_of(objectives, stage.table, stage.front->rows);
-    known.reference = stage.front->reference;
+  if (const StageRecord* const stage = stage_with_front(contents)) {
+    scores = scores_of(objectives, stage->table, stage->front->rows);
+    known.reference = stage->front->reference;
   } else if (contents.best.row >= 0) {
-    const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
-    scores = scores_of(objectives, stage.table, std::array{contents.best.row});
+    scores = scores_of(objectives, contents.best_stage().table, std::array{contents.best.row});
   }
   const Ranges extent = ranges_of(scores);
   for (std::size_t k = 0; k < extent.least.size(); ++k) {

@@ -43,7 +43,10 @@ StopRequest::StopRequest() {
   sigemptyset(&action.sa_mask);
   std::size_t i = 0;
   action.sa_handler = remember;
-  for (const int signal : kStopping) sigaction(signal, &action, &previous[i++]);
+  for (const int signal : kStopping) {
+    sigaction(signal, nullptr, &previous[i]);
+    if (previous[i++].sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // nohup, or a script that ignores it
+  }
   action.sa_handler = SIG_IGN;
   for (const int signal : kIgnored) sigaction(signal, &action, &previous[i++]);
 }

@@ -1,10 +1,9 @@
 #include "engine/survey/plain_voxels.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "engine/dynamics/coupling.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/share_samples.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
@@ -27,7 +26,7 @@ class Cells {
         const VoxelOptions& voxels)
       : sweep_(sweep_of(mechanism.info(), plan)),
         ranges_(mechanism.ranges(parameters)),
-        grid_(voxels.cells, voxels.box ? *voxels.box : box_of(mechanism)),
+        grid_(voxels.cells, voxels.box ? *voxels.box : box_of(mechanism, parameters, plan)),
         pose_(mechanism.info().coordinates.size()) {
     for (const int coordinate : sweep_.held) {
       const auto at = static_cast<std::size_t>(coordinate);
@@ -72,10 +71,16 @@ class Cells {
     throw std::invalid_argument("mechanism " + mechanism.info().name +
                                 " does not say where its workspace is; give a box");
   }
-  Box box_of(const Mechanism& mechanism) const {
-    if (!ranges_) no_ranges(mechanism);
+  /// What holds the workspace: the mechanism's ranges, else the box of its own voxels.
+  Box box_of(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) const {
+    if (!ranges_ && !mechanism.voxels()) no_ranges(mechanism);
     Box box;
     box.fill({0, 1});
+    if (!ranges_) {
+      const VoxelMap map = mechanism.voxels()->prepare(plan, VoxelOptions{}, {})->map(parameters);
+      for (std::size_t axis = 0; axis < 3; ++axis) box[axis] = {map.lower[axis], map.upper[axis]};
+      return box;
+    }
     for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
       box[axis] = (*ranges_)[static_cast<std::size_t>(sweep_.swept[axis])];
     return box;
@@ -90,7 +95,7 @@ class Cells {
   double measure_ = 1;
 };
 
-class PlainVoxels final : public Surveyor {
+class PlainVoxels final : public VoxelSurveyor {
  public:
   PlainVoxels(const Mechanism& mechanism, const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
       : mechanism_(mechanism),
@@ -106,7 +111,7 @@ class PlainVoxels final : public Surveyor {
   void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
     const Cells cells(mechanism_, parameters, plan_, voxels_);
     const VoxelGrid& grid = cells.grid();
-    survey.clear();
+    survey.clear(demand_.fields);
     survey.cells = grid.count() * cells.slices();
     survey.cell_volume = cells.measure();
     share_samples(static_cast<std::size_t>(cells.slices() * grid.cells[0]), survey,
@@ -120,7 +125,16 @@ class PlainVoxels final : public Surveyor {
                   });
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
-  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
+  VoxelMap map(std::span<const double> parameters) const override {
+    const Cells cells(mechanism_, parameters, plan_, voxels_);
+    VoxelMap map = cells.grid().map();
+    std::size_t cell = 0;
+    for (std::int64_t i = 0; i < map.cells[0]; ++i)
+      for (std::int64_t j = 0; j < map.cells[1]; ++j)
+        for (std::int64_t k = 0; k < map.cells[2]; ++k)
+          map.feasible[cell++] = mechanism_.inspect(parameters, cells.pose(0, i, j, k), mode_, plan_.limits).feasible;
+    return map;
+  }
 
  private:
   /// Whether the pose is feasible: then its sample is added.
@@ -128,22 +142,24 @@ class PlainVoxels final : public Surveyor {
     const PoseReport report = mechanism_.inspect(parameters, pose, mode_, plan_.limits);
     if (!report.feasible) return false;
     ++to.feasible_cells;
-    if (!demand_.conditioning && !demand_.poses && !demand_.dci && !demand_.inertia_condition) return true;
+    if (!demand_.needs_samples()) return true;
     to.weight.push_back(weight);
-    if (demand_.conditioning) to.conditioning.push_back(report.conditioning.value_or(0));
     if (demand_.poses) to.pose.push_back(pose);
-    if (demand_.dci || demand_.inertia_condition) add_inertia(parameters, pose, to);
+    for (auto& [quantity, field] : to.fields) {
+      if (quantity->needs_inertia()) continue;
+      std::array<double, kMostJoints> values;
+      quantity->of_report(report, values.data());
+      const std::size_t count = quantity->per_joint ? mechanism_.info().joints.size() : 1;
+      for (std::size_t i = 0; i < count; ++i)
+        field[i].push_back(std::isfinite(values[i]) ? values[i] : quantity->without_value);
+    }
+    if (demand_.needs_inertia()) {
+      const MotionState<double> state{pose, AxisVector<double>(pose.size())};
+      PoseDynamics<double> d;
+      mechanism_.dynamics()->equations(parameters, mode_, {&state, 1}, {&d, 1});
+      add_inertia(joint_inertia(d), to);
+    }
     return true;
-  }
-  void add_inertia(std::span<const double> parameters, const Pose<double>& pose, Survey<double>& to) const {
-    const MotionState<double> state{pose, AxisVector<double>(pose.size())};
-    PoseDynamics<double> d;
-    mechanism_.dynamics()->equations(parameters, mode_, {&state, 1}, {&d, 1});
-    const AxisMatrix<double> M_q = joint_inertia(d);
-    const AxisVector<double> indices = coupling_indices(M_q);
-    for (std::size_t joint = 0; demand_.dci && joint < indices.size(); ++joint)
-      to.dci[joint].push_back(std::isfinite(indices[joint]) ? indices[joint] : 1);
-    if (demand_.inertia_condition) to.inertia_condition.push_back(inertia_condition(M_q));
   }
 
   const Mechanism& mechanism_;
@@ -155,22 +171,9 @@ class PlainVoxels final : public Surveyor {
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> prepare_plain_voxels(const Mechanism& mechanism, const SurveyPlan& plan,
-                                                     const VoxelOptions& voxels, const Demand& demand) {
+std::unique_ptr<const VoxelSurveyor> prepare_plain_voxels(const Mechanism& mechanism, const SurveyPlan& plan,
+                                                          const VoxelOptions& voxels, const Demand& demand) {
   return std::make_unique<PlainVoxels>(mechanism, plan, voxels, demand);
-}
-
-VoxelMap plain_voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
-                         const VoxelOptions& voxels) {
-  const Cells cells(mechanism, parameters, plan, voxels);
-  VoxelMap map = cells.grid().map();
-  const std::string& mode = mechanism.info().modes.front();
-  std::size_t cell = 0;
-  for (std::int64_t i = 0; i < map.cells[0]; ++i)
-    for (std::int64_t j = 0; j < map.cells[1]; ++j)
-      for (std::int64_t k = 0; k < map.cells[2]; ++k)
-        map.feasible[cell++] = mechanism.inspect(parameters, cells.pose(0, i, j, k), mode, plan.limits).feasible;
-  return map;
 }
 
 }  // namespace pkm

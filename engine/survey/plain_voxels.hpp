@@ -10,10 +10,7 @@ namespace pkm {
 
 /// Surveys over one to three coordinates, the others held or integrated over (by their own cells, within the
 /// mechanism's ranges). Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
-std::unique_ptr<const Surveyor> prepare_plain_voxels(const Mechanism& mechanism, const SurveyPlan& plan,
-                                                     const VoxelOptions& voxels, const Demand& demand);
-
-VoxelMap plain_voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
-                         const VoxelOptions& voxels);
+std::unique_ptr<const VoxelSurveyor> prepare_plain_voxels(const Mechanism& mechanism, const SurveyPlan& plan,
+                                                          const VoxelOptions& voxels, const Demand& demand);
 
 }  // namespace pkm

@@ -20,6 +20,8 @@ void share_samples(std::size_t pieces, Survey<S>& survey, const Fill& fill) {
     return;
   }
   std::vector<Survey<S>> parts(pieces);
+  for (Survey<S>& part : parts)
+    for (const auto& field : survey.fields) part.fields[field.first];
   share_pieces(pieces, [&](std::size_t piece, std::size_t end, std::size_t worker) {
     for (; piece < end; ++piece) fill(piece, parts[piece], worker);
   });

@@ -4,36 +4,32 @@
 #include <stdexcept>
 
 #include "engine/survey/plain_voxels.hpp"
+#include "engine/survey/with_slopes.hpp"
 
 namespace pkm {
 namespace {
 
-class SurveySet final : public Surveyor, public SlopeSurveyor {
+class SurveySet final : public WithSlopes<SurveySet> {
  public:
-  explicit SurveySet(std::vector<std::unique_ptr<const Surveyor>> members) : members_(std::move(members)) {}
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    add_up(scratch, survey, [&](std::size_t k, Survey<double>& one) { members_[k]->survey(parameters, scratch, one); });
-  }
-  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
-    add_up(scratch, survey,
-           [&](std::size_t k, Survey<Dual4>& one) { members_[k]->slopes()->survey(parameters, scratch, one); });
-  }
+  SurveySet(std::vector<std::unique_ptr<const Surveyor>> members, const Demand& demand)
+      : members_(std::move(members)), fields_(demand.fields) {}
   const SlopeSurveyor* slopes() const override { return members_.front()->slopes() ? this : nullptr; }
   std::string why_no_slopes() const override { return members_.front()->why_no_slopes(); }
 
  private:
+  friend WithSlopes<SurveySet>;
   template <class S>
   struct Room {
     Survey<S> one;
   };
 
-  template <class S, class Find>
-  void add_up(Scratch& scratch, Survey<S>& survey, const Find& find) const {
+  template <class S>
+  void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
     Survey<S>& one = scratch.get<Room<S>>().one;
-    survey.clear();
+    survey.clear(fields_);
     const double share = 1.0 / static_cast<double>(members_.size());
     for (std::size_t k = 0; k < members_.size(); ++k) {
-      find(k, one);
+      run_survey(*members_[k], parameters, scratch, one);
       survey.volume += one.volume * share;
       survey.cells += one.cells;
       survey.feasible_cells += one.feasible_cells;
@@ -47,17 +43,20 @@ class SurveySet final : public Surveyor, public SlopeSurveyor {
   }
 
   std::vector<std::unique_ptr<const Surveyor>> members_;
+  std::vector<const PoseQuantity*> fields_;
 };
 
 std::unique_ptr<const Surveyor> prepare_one(const Mechanism& mechanism, const SurveyPlan& plan, const Demand& demand) {
   sweep_of(mechanism.info(), plan);  // refuses what it has no sweep for
+  const PoseQuantity* const foreign = of_cells_only(demand);
   if (const ColumnOptions* const columns = plan.columns()) {
-    if (!mechanism.columns())
-      throw std::invalid_argument("mechanism " + mechanism.info().name +
-                                  " has no column surveys; take workspace.method = \"voxels\"");
+    if (!mechanism.columns() || foreign)
+      throw std::invalid_argument("mechanism " + mechanism.info().name + " has no column surveys" +
+                                  (foreign ? " of " + std::string(foreign->meaning) : "") +
+                                  "; take workspace.method = \"voxels\"");
     return mechanism.columns()->prepare(plan, *columns, demand);
   }
-  if (mechanism.voxels()) return mechanism.voxels()->prepare(plan, *plan.voxels(), demand);
+  if (mechanism.voxels() && !foreign) return mechanism.voxels()->prepare(plan, *plan.voxels(), demand);
   return prepare_plain_voxels(mechanism, plan, *plan.voxels(), demand);
 }
 
@@ -77,18 +76,26 @@ std::vector<SurveyPlan> single_plans(const SurveyPlan& plan) {
 
 }  // namespace
 
+const PoseQuantity* of_cells_only(const Demand& demand) {
+  for (const PoseQuantity* const quantity : demand.fields)
+    if (!quantity->needs_inertia() && quantity != &kConditioning) return quantity;
+  return nullptr;
+}
+
 std::unique_ptr<const Surveyor> prepare_survey(const Mechanism& mechanism, const SurveyPlan& plan,
                                                const Demand& demand) {
   std::vector<std::unique_ptr<const Surveyor>> members;
   for (const SurveyPlan& one : single_plans(plan)) members.push_back(prepare_one(mechanism, one, demand));
   if (members.size() == 1) return std::move(members.front());
-  return std::make_unique<SurveySet>(std::move(members));
+  return std::make_unique<SurveySet>(std::move(members), demand);
 }
 
 VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) {
   sweep_of(mechanism.info(), plan);
-  if (mechanism.voxels()) return mechanism.voxels()->map(parameters, plan, *plan.voxels());
-  return plain_voxel_map(mechanism, parameters, plan, *plan.voxels());
+  const VoxelOptions& voxels = *plan.voxels();
+  const auto surveyor = mechanism.voxels() ? mechanism.voxels()->prepare(plan, voxels, {})
+                                           : prepare_plain_voxels(mechanism, plan, voxels, {});
+  return surveyor->map(parameters);
 }
 
 }  // namespace pkm

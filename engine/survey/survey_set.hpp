@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/survey/pose_quantities.hpp"
 
 namespace pkm {
 
@@ -11,6 +12,10 @@ namespace pkm {
 /// their number. Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
 std::unique_ptr<const Surveyor> prepare_survey(const Mechanism& mechanism, const SurveyPlan& plan,
                                                const Demand& demand);
+
+/// The first demanded field that mechanisms do not compute themselves, but cell by cell, so that columns have it not:
+/// made of reports of poses, other than conditioning. Null: none.
+const PoseQuantity* of_cells_only(const Demand& demand);
 
 /// The cells of a voxel plan for one design (the plan's cells; box as in a survey). It throws the same.
 VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan);

@@ -40,20 +40,6 @@ struct VoxelGrid {
   }
 };
 
-/// The plain loop: tests every cell's centre, `feasible(c0, c1, c2)` with the coordinates in the order of the axes.
-/// Slow and obviously right: what tests and benchmarks compare the counts from column intervals with. Surveys of a
-/// mechanism that has no voxels of its own are in plain_voxels.hpp.
-template <class Test>
-VoxelMap test_every_cell(const VoxelGrid& grid, const Test& feasible) {
-  VoxelMap map = grid.map();
-  std::size_t cell = 0;
-  for (std::int64_t i = 0; i < grid.cells[0]; ++i)
-    for (std::int64_t j = 0; j < grid.cells[1]; ++j)
-      for (std::int64_t k = 0; k < grid.cells[2]; ++k)
-        map.feasible[cell++] = feasible(grid.centre(0, i), grid.centre(1, j), grid.centre(2, k)) ? 1 : 0;
-  return map;
-}
-
 /// Volume, counts and box contact of a map.
 /// @param swept  number of coordinates: the axes behind them touch nothing
 inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>& survey, std::size_t swept = 3) {

@@ -1,10 +1,7 @@
 #include "experiments/app/axes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
-
-#include "engine/core/error.hpp"
 
 namespace pkm {
 
@@ -14,23 +11,11 @@ AxisVector<double> axis_vector(std::span<const double> values) {
   return vector;
 }
 
-namespace {
-
-template <class UnitOf>
-std::string each_once(const Axes& axes, const UnitOf& unit_of) {
-  std::vector<std::string> units;
-  for (const AxisInfo& axis : axes)
-    if (std::ranges::find(units, unit_of(axis)) == units.end()) units.push_back(unit_of(axis));
-  return join(units);
+std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::vector<int>& which) {
+  std::vector<std::string> names;
+  for (const int i : which) names.push_back(info.coordinates[static_cast<std::size_t>(i)].name);
+  return names;
 }
-
-}  // namespace
-
-std::string units_of(const Axes& axes, const std::string& behind) {
-  return each_once(axes, [&](const AxisInfo& axis) { return axis.unit + behind; });
-}
-
-std::string force_units_of(const Axes& joints) { return each_once(joints, force_unit); }
 
 std::string axes_text(const Axes& axes, std::span<const double> values) {
   std::vector<std::string> texts;
@@ -42,29 +27,34 @@ Json axes_json(const Axes& axes, const std::optional<AxisVector<double>>& values
   return values ? values_by_name(axes, *values) : Json();
 }
 
-Json vector_json(std::span<const double> values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(value);
-  return list;
-}
-
-Json matrix_json(const AxisMatrix<double>& matrix) {
-  Json rows = Json::array();
-  for (std::size_t i = 0; i < matrix.rows(); ++i)
-    rows.push_back(vector_json({matrix.begin() + i * matrix.cols(), matrix.cols()}));
+Json matrix_json(const std::optional<AxisMatrix<double>>& matrix) {
+  Json rows;
+  for (std::size_t i = 0; matrix && i < matrix->rows(); ++i)
+    rows.push_back(vector_json({matrix->begin() + i * matrix->cols(), matrix->cols()}));
   return rows;
 }
 
-void print_matrix(std::ostream& out, const std::string& title, const AxisMatrix<double>& matrix) {
-  out << '\n' << title << '\n';
-  for (std::size_t i = 0; i < matrix.rows(); ++i) {
+std::string matrix_text(const std::string& title, const AxisMatrix<double>& matrix) {
+  std::string text = '\n' + title + '\n';
+  for (std::size_t i = 0; i < matrix.rows(); ++i, text += '\n')
     for (std::size_t j = 0; j < matrix.cols(); ++j) {
       std::array<char, 32> cell{};
       std::snprintf(cell.data(), cell.size(), "%18.11g", matrix(i, j));
-      out << cell.data();
+      text += cell.data();
     }
-    out << '\n';
-  }
+  return text;
+}
+
+void say_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out) {
+  out.say("pose", axes_json(info.coordinates, at), axes_text(info.coordinates, at));
+  out.json["feasible"] = report.feasible;
+  out.say("assembles", report.assembles, report.assembles ? "yes" : "no: " + report.reason);
+  out.json["reason"] = text_or_null(report.reason);
+  out.head.push_back({"feasible", report.feasible ? "yes" : "no"});
+}
+
+std::string no_assembly(const std::string& mode, const PoseReport& report) {
+  return report.assembles ? "" : "the pose does not assemble in mode " + mode + ": " + report.reason;
 }
 
 }  // namespace pkm

@@ -1,6 +1,9 @@
 // Values of coordinates and joints, from the command line, as text and as JSON; matrices between them.
 #pragma once
 
+#include <algorithm>
+
+#include "engine/core/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "experiments/app/print.hpp"
 
@@ -10,20 +13,31 @@ using Axes = std::vector<AxisInfo>;
 
 AxisVector<double> axis_vector(std::span<const double> values);
 
-/// Of the force that drives a joint: "N" or "N m".
-inline std::string force_unit(const AxisInfo& joint) { return joint.turns() ? "N m" : "N"; }
-/// Each unit once, in the order of the axes, with `behind` after it: "m/s, rad/s".
-std::string units_of(const Axes& axes, const std::string& behind = "");
-std::string force_units_of(const Axes& joints);
+/// Of coordinates, by their numbers.
+std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::vector<int>& which);
+
+/// Each unit of a list once, in its order, with `behind` after it: "m/s, rad/s".
+template <class List>
+std::string units_of(const List& list, const std::string& behind = "") {
+  std::vector<std::string> units;
+  for (const auto& item : list)
+    if (std::ranges::find(units, item.unit + behind) == units.end()) units.push_back(item.unit + behind);
+  return join(units);
+}
 
 /// "x = 0.25 m, theta = 0.5 rad"
 std::string axes_text(const Axes& axes, std::span<const double> values);
 /// By name; null where they do not exist.
 Json axes_json(const Axes& axes, const std::optional<AxisVector<double>>& values);
 /// A list.
-Json vector_json(std::span<const double> values);
-/// A list of rows.
-Json matrix_json(const AxisMatrix<double>& matrix);
-void print_matrix(std::ostream& out, const std::string& title, const AxisMatrix<double>& matrix);
+inline Json vector_json(std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); }
+/// A list of rows; null where there is none.
+Json matrix_json(const std::optional<AxisMatrix<double>>& matrix);
+std::string matrix_text(const std::string& title, const AxisMatrix<double>& matrix);
+
+/// A pose, whether it assembles and whether it is feasible.
+void say_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out);
+/// Why a pose does not assemble; "" where it does.
+std::string no_assembly(const std::string& mode, const PoseReport& report);
 
 }  // namespace pkm

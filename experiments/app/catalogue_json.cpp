@@ -1,61 +1,44 @@
-#include "experiments/app/catalogue_json.hpp"
+#include "experiments/app/catalogue.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/problem/expression.hpp"
+#include "experiments/app/axes.hpp"
 
 namespace pkm {
 namespace {
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-Json word_of(OptionKind kind) {
-  switch (kind) {
-    case OptionKind::number:
-      return "number";
-    case OptionKind::integer:
-      return "integer";
-    case OptionKind::flag:
-      return "flag";
-    case OptionKind::word:
-      return "word";
-    case OptionKind::named_numbers:
-      return "named numbers";
-    case OptionKind::list_of_numbers:
-      return "list of named numbers";
-    case OptionKind::named_settings:
-      return "named settings";
-  }
-  return nullptr;
-}
+/// By OptionKind.
+constexpr std::array kKindWords = {"number",        "integer", "flag", "word", "named numbers", "list of named numbers",
+                                   "named settings"};
 
 Json options_json(const std::vector<OptionSpec>& specs) {
-  Json list = Json::array();
-  for (const auto& spec : specs) {
+  return list_json(specs, [](const OptionSpec& spec) -> Json {
     const bool number = spec.kind == OptionKind::number;
-    list.push_back({{"name", spec.name},
-                    {"kind", word_of(spec.kind)},
-                    {"unit", number && spec.unit != kUnitOfEntry ? Json(spec.unit) : Json()},
-                    {"default", spec.initial ? to_json(*spec.initial) : Json()},
-                    {"required", spec.required},
-                    {"min", finite(spec.lower)},
-                    {"max", finite(spec.upper)},
-                    {"choices", spec.choices.empty() ? Json() : Json(spec.choices)},
-                    {"meaning", spec.meaning}});
-  }
-  return list;
+    return {{"name", spec.name},
+            {"kind", kKindWords[static_cast<std::size_t>(spec.kind)]},
+            {"unit", number && spec.unit != kUnitOfEntry ? Json(spec.unit) : Json()},
+            {"default", spec.initial ? to_json(*spec.initial) : Json()},
+            {"required", spec.required},
+            {"min", finite(spec.lower)},
+            {"max", finite(spec.upper)},
+            {"choices", spec.choices.empty() ? Json() : Json(spec.choices)},
+            {"meaning", spec.meaning}};
+  });
 }
 
 /// Whether an objective or a design-level constraint serves a mechanism: with its unit, or the reason why not.
 template <class Entry>
 Json service_json(const Entry& entry, const std::vector<OptionSpec>& specs, const Mechanism& mechanism) {
-  const std::string refusal = entry.refusal(mechanism);
-  Json json = {{"name", mechanism.info().name}, {"serves", refusal.empty()}, {"unit", nullptr}, {"reason", nullptr}};
-  if (!refusal.empty()) {
-    json["reason"] = refusal;
+  const Refusal refusal = entry.refusal(mechanism);
+  Json json = {{"name", mechanism.info().name}, {"serves", !refusal}, {"unit", nullptr}, {"reason", nullptr}};
+  if (refusal) {
+    json["reason"] = *refusal;
   } else if (entry.unit && !needs_options(specs)) {  // otherwise the unit depends on what the study gives
     SurveyPlan plan;
     plan.limits = no_limits(mechanism.info());
@@ -83,13 +66,12 @@ Json limits_json(const MechanismInfo& info, const std::string& group) {
 /// What expressions may name, with the units of a survey on one plane.
 Json expression_names_json(const Mechanism& mechanism) {
   using Origin = ExpressionName::Origin;
-  Json list = Json::array();
-  for (const auto& known : expression_names(mechanism, {}))
-    list.push_back({{"name", known.name},
-                    {"unit", known.unit},
-                    {"known", known.origin == Origin::survey ? "after the survey" : "before the survey"},
-                    {"meaning", known.meaning}});
-  return list;
+  return list_json(expression_names(mechanism, {}), [](const ExpressionName& known) -> Json {
+    return {{"name", known.name},
+            {"unit", known.unit},
+            {"known", known.origin == Origin::survey ? "after the survey" : "before the survey"},
+            {"meaning", known.meaning}};
+  });
 }
 
 /// Names of the entries that serve a mechanism.
@@ -97,20 +79,15 @@ template <class List>
 Json serving(const List& entries, const Mechanism& mechanism) {
   Json names = Json::array();
   for (const auto& entry : entries)
-    if (entry.refusal(mechanism).empty()) names.push_back(entry.name);
+    if (!entry.refusal(mechanism)) names.push_back(entry.name);
   return names;
 }
 
 Json parameters_json(const std::vector<Parameter>& parameters) {
-  Json list = Json::array();
-  for (const auto& p : parameters)
-    list.push_back({{"name", p.name},
-                    {"unit", p.unit},
-                    {"default", p.nominal},
-                    {"min", p.lower},
-                    {"max", p.upper},
-                    {"meaning", p.meaning}});
-  return list;
+  return list_json(parameters, [](const Parameter& p) -> Json {
+    return {{"name", p.name}, {"unit", p.unit}, {"default", p.nominal},
+            {"min", p.lower}, {"max", p.upper}, {"meaning", p.meaning}};
+  });
 }
 
 /// What the mechanism has with other mass models than the one in force, and only with them.
@@ -130,13 +107,10 @@ Json other_parameters_json(const Mechanism& mechanism) {
 }
 
 Json sweep_json(const MechanismInfo& info, const Sweep& sweep, bool has_columns) {
-  const auto name = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)].name; };
-  Json swept = Json::array(), held = Json::array();
-  for (const int i : sweep.swept) swept.push_back(name(i));
-  for (const int i : sweep.held) held.push_back(name(i));
-  return {{"swept", swept},
-          {"columns_along", has_columns ? Json(name(sweep.column)) : Json()},
-          {"held", held.size() == 1 ? held[0] : held},
+  const std::vector<std::string> held = coordinate_names(info, sweep.held);
+  return {{"swept", coordinate_names(info, sweep.swept)},
+          {"columns_along", has_columns ? Json(coordinate_names(info, {sweep.column})[0]) : Json()},
+          {"held", held.size() == 1 ? Json(held[0]) : Json(held)},
           {"volume_unit", unit_of_product(info, sweep.swept)}};
 }
 
@@ -150,8 +124,7 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   const MechanismInfo& info = mechanism.info();
   const bool has_columns = mechanism.columns();
   Json json = {{"name", info.name}, {"meaning", info.title}, {"source", info.source}};
-  json["mass_models"] = Json::array();
-  if (const Dynamics* dynamics = mechanism.dynamics()) json["mass_models"] = dynamics->mass_models();
+  json["mass_models"] = mechanism.dynamics() ? Json(mechanism.dynamics()->mass_models()) : Json::array();
   json["masses"] = mass_model_json(mechanism);
   json["coordinates"] = names_of(info.coordinates);
   json["joints"] = names_of(info.joints);
@@ -166,8 +139,8 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
   json["other_sweeps"] = Json::array();
   for (std::size_t k = 1; k < info.sweeps.size(); ++k) {
     const Json sweep = sweep_json(info, info.sweeps[k], has_columns);
-    Json other = Json::object();
-    for (const char* key : {"held", "swept", "columns_along", "volume_unit"}) other[key] = sweep[key];
+    Json other = {{"held", sweep["held"]}};
+    other.update(sweep);
     json["other_sweeps"].push_back(other);
   }
   std::vector<int> integrated = usual.swept;
@@ -190,29 +163,27 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
 }
 
 Json objective_json(const ObjectiveEntry& entry, const Catalogues& catalogues) {
-  Json json = {{"name", entry.name},
-               {"meaning", entry.meaning},
-               {"direction", entry.direction == Direction::maximise ? "maximise" : "minimise"},
-               {"mechanisms", Json::array()},
-               {"options", options_json(entry.options)}};
-  for (const auto& mechanism : catalogues.mechanisms)
-    json["mechanisms"].push_back(service_json(entry, entry.options, *mechanism));
-  return json;
+  const auto service = [&entry](const auto& mechanism) { return service_json(entry, entry.options, *mechanism); };
+  return {{"name", entry.name},
+          {"meaning", entry.meaning},
+          {"direction", entry.direction == Direction::maximise ? "maximise" : "minimise"},
+          {"mechanisms", list_json(catalogues.mechanisms, service)},
+          {"options", options_json(entry.options)}};
 }
 
 Json constraint_json(const ConstraintEntry& entry, const Catalogues& catalogues) {
-  const char* level = entry.pose_level ? "pose" : entry.needs_survey ? "design or survey" : "design";
-  Json json = {{"name", entry.name},          {"meaning", entry.meaning},  {"level", level},
-               {"mechanisms", Json::array()}, {"options", Json::object()}, {"limits", Json::object()}};
+  const char* level = entry.pose_level() ? "pose" : entry.needs_survey ? "design or survey" : "design";
+  Json services = Json::array(), options = Json::object(), limits = Json::object();
   for (const auto& mechanism : catalogues.mechanisms) {
     const MechanismInfo& info = mechanism->info();
     const auto specs = entry.options(info);
-    json["mechanisms"].push_back(service_json(entry, specs, *mechanism));
-    if (!entry.refusal(*mechanism).empty()) continue;
-    json["options"][info.name] = options_json(specs);
-    if (entry.pose_level) json["limits"][info.name] = limits_json(info, entry.name);
+    services.push_back(service_json(entry, specs, *mechanism));
+    if (entry.refusal(*mechanism)) continue;
+    options[info.name] = options_json(specs);
+    if (entry.pose_level()) limits[info.name] = limits_json(info, entry.name);
   }
-  return json;
+  return {{"name", entry.name},     {"meaning", entry.meaning}, {"level", level},
+          {"mechanisms", services}, {"options", options},       {"limits", limits}};
 }
 
 Json capabilities_json(const Capabilities& can) {
@@ -246,20 +217,16 @@ Json mass_model_json(const Mechanism& mechanism) {
   return dynamics ? Json(dynamics->mass_model()) : Json();
 }
 
-bool needs_options(const std::vector<OptionSpec>& specs) {
-  return std::any_of(specs.begin(), specs.end(), [](const OptionSpec& spec) { return spec.required; });
-}
+bool needs_options(const std::vector<OptionSpec>& specs) { return std::ranges::any_of(specs, &OptionSpec::required); }
 
 Json catalogues_json(const Catalogues& catalogues) {
-  Json json = {{"mechanisms", Json::array()},
-               {"objectives", Json::array()},
-               {"constraints", Json::array()},
-               {"optimisers", Json::array()}};
-  for (const auto& m : catalogues.mechanisms) json["mechanisms"].push_back(mechanism_json(*m, catalogues));
-  for (const auto& entry : catalogues.objectives) json["objectives"].push_back(objective_json(entry, catalogues));
-  for (const auto& entry : catalogues.constraints) json["constraints"].push_back(constraint_json(entry, catalogues));
-  for (const auto& entry : catalogues.optimisers) json["optimisers"].push_back(optimiser_json(entry));
-  return json;
+  const auto mechanism = [&](const auto& entry) { return mechanism_json(*entry, catalogues); };
+  const auto objective = [&](const auto& entry) { return objective_json(entry, catalogues); };
+  const auto constraint = [&](const auto& entry) { return constraint_json(entry, catalogues); };
+  return {{"mechanisms", list_json(catalogues.mechanisms, mechanism)},
+          {"objectives", list_json(catalogues.objectives, objective)},
+          {"constraints", list_json(catalogues.constraints, constraint)},
+          {"optimisers", list_json(catalogues.optimisers, optimiser_json)}};
 }
 
 }  // namespace pkm

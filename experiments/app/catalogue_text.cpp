@@ -1,12 +1,15 @@
-#include "experiments/app/catalogue_text.hpp"
+#include "experiments/app/catalogue.hpp"
 
-#include <algorithm>
+#include <functional>
+#include <map>
 #include <utility>
 
 #include "engine/core/error.hpp"
 
 namespace pkm {
 namespace {
+
+constexpr std::size_t kMostSweeps = 8;  // that a table lists
 
 /// One row per object, one column per key; columns in which nothing stands are left out.
 std::vector<Row> table(const Json& list) {
@@ -21,6 +24,17 @@ std::vector<Row> table(const Json& list) {
   return rows;
 }
 
+/// "20 over 3 coordinates, 14 over 2 coordinates, 6 over 1 coordinate; --json lists them"
+std::string in_short(const Json& sweeps) {
+  std::map<std::size_t, int, std::greater<>> count;
+  for (const Json& sweep : sweeps) ++count[sweep["swept"].size()];
+  std::vector<std::string> words;
+  for (const auto& [swept, number] : count)
+    words.push_back(std::to_string(number) + " over " + std::to_string(swept) +
+                    (swept == 1 ? " coordinate" : " coordinates"));
+  return join(words) + "; --json lists them";
+}
+
 struct Details {
   std::vector<Row> head;  ///< name and value
   std::vector<std::pair<std::string, std::vector<Row>>> tables;
@@ -30,7 +44,9 @@ Details details(const Json& entry) {
   Details found;
   const auto is_list = [](const Json& value) { return value.is_array() && !value.empty() && value[0].is_object(); };
   for (const auto& [key, value] : entry.items()) {
-    if (is_list(value)) {
+    if (key == "other_sweeps" && value.size() > kMostSweeps) {
+      found.head.push_back({key, in_short(value)});
+    } else if (is_list(value)) {
       found.tables.emplace_back(key, table(value));
     } else if (value.is_object()) {
       for (const auto& [inner, content] : value.items()) {

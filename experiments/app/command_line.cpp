@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
 #include "engine/core/error.hpp"
+#include "engine/core/printable.hpp"
+#include "engine/core/unit.hpp"
+#include "experiments/app/commands.hpp"
 
 namespace pkm {
 namespace {
 
-bool takes_list(const std::string& option) {
-  static const std::vector<std::string> options = {"--set",          "--at",     "--joints", "--velocity",
-                                                   "--acceleration", "--forces", "--wrench", "--held"};
-  return std::find(options.begin(), options.end(), option) != options.end();
-}
+constexpr std::size_t kLongestComplaint = 1000;  // bytes, of CLI11's own messages
+
+/// Options that take a list of name=value.
+const std::vector<std::string> kLists = {"--set",          "--at",     "--joints", "--velocity",
+                                         "--acceleration", "--forces", "--wrench", "--held"};
 
 /// "--set a=1 b=2" becomes "--set a=1 --set b=2", for every option that takes a list of name=value.
 std::vector<std::string> spread_lists(const std::vector<std::string>& arguments) {
@@ -24,7 +25,7 @@ std::vector<std::string> spread_lists(const std::vector<std::string>& arguments)
     const bool assignment = !argument.starts_with('-') && argument.find('=') != std::string::npos;
     const bool goes_on = assignment && !option.empty() && spread.back() != option;
     if (goes_on) spread.push_back(option);
-    if (!assignment) option = takes_list(argument) ? argument : "";
+    if (!assignment) option = std::ranges::find(kLists, argument) != kLists.end() ? argument : "";
     spread.push_back(argument);
   }
   return spread;
@@ -50,7 +51,7 @@ void check_subcommand(const CLI::App& app, const std::vector<std::string>& argum
   const std::string expected = "one of " + join(known) + " (see '" + app.get_name() + " --help')";
   if (arguments.empty()) throw ConfigError({}, "no command", expected);
   const std::string& first = arguments.front();
-  if (first.starts_with('-') || std::find(known.begin(), known.end(), first) != known.end()) return;
+  if (first.starts_with('-') || std::ranges::find(known, first) != known.end()) return;
   throw ConfigError({}, "the unknown command '" + first + "'", expected, nearest_name(first, known));
 }
 
@@ -77,26 +78,31 @@ std::string with_name(std::string help, const std::string& name) {
 
 }  // namespace
 
-bool parse_command_line(CLI::App& app, const std::vector<std::string>& arguments) {
+std::int64_t parse_option(const std::string& text, const std::string& option, std::int64_t lower, std::int64_t upper) {
+  const auto number = parse_integer(text);
+  if (number && *number >= lower && *number <= upper) return *number;
+  throw ConfigError({"", 0, option}, "'" + text + "'",
+                    "a whole number from " + std::to_string(lower) + " to " + std::to_string(upper) +
+                        ", in decimal without leading zeros");
+}
+
+void parse_command_line(CLI::App& app, const std::vector<std::string>& arguments) {
   check_subcommand(app, arguments);
   auto spread = spread_lists(arguments);
-  std::reverse(spread.begin(), spread.end());  // the order that CLI11 takes them in
+  std::ranges::reverse(spread);  // the order that CLI11 takes them in
   try {
     app.parse(spread);
-    return true;
   } catch (const CLI::CallForHelp&) {
     std::cout << with_name(app.help(), app.get_name()) << '\n';
-    return false;
   } catch (const CLI::CallForVersion& version) {
     std::cout << version.what() << '\n';
-    return false;
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
     const CLI::App& where = chosen.empty() ? app : *chosen.front();
     const std::string command = chosen.empty() ? "" : where.get_name();
     if (!where.remaining().empty()) throw left_over(where, command);
-    throw ConfigError({"", 0, command}, std::string(error.what()) + " (see '" + app.get_name() + " " + command +
-                                            (command.empty() ? "" : " ") + "--help')");
+    throw ConfigError({"", 0, command}, excerpt(error.what(), kLongestComplaint) + " (see '" + app.get_name() + " " +
+                                            command + (command.empty() ? "" : " ") + "--help')");
   }
 }
 

@@ -4,14 +4,12 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include <CLI/CLI.hpp>
 
 namespace pkm {
 
-/// Parses `arguments` (without the program's name) and runs the chosen subcommand. False: help or the version was asked
-/// for and has been printed. Throws ConfigError for a command line that is wrong, naming the nearest known word.
-bool parse_command_line(CLI::App& app, const std::vector<std::string>& arguments);
+/// Parses `arguments` (without the program's name) and runs the chosen subcommand, or prints help or the version where
+/// these are asked for. Throws ConfigError for a command line that is wrong, naming the nearest known word.
+void parse_command_line(CLI::App& app, const std::vector<std::string>& arguments);
 
 }  // namespace pkm

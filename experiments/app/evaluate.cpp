@@ -1,15 +1,9 @@
 // `pkmopt evaluate`: everything that is known of one design.
 
-#include <iostream>
-#include <stdexcept>
-
-#include <CLI/CLI.hpp>
-
 #include "engine/core/team.hpp"
-#include "experiments/app/catalogue_json.hpp"
-#include "experiments/app/commands.hpp"
+#include "engine/survey/survey_set.hpp"
+#include "experiments/app/catalogue.hpp"
 #include "experiments/app/grid.hpp"
-#include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/target.hpp"
 
@@ -18,8 +12,12 @@ namespace {
 
 constexpr std::int64_t kBareCells = 40;
 
+struct EvaluateArguments : DesignArguments {
+  int threads = 0;
+};
+
 /// The problem of a bare mechanism: exact columns where it has them, else voxels, no limits, and every objective that
-/// serves it by its defaults.
+/// serves it, and these, by its defaults.
 std::shared_ptr<const DesignProblem> default_problem(const Target& target, const Catalogues& catalogues) {
   ProblemParts parts;
   parts.mechanism = target.mechanism;
@@ -27,19 +25,19 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
   parts.plan.limits = target.limits;
   if (!target.mechanism->columns()) parts.plan.method = equal_cells(target.info().sweeps.front(), kBareCells);
   for (const auto& entry : catalogues.objectives) {
-    if (needs_options(entry.options) || !entry.refusal(*target.mechanism).empty()) continue;
+    if (needs_options(entry.options) || entry.refusal(*target.mechanism)) continue;
     const Options options = default_options(entry.options);
     const EntryContext context{*target.mechanism, parts.plan, options};
-    entry.demand(context, parts.demand);
-    parts.objectives.push_back({entry.name,
-                                entry.unit(context),
-                                entry.meaning,
-                                entry.direction,
-                                entry.make(context),
-                                0,
-                                entry.reads_survey,
-                                {},
-                                {}});
+    Demand demand = parts.demand;
+    entry.demand(context, demand);
+    if (parts.plan.columns() && of_cells_only(demand)) continue;
+    parts.demand = demand;
+    parts.objectives.push_back({.name = entry.name,
+                                .unit = entry.unit(context),
+                                .meaning = entry.meaning,
+                                .direction = entry.direction,
+                                .quantity = entry.make(context),
+                                .reads_survey = entry.reads_survey});
   }
   try {
     return std::make_shared<const DesignProblem>(std::move(parts));
@@ -48,37 +46,30 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
   }
 }
 
-Json workspace_json(const DesignProblem& problem, const Survey<double>& survey) {
+void tell_workspace(const DesignProblem& problem, const Survey<double>& survey, Printout& out) {
   const SurveyPlan& plan = problem.parts().plan;
-  const bool voxels = plan.voxels();
-  Json json = {{"method", voxels ? "voxels" : "columns"},
-               {"volume", survey.volume},
-               {"unit", volume_unit(problem.parts().mechanism->info(), plan)}};
-  if (voxels) {
+  const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
+  const std::string method = plan.voxels() ? "voxels" : "columns";
+  Json json = {{"method", method}, {"volume", survey.volume}, {"unit", unit}};
+  std::vector<Row> rows = {{"method", method}, {"volume", number(survey.volume, unit)}};
+  if (plan.voxels()) {
     json["cells"] = survey.cells;
     json["feasible_cells"] = survey.feasible_cells;
     json["cell_volume"] = survey.cell_volume;
     // The default box ends where the mechanism does, so touching it says nothing.
     json["touches_box"] = plan.box() ? Json(survey.touches_box) : Json();
+    rows.push_back({"feasible cells", std::to_string(survey.feasible_cells) + " of " + std::to_string(survey.cells)});
+    rows.push_back({"cell volume", number(survey.cell_volume, unit)});
+    if (plan.box() && survey.touches_box) rows.push_back({"warning", "the feasible set touches the box: it may go on"});
   } else {
+    const bool estimated = plan.columns()->nodes[0] == 0;  // fixed nodes come without
     json["columns"] = survey.columns;
-    // Fixed nodes come without an estimate.
-    json["relative_error"] = plan.columns()->nodes[0] > 0 ? Json() : Json(survey.error);
+    json["relative_error"] = estimated ? Json(survey.error) : Json();
+    rows.push_back({"columns", std::to_string(survey.columns)});
+    if (estimated) rows.push_back({"relative error", number(survey.error)});
   }
-  return json;
-}
-
-Json report_json(const DesignProblem& problem, const DesignReport& report) {
-  const ProblemParts& parts = problem.parts();
-  const MechanismInfo& info = parts.mechanism->info();
-  return {{"mechanism", info.name},
-          {"parameters", values_by_name(info.parameters, report.parameters)},
-          {"workspace", report.status == Status::failed ? Json() : workspace_json(problem, report.survey)},
-          {"objectives", values_by_name(problem.objectives(), report.objectives)},
-          {"constraints", values_by_name(problem.margins(), report.margins)},
-          {"reports", values_by_name(problem.reports(), report.reports)},
-          {"feasible", report.status == Status::feasible},
-          {"facts", values_by_name(parts.mechanism->facts(report.parameters, parts.plan.limits))}};
+  out.json["workspace"] = json;
+  out.section("workspace", rows);
 }
 
 /// The constraints that do not hold, as "no: ...".
@@ -90,84 +81,56 @@ std::string verdict(const DesignProblem& problem, const DesignReport& report) {
   return "no: " + (report.status == Status::failed ? report.reason : join(broken) + " violated");
 }
 
-std::vector<Row> workspace_rows(const DesignProblem& problem, const Survey<double>& survey) {
-  const SurveyPlan& plan = problem.parts().plan;
-  const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
-  const bool voxels = plan.voxels();
-  std::vector<Row> rows = {{"method", voxels ? "voxels" : "columns"}, {"volume", number(survey.volume, unit)}};
-  if (voxels) {
-    rows.push_back({"feasible cells", std::to_string(survey.feasible_cells) + " of " + std::to_string(survey.cells)});
-    rows.push_back({"cell volume", number(survey.cell_volume, unit)});
-    if (plan.box() && survey.touches_box) rows.push_back({"warning", "the feasible set touches the box: it may go on"});
-  } else {
-    rows.push_back({"columns", std::to_string(survey.columns)});
-    if (plan.columns()->nodes[0] == 0) rows.push_back({"relative error", number(survey.error)});
-  }
-  return rows;
-}
-
-void print_report(const Target& target, const DesignProblem& problem, const DesignReport& report) {
-  const MechanismInfo& info = target.info();
-  std::vector<Row> head = {{"mechanism", info.name}};
-  if (target.study) head.push_back({"study", target.study->name});
-  head.push_back({"feasible", verdict(problem, report)});
-  std::cout << aligned(head);
-
-  std::vector<Row> parameters, objectives, margins, reports, facts;
-  for (std::size_t i = 0; i < info.parameters.size(); ++i)
-    parameters.push_back(
-        {info.parameters[i].name, number(report.parameters[i], info.parameters[i].unit), info.parameters[i].meaning});
-  for (std::size_t i = 0; i < report.objectives.size(); ++i) {
-    const ObjectiveInfo& o = problem.objectives()[i];
-    objectives.push_back({o.name, number(report.objectives[i], o.unit),
-                          o.direction == Direction::maximise ? "maximise" : "minimise", o.meaning});
-  }
-  for (std::size_t i = 0; i < report.margins.size(); ++i) {
-    const MarginInfo& m = problem.margins()[i];
-    margins.push_back(
-        {m.name, number(report.margins[i], m.unit), report.margins[i] >= 0 ? "holds" : "violated", m.meaning});
-  }
-  for (std::size_t i = 0; i < report.reports.size(); ++i) {
-    const ReportInfo& r = problem.reports()[i];
-    reports.push_back({r.name, number(report.reports[i], r.unit), r.meaning});
-  }
-  for (const auto& [name, value] : target.mechanism->facts(report.parameters, problem.parts().plan.limits))
-    facts.push_back({name, number(value)});
-  print_section(std::cout, "parameters", parameters);
-  if (report.status != Status::failed) print_section(std::cout, "workspace", workspace_rows(problem, report.survey));
-  print_section(std::cout, "objectives", objectives);
-  print_section(std::cout, "constraints (margins: >= 0 holds)", margins);
-  print_section(std::cout, "reports", reports);
-  print_section(std::cout, "facts", facts);
-}
-
-int evaluate(const Catalogues& catalogues, const DesignArguments& arguments, int threads) {
-  const Target target = find_target(catalogues, arguments);
+std::string evaluate(const Catalogues& catalogues, const Target& target, const EvaluateArguments& arguments,
+                     Printout& out) {
   const auto problem = target.study ? target.study->problem : default_problem(target, catalogues);
   DesignReport report;
-  with_team(threads, [&] { report = problem->report(target.parameters); });
-  if (arguments.json)
-    print_json(std::cout, report_json(*problem, report));
-  else
-    print_report(target, *problem, report);
-  if (report.status == Status::failed) throw std::runtime_error("the evaluation failed: " + report.reason);
-  return kDone;
+  with_team(arguments.threads, [&] { report = problem->report(target.parameters); });
+  const bool failed = report.status == Status::failed;
+
+  /// Values with their units and what else is to be said of them.
+  const auto tell = [&out](const std::string& key, const std::string& title, const auto& named,
+                           const std::vector<double>& values, const auto& remark) {
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      Row& row = rows.emplace_back(Row{named[i].name, number(values[i], named[i].unit)});
+      if (const std::string text = remark(named[i], values[i]); !text.empty()) row.push_back(text);
+      row.push_back(named[i].meaning);
+    }
+    out.json[key] = values_by_name(named, values);
+    out.section(title, rows);
+  };
+  const auto nothing = [](const auto&, double) { return ""; };
+  out.say("mechanism", target.info().name);
+  if (target.study) out.head.push_back({"study", target.study->name});
+  out.head.push_back({"feasible", verdict(*problem, report)});
+  tell("parameters", "parameters", target.info().parameters, report.parameters, nothing);
+  out.json["workspace"] = nullptr;
+  if (!failed) tell_workspace(*problem, report.survey, out);
+  tell("objectives", "objectives", problem->objectives(), report.objectives,
+       [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; });
+  tell("constraints", "constraints (margins: >= 0 holds)", problem->margins(), report.margins,
+       [](const MarginInfo&, double margin) { return margin >= 0 ? "holds" : "violated"; });
+  tell("reports", "reports", problem->reports(), report.reports, nothing);
+  out.json["feasible"] = report.status == Status::feasible;
+  const NamedValues facts = target.mechanism->facts(report.parameters, problem->parts().plan.limits);
+  out.json["facts"] = values_by_name(facts);
+  out.section("facts", rows_of(facts));
+  return failed ? "the evaluation failed: " + report.reason : "";
 }
 
 }  // namespace
 
 void add_evaluate(CLI::App& app, Session& session) {
-  const auto arguments = std::make_shared<DesignArguments>();
-  CLI::App* command = app.add_subcommand("evaluate", "One design: all objectives, margins and the workspace.");
-  add_design_arguments(*command, *arguments);
-  command->footer(
+  const auto [command, arguments] = add_design_command<EvaluateArguments>(
+      app, session, "evaluate", "One design: all objectives, margins and the workspace.",
       "A study is evaluated as it says, at its baseline, else at its parameters. A bare mechanism is surveyed by\n"
       "exact columns without limits, for every objective that serves it. An infeasible design is no error.\n"
-      "Example: pkmopt evaluate experiments/4ppa-2par/paper-problem.toml --set a=0.3,b=1 --json");
-  const auto threads = std::make_shared<int>(0);
-  add_threads(*command, *threads);
-  command->callback(
-      [&session, arguments, threads] { session.exit_code = evaluate(session.catalogues, *arguments, *threads); });
+      "Example: pkmopt evaluate experiments/4ppa-2par/paper-problem.toml --set a=0.3,b=1 --json",
+      [&session](const Target& target, const EvaluateArguments& given, Printout& out) {
+        return evaluate(session.catalogues, target, given, out);
+      });
+  add_threads(command, arguments.threads);
 }
 
 }  // namespace pkm

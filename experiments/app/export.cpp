@@ -3,13 +3,10 @@
 #include <filesystem>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
 #include "engine/core/team.hpp"
 #include "engine/report/study_tables.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
-#include "experiments/app/commands.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
@@ -25,10 +22,7 @@ std::string path_of(const std::string& folder, const NamedTable& table) {
   return (std::filesystem::path(folder) / table.file_name).string();
 }
 
-/// Working mode of the coupling indices that the study asks for.
-std::string mode_of(const Target& target) { return target.study->problem->parts().demand.mode; }
-
-int export_study(const Catalogues& catalogues, const ExportArguments& arguments) {
+void export_study(const Catalogues& catalogues, const ExportArguments& arguments) {
   if (!arguments.any() && arguments.csv.empty())
     throw ConfigError({"", 0, "export"}, "nothing to write", "at least one of --vtk, --csv, --stl");
   if (const char* const option = given_option(arguments.choice); option && !arguments.any())
@@ -42,39 +36,40 @@ int export_study(const Catalogues& catalogues, const ExportArguments& arguments)
   std::optional<Target> target;
   if (arguments.any()) {
     target = find_target(catalogues, arguments);
+    expect_few_cells(target->plan());
     const auto more = files_of(arguments, *target);
     files.insert(files.end(), more.begin(), more.end());
   }
-  refuse_existing(files, arguments.force);
+  const Existing existing = if_forced(arguments.force);
+  check_outputs(files, inputs_of(arguments), existing);
 
   if (!tables.empty()) make_folder(arguments.csv);
-  for (const NamedTable& table : tables) replace_file(path_of(arguments.csv, table), table.table.text());
+  for (const NamedTable& table : tables) write_file(path_of(arguments.csv, table), table.table.text(), existing);
   if (target)
     with_team(arguments.threads, [&] {
-      write_workspace(arguments, *target, fields_of(*target, target->study->problem->parts().plan, mode_of(*target)));
+      const std::string& mode = target->study->problem->parts().demand.mode;  // of the indices that it asks for
+      write_workspace(arguments, *target, fields_of(*target, target->plan(), mode));
     });
   if (contents.state != StudyState::finished)
     std::cout << "the study is " << words(contents.state) << ": what it has recorded is exported\n";
   if (target) std::cout << "workspace of " << target->words << '\n';
   for (const std::string& file : files) std::cout << "wrote " << file << '\n';
-  return kDone;
 }
 
 }  // namespace
 
 void add_export(CLI::App& app, Session& session) {
-  const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "What a study found, as tables and as files for ParaView and CAD.");
-  command->add_option("file", arguments->from, "The study file")->required()->type_name("F.h5");
-  add_workspace_outputs(*command, *arguments);
-  command->add_option("--csv", arguments->csv, "Write the study's tables into this folder")->type_name("DIR");
-  add_choice_options(*command, arguments->choice);
-  add_threads(*command, arguments->threads);
-  command->footer(
+  const auto [command, arguments] = add_command<ExportArguments>(
+      app, "export", "What a study found, as tables and as files for ParaView and CAD.",
       "The workspace is evaluated anew, as the study in the file says, for the best design (of a trade-off the\n"
       "compromise) unless another is named. 'pkmopt workspace --from F.h5' does so on other cells.\n"
-      "Example: pkmopt export paper-problem.h5 --vtk best.vtkhdf --csv tables --stl .");
-  command->callback([&session, arguments] { session.exit_code = export_study(session.catalogues, *arguments); });
+      "Example: pkmopt export paper-problem.h5 --vtk best.vtkhdf --csv tables --stl .",
+      [&session](const ExportArguments& given) { export_study(session.catalogues, given); });
+  add_option(command, "file F.h5", arguments.from, "The study file")->required();
+  add_workspace_outputs(command, arguments);
+  add_option(command, "--csv DIR", arguments.csv, "Write the study's tables into this folder");
+  add_choice_options(command, arguments.choice);
+  add_threads(command, arguments.threads);
 }
 
 }  // namespace pkm

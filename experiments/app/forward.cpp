@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <stdexcept>
 
-#include <CLI/CLI.hpp>
-
+#include "engine/model/singular.hpp"
 #include "engine/setup/assignments.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/commands.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -18,155 +14,106 @@ namespace {
 struct ForwardArguments : DesignArguments {
   std::vector<std::string> joints, speeds, accelerations;
   bool all = false;
+
+  bool moves() const { return !(speeds.empty() && accelerations.empty()); }
 };
 
-/// Motion of the platform in one assembly mode.
-struct PlatformMotion {
-  AxisVector<double> velocity, acceleration;
-};
+/// Velocity and acceleration of the joints or of the platform.
+using Rates = std::array<AxisVector<double>, 2>;
 
-/// An assembly mode and its motion, where one is asked for and it is not singular.
-struct Solution {
-  AssemblyMode assembly;
-  std::optional<PlatformMotion> motion;
-};
-
-/// What the joints do beside where they are.
-struct JointMotion {
-  bool given = false;
-  AxisVector<double> speeds, accelerations;
-};
-
-JointMotion joint_motion(const Mechanism& mechanism, const ForwardArguments& arguments) {
+Rates joint_rates(const Mechanism& mechanism, const ForwardArguments& arguments) {
   const MechanismInfo& info = mechanism.info();
-  JointMotion motion;
-  motion.given = !(arguments.speeds.empty() && arguments.accelerations.empty());
-  if (motion.given && !mechanism.velocities())
+  if (arguments.moves() && !mechanism.velocities())
     throw ConfigError({}, "mechanism " + info.name + " has no influence coefficients, so no speeds of the platform");
-  if (motion.given && info.joints.size() != info.coordinates.size())
+  if (arguments.moves() && info.joints.size() != info.coordinates.size())
     throw ConfigError({}, "mechanism " + info.name +
                               " has not as many joints as coordinates: their speeds do not give "
                               "those of the platform");
-  motion.speeds = axis_vector(parse_some_assignments(arguments.speeds, "--speeds", assignable_joint_rates(info, "s")));
-  motion.accelerations = axis_vector(
-      parse_some_assignments(arguments.accelerations, "--accelerations", assignable_joint_rates(info, "s^2")));
-  return motion;
+  const auto rates = [&](const std::vector<std::string>& lists, const char* option, const char* per) {
+    return axis_vector(parse_some_assignments(lists, option, assignable_axes(info.joints, per)));
+  };
+  return {rates(arguments.speeds, "--speeds", "s"), rates(arguments.accelerations, "--accelerations", "s^2")};
 }
 
-std::optional<PlatformMotion> platform_motion(const Target& target, const AssemblyMode& assembly,
-                                              const JointMotion& joints) {
+/// Absent where the assembly mode is singular.
+std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& assembly, const Rates& joints) {
   const auto& modes = target.info().modes;
-  if (!joints.given) return std::nullopt;
   const std::string mode = assembly.working_mode.empty() ? modes.front() : assembly.working_mode;
-  if (std::find(modes.begin(), modes.end(), mode) == modes.end()) return std::nullopt;  // between two, a limb singular
+  if (std::ranges::find(modes, mode) == modes.end()) return std::nullopt;  // between two, a limb singular
   const auto influence = target.mechanism->velocities()->influence(target.parameters, assembly.pose, mode);
-  if (!influence) return std::nullopt;
+  if (!influence || is_singular(influence->G)) return std::nullopt;
   const Influence<double> back = reversed(*influence);
-  const PlatformMotion motion{back.G * joints.speeds, accelerations(back, joints.speeds, joints.accelerations)};
-  for (const auto* part : {&motion.velocity, &motion.acceleration})
-    for (const double value : *part)
+  const Rates rates{back.G * joints[0], accelerations(back, joints[0], joints[1])};
+  for (const auto& part : rates)
+    for (const double value : part)
       if (!std::isfinite(value)) return std::nullopt;
-  return motion;
+  return rates;
 }
 
-Json poses_json(const Target& target, const AxisVector<double>& joints, const JointMotion& motion,
-                const ForwardStatus& status, const std::vector<Solution>& solutions) {
+std::string forward(const Target& target, const ForwardArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
+  const Axes& coordinates = info.coordinates;
+  const ForwardKinematics& kinematics = needed(target.mechanism->forward(), "forward", "forward kinematics", info);
+  const auto joints = axis_vector(parse_all_assignments(arguments.joints, "--joints", assignable_axes(info.joints)));
+  const Rates rates = joint_rates(*target.mechanism, arguments);
+  const auto modes = kinematics.assemblies(target.parameters, joints);
+  const ForwardStatus status = kinematics.status(target.parameters, joints);
+
   Json poses = Json::array();
-  for (const auto& [assembly, platform] : solutions) {
-    Json pose = values_by_name(info.coordinates, assembly.pose);
+  std::vector<Row> rows = {{}}, motions = {{"mode"}};
+  for (const AxisInfo& axis : coordinates) rows[0].push_back(axis.name + " [" + axis.unit + "]");
+  rows[0].push_back("mode");
+  for (const char* of : {" speed", " acceleration"})
+    for (const AxisInfo& axis : coordinates) motions[0].push_back(axis.name + of);
+  for (const AssemblyMode& assembly : modes) {
+    if (!arguments.all && !assembly.usual) continue;
+    Json pose = values_by_name(coordinates, assembly.pose);
     pose["mode"] = assembly.mode;
     pose["working_mode"] = text_or_null(assembly.working_mode);
     pose["double_roots"] = assembly.double_roots;
-    if (motion.given) {
-      pose["velocity"] = platform ? values_by_name(info.coordinates, platform->velocity) : Json();
-      pose["acceleration"] = platform ? values_by_name(info.coordinates, platform->acceleration) : Json();
+    Row& row = rows.emplace_back();
+    for (const double value : assembly.pose) row.push_back(number(value));
+    row.push_back(assembly.mode);
+    for (const auto& root : assembly.double_roots) row.push_back("double in " + root);
+    if (arguments.moves()) {
+      Row& motion = motions.emplace_back(Row{assembly.mode});
+      const auto platform = platform_rates(target, assembly, rates);
+      pose["velocity"] = platform ? values_by_name(coordinates, (*platform)[0]) : Json();
+      pose["acceleration"] = platform ? values_by_name(coordinates, (*platform)[1]) : Json();
+      if (!platform) motion.push_back("singular");
+      for (std::size_t k = 0; platform && k < platform->size(); ++k)
+        for (const double value : (*platform)[k]) motion.push_back(number(value));
     }
     poses.push_back(pose);
   }
-  return {{"mechanism", info.name},
-          {"joints", values_by_name(info.joints, joints)},
-          {"status", status.word},
-          {"reason", text_or_null(status.reason)},
-          {"poses", poses}};
-}
-
-void print_motions(const MechanismInfo& info, const std::vector<Solution>& solutions) {
-  std::vector<Row> rows = {{"mode"}};
-  for (const char* of : {" speed", " acceleration"})
-    for (const AxisInfo& axis : info.coordinates) rows[0].push_back(axis.name + of);
-  for (const auto& [assembly, platform] : solutions) {
-    rows.push_back({assembly.mode});
-    if (!platform) {
-      rows.back().push_back("singular");
-      continue;
-    }
-    for (const auto* part : {&platform->velocity, &platform->acceleration})
-      for (const double value : *part) rows.back().push_back(number(value));
-  }
-  print_section(
-      std::cout,
-      "motion of the platform (" + units_of(info.coordinates, "/s") + ", " + units_of(info.coordinates, "/s^2") + ")",
-      rows);
-}
-
-void print_poses(const MechanismInfo& info, const AxisVector<double>& joints, const std::vector<Solution>& solutions) {
-  std::cout << aligned({{"mechanism", info.name},
-                        {"joints", axes_text(info.joints, joints)},
-                        {"poses", std::to_string(solutions.size())}});
-  if (solutions.empty()) return;
-  std::vector<Row> rows = {{}};
-  for (const AxisInfo& axis : info.coordinates) rows[0].push_back(axis.name + " [" + axis.unit + "]");
-  rows[0].push_back("mode");
-  for (const auto& [assembly, platform] : solutions) {
-    rows.emplace_back();
-    for (const double value : assembly.pose) rows.back().push_back(number(value));
-    rows.back().push_back(assembly.mode);
-    for (const auto& root : assembly.double_roots) rows.back().push_back("double in " + root);
-  }
-  std::cout << '\n';
-  std::cout << aligned(rows);
-}
-
-int forward(const Catalogues& catalogues, const ForwardArguments& arguments) {
-  const Target target = find_target(catalogues, arguments);
-  const MechanismInfo& info = target.info();
-  const ForwardKinematics& kinematics = needed(target.mechanism->forward(), "forward", "forward kinematics", info);
-  const auto joints = axis_vector(parse_all_assignments(arguments.joints, "--joints", assignable_joints(info)));
-  const JointMotion motion = joint_motion(*target.mechanism, arguments);
-  const auto modes = kinematics.assemblies(target.parameters, joints);
-  const std::size_t found = modes.size();
-  std::vector<Solution> solutions;
-  for (const AssemblyMode& mode : modes)
-    if (arguments.all || mode.usual) solutions.push_back({mode, platform_motion(target, mode, motion)});
-  const ForwardStatus status = kinematics.status(target.parameters, joints);
-  if (arguments.json)
-    print_json(std::cout, poses_json(target, joints, motion, status, solutions));
-  else
-    print_poses(info, joints, solutions);
-  if (motion.given && !arguments.json && !solutions.empty()) print_motions(info, solutions);
-  if (found == 0) throw std::runtime_error(status.reason);
-  if (solutions.empty())
-    throw std::runtime_error("no usual pose assembles with these joint values; --all lists " + std::to_string(found) +
-                             " others");
-  return kDone;
+  out.say("mechanism", info.name);
+  out.say("joints", values_by_name(info.joints, joints), axes_text(info.joints, joints));
+  out.json["status"] = status.word;
+  out.json["reason"] = text_or_null(status.reason);
+  out.say("poses", poses, std::to_string(poses.size()));
+  if (!poses.empty()) out.text += '\n' + aligned(rows);
+  if (!poses.empty() && arguments.moves())
+    out.section("motion of the platform (" + units_of(coordinates, "/s") + ", " + units_of(coordinates, "/s^2") + ")",
+                motions);
+  return modes.empty()   ? status.reason
+         : poses.empty() ? "no usual pose assembles with these joint values; --all lists " +
+                               std::to_string(modes.size()) + " others"
+                         : "";
 }
 
 }  // namespace
 
 void add_forward(CLI::App& app, Session& session) {
-  const auto arguments = std::make_shared<ForwardArguments>();
-  CLI::App* command = app.add_subcommand("forward", "Given joint values: the pose of every assembly mode.");
-  add_design_arguments(*command, *arguments);
-  add_list_option(*command, "--joints", arguments->joints, "Every joint's value", true);
-  add_list_option(*command, "--speeds", arguments->speeds, "Speeds of the joints: gives the platform's", false);
-  add_list_option(*command, "--accelerations", arguments->accelerations,
-                  "Accelerations of the joints: gives the platform's", false);
-  command->add_flag("--all", arguments->all, "The unusual assembly modes too");
-  command->footer(
+  const auto [command, arguments] = add_design_command<ForwardArguments>(
+      app, session, "forward", "Given joint values: the pose of every assembly mode.",
       "Limits are not looked at. Exit code 1 when no pose assembles.\n"
-      "Example: pkmopt forward 4ppa-2par --joints q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846");
-  command->callback([&session, arguments] { session.exit_code = forward(session.catalogues, *arguments); });
+      "Example: pkmopt forward 4ppa-2par --joints q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846",
+      forward);
+  add_list_option(command, "--joints", arguments.joints, "Every joint's value")->required();
+  add_list_option(command, "--speeds", arguments.speeds, "Speeds of the joints: gives the platform's");
+  add_list_option(command, "--accelerations", arguments.accelerations,
+                  "Accelerations of the joints: gives the platform's");
+  command.add_flag("--all", arguments.all, "The unusual assembly modes too");
 }
 
 }  // namespace pkm

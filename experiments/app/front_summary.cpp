@@ -1,10 +1,9 @@
-#include "experiments/app/front_summary.hpp"
+#include "experiments/app/stage_summary.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/core/error.hpp"
-#include "engine/core/text_table.hpp"
 #include "engine/math/hypervolume.hpp"
 #include "engine/problem/front.hpp"
 
@@ -14,10 +13,6 @@ namespace {
 constexpr std::size_t kAll = 20, kShown = 10;  // short lists are shown whole, longer fronts by a choice and their knees
 
 std::string six(double value) { return formatted("%.6g", value); }
-
-Scores scores(const ProblemRecord& problem, const StageRecord& stage) {
-  return scores_of(problem.objectives, stage.table, stage.front->rows);
-}
 
 /// What is special about each point: "best conditioning", "knee", "compromise".
 std::vector<std::vector<std::string>> marks(const ProblemRecord& problem, const Scores& front) {
@@ -55,20 +50,16 @@ std::string headline(const ProblemRecord& problem, const StageRecord& stage, con
 
 std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
   if (!stage.front || stage.front->rows.empty()) return "";
-  const Scores front = scores(problem, stage);
+  const Scores front = scores_of(problem.objectives, stage.table, stage.front->rows);
   const auto mark = marks(problem, front);
-  std::vector<std::size_t> shown = spread_choice(front, front.size() <= kAll ? kAll : kShown);
-  for (std::size_t i = 0; i < mark.size(); ++i)
-    if (!mark[i].empty()) shown.push_back(i);
-  std::sort(shown.begin(), shown.end());
-  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
-
-  std::vector<std::vector<std::string>> rows = {{"  point"}};
+  const std::vector<std::size_t> spread = spread_choice(front, front.size() <= kAll ? kAll : kShown);
+  std::vector<Row> rows = {{"  point"}};
   for (const auto& v : problem.variables) rows[0].push_back(v.name);
   for (const auto& o : problem.objectives) rows[0].push_back(o.name);
-  for (const std::size_t i : shown) {
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    if (mark[i].empty() && std::ranges::find(spread, i) == spread.end()) continue;
     const auto row = static_cast<std::size_t>(stage.front->rows[i]);
-    auto& cells = rows.emplace_back(std::vector<std::string>{"  " + std::to_string(i + 1)});
+    Row& cells = rows.emplace_back(Row{"  " + std::to_string(i + 1)});
     for (const double x : stage.table.design(row)) cells.push_back(six(x));
     for (const double f : stage.table.objective_row(row)) cells.push_back(six(f));
     cells.push_back(join(mark[i]));
@@ -76,9 +67,16 @@ std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
   return headline(problem, stage, front) + aligned(rows);
 }
 
+Json row_json(const ProblemRecord& problem, const EvaluationTable& table, std::size_t row) {
+  return {{"design", values_by_name(problem.variables, table.design(row))},
+          {"objectives", values_by_name(problem.objectives, table.objective_row(row))},
+          {"constraints", values_by_name(problem.margins, table.margin_row(row))},
+          {"reports", values_by_name(problem.reports, table.report_row(row))}};
+}
+
 Json front_json(const ProblemRecord& problem, const StageRecord& stage) {
   const FrontRecord& record = *stage.front;
-  const Scores front = scores(problem, stage);
+  const Scores front = scores_of(problem.objectives, stage.table, stage.front->rows);
   Json json = {
       {"reference", record.reference.empty() ? Json() : values_by_name(problem.objectives, record.reference)},
       {"hypervolume", Json()},
@@ -89,35 +87,12 @@ Json front_json(const ProblemRecord& problem, const StageRecord& stage) {
   if (std::isfinite(volume)) json["hypervolume"] = volume;
   const auto mark = marks(problem, front);
   for (std::size_t i = 0; i < front.size(); ++i) {
-    const auto row = static_cast<std::size_t>(record.rows[i]);
-    json["points"].push_back({{"point", i + 1},
-                              {"evaluation", row},
-                              {"design", values_by_name(problem.variables, stage.table.design(row))},
-                              {"objectives", values_by_name(problem.objectives, stage.table.objective_row(row))},
-                              {"constraints", values_by_name(problem.margins, stage.table.margin_row(row))},
-                              {"reports", values_by_name(problem.reports, stage.table.report_row(row))},
-                              {"marks", mark[i]}});
+    Json point = {{"point", i + 1}, {"evaluation", record.rows[i]}};
+    point.update(row_json(problem, stage.table, static_cast<std::size_t>(record.rows[i])));
+    point["marks"] = mark[i];
+    json["points"].push_back(point);
   }
   return json;
-}
-
-std::string front_starts_text(const ProblemRecord& problem, const StageRecord& stage) {
-  std::vector<std::vector<std::string>> rows = {{"  start", "evaluations"}};
-  for (const auto& o : problem.objectives) rows[0].push_back(o.name);
-  rows[0].insert(rows[0].end(), {"optimality", "ended"});
-  for (std::size_t s = 0; s < std::min(stage.starts.size(), kAll); ++s) {
-    const StartOutcome& start = stage.starts[s];
-    auto& cells = rows.emplace_back(std::vector<std::string>{"  " + start.origin, std::to_string(start.rows)});
-    const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);
-    const auto from = stage.table.objective_row(first), to = stage.table.objective_row(end);
-    for (std::size_t k = 0; k < from.size(); ++k)
-      cells.push_back(stage.table.status[first] == Status::failed ? "failed" : six(from[k]) + " -> " + six(to[k]));
-    cells.insert(cells.end(), {formatted("%.1e", start.optimality),
-                               start.stop + (start.message.empty() ? "" : " (" + start.message + ")") +
-                                   (stage.table.status[end] == Status::feasible ? "" : ", infeasible")});
-  }
-  return aligned(rows) +
-         (stage.starts.size() > kAll ? "  and " + std::to_string(stage.starts.size() - kAll) + " more\n" : "");
 }
 
 }  // namespace pkm

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <CLI/CLI.hpp>
-
 #include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
 #include "engine/setup/assignments.hpp"
@@ -12,11 +10,11 @@
 namespace pkm {
 
 void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t usual) {
-  command.add_option("--box", arguments.box, "Ranges of the swept coordinates; default: all that the design reaches")
-      ->type_name("NAME=FROM:TO")
+  add_option(command, "--box NAME=FROM:TO", arguments.box,
+             "Ranges of the swept coordinates; default: all that the design reaches")
       ->allow_extra_args(false);
   add_list_option(command, "--cells", arguments.cells,
-                  "Cells along each of them; default: the study's, else " + std::to_string(usual), false);
+                  "Cells along each of them; default: the study's, else " + std::to_string(usual));
 }
 
 VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells) {

@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/mechanism/mechanism.hpp"
+#include <CLI/CLI.hpp>
 
-namespace CLI {
-class App;
-}
+#include "engine/mechanism/mechanism.hpp"
 
 namespace pkm {
 

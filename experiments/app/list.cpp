@@ -2,12 +2,8 @@
 
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
-#include "experiments/app/catalogue_json.hpp"
-#include "experiments/app/catalogue_text.hpp"
+#include "experiments/app/catalogue.hpp"
 #include "experiments/app/commands.hpp"
-#include "experiments/app/print.hpp"
 
 namespace pkm {
 namespace {
@@ -71,46 +67,39 @@ Json find_anywhere(const Json& catalogues, const std::string& word) {
   throw ConfigError({"", 0, "list"}, "the unknown word '" + word + "'", expected, nearest_name(word, known));
 }
 
-int list(const Session& session, const ListArguments& arguments) {
+void list(const Session& session, const ListArguments& arguments) {
   const auto& [kind, name, json, markdown] = arguments;
   const Json all = catalogues_json(session.catalogues);
   if (markdown) {
     std::cout << catalogues_markdown(all);
-    return kDone;
-  }
-  if (kind.empty() || (name.empty() && all.contains(kind))) {
+  } else if (kind.empty() || (name.empty() && all.contains(kind))) {
     const Json listed = kind.empty() ? all : Json{{kind, all[kind]}};
-    json ? print_json(std::cout, listed) : print_overview(listed, session.program);
+    json ? print_json(listed) : print_overview(listed, session.program);
   } else {
     Json found = Json::object();
     if (all.contains(kind))
       found[kind] = find_entry(all[kind], kind, name);
     else
       found = find_anywhere(all, kind);
-    json ? print_json(std::cout, found.size() == 1 ? found.front() : found) : print_found(found);
+    json ? print_json(found.size() == 1 ? found.front() : found) : print_found(found);
   }
-  return kDone;
 }
 
 }  // namespace
 
 void add_list(CLI::App& app, Session& session) {
-  const auto arguments = std::make_shared<ListArguments>();
-  CLI::App* command =
-      app.add_subcommand("list", "What a study may name: mechanisms, objectives, constraints, optimisers.");
-  command->add_option("KIND", arguments->kind, "mechanisms, objectives, constraints or optimisers (default: all)")
-      ->type_name("");
+  const auto [command, arguments] = add_command<ListArguments>(
+      app, "list", "What a study may name: mechanisms, objectives, constraints, optimisers.",
+      "Example: pkmopt list mechanisms 4ppa-2par", [&session](const ListArguments& given) { list(session, given); });
+  add_option(command, "KIND", arguments.kind, "mechanisms, objectives, constraints or optimisers (default: all)");
+  add_option(command, "NAME", arguments.name,
+             "One entry, with everything known of it: parameters, limits, options, ...");
+  command.add_flag("--json", arguments.json, "Print one JSON object, with everything known of each entry");
   command
-      ->add_option("NAME", arguments->name, "One entry, with everything known of it: parameters, limits, options, ...")
-      ->type_name("");
-  command->add_flag("--json", arguments->json, "Print one JSON object, with everything known of each entry");
-  command
-      ->add_flag("--markdown", arguments->markdown,
-                 "Print everything known of all entries, as it stands in experiments/catalogue.md")
+      .add_flag("--markdown", arguments.markdown,
+                "Print everything known of all entries, as it stands in experiments/catalogue.md")
       ->excludes("KIND")
       ->excludes("--json");
-  command->footer("Example: pkmopt list mechanisms 4ppa-2par");
-  command->callback([&session, arguments] { session.exit_code = list(session, *arguments); });
 }
 
 }  // namespace pkm

@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
+
+#include "engine/core/printable.hpp"
 
 namespace pkm {
 
@@ -20,14 +23,28 @@ std::string number(double value, std::string_view unit) {
   return text;
 }
 
-void print_section(std::ostream& out, std::string_view title, const std::vector<Row>& rows) {
-  if (rows.empty()) return;
-  out << '\n' << title << '\n' << aligned(rows);
+void print_json(const Json& json) {
+  // Names and file names may hold bytes that are no UTF-8; JSON may not. What would steer a terminal is within strings,
+  // where JSON has escapes of its own.
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  const bool plain = printable(text, "\n") == text;
+  std::cout << (plain ? text : json.dump(2, ' ', true, Json::error_handler_t::replace)) << '\n';
 }
 
-void print_json(std::ostream& out, const Json& json) {
-  // Names and file names may hold bytes that are no UTF-8; JSON may not.
-  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+void Printout::say(const std::string& name, const Json& value, const std::string& words) {
+  json[name] = value;
+  head.push_back({name, words});
+}
+
+void Printout::section(const std::string& title, const std::vector<Row>& rows) {
+  if (!rows.empty()) text += '\n' + title + '\n' + aligned(rows);
+}
+
+void Printout::print() const {
+  if (for_programs)
+    print_json(json);
+  else
+    std::cout << aligned(head) << text;
 }
 
 Json values_by_name(const std::vector<std::pair<std::string, double>>& values) {
@@ -36,21 +53,23 @@ Json values_by_name(const std::vector<std::pair<std::string, double>>& values) {
   return object;
 }
 
+std::vector<Row> rows_of(const std::vector<std::pair<std::string, double>>& values) {
+  std::vector<Row> rows;
+  for (const auto& [name, value] : values) rows.push_back({name, number(value)});
+  return rows;
+}
+
 Json to_json(const OptionValue& value) {
-  if (const auto* settings = std::get_if<NamedSettings>(&value)) {
-    Json json = Json::object();
-    for (const auto& [name, setting] : *settings)
-      json[name] = std::visit([](const auto& v) { return Json(v); }, setting);
-    return json;
-  }
-  return std::visit(
-      [](const auto& v) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, NamedSettings>)
-          return Json();
-        else
-          return Json(v);
-      },
-      value);
+  const auto convert = [](const auto& held) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(held)>, NamedSettings>) {
+      Json json = Json::object();
+      for (const auto& [name, setting] : held) json[name] = std::visit([](const auto& v) { return Json(v); }, setting);
+      return json;
+    } else {
+      return Json(held);
+    }
+  };
+  return std::visit(convert, value);
 }
 
 }  // namespace pkm

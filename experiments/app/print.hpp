@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,10 +27,22 @@ std::string formatted(const char* format, double value);
 /// Ten significant digits; "-" for NaN.
 inline std::string digits(double value) { return formatted("%.10g", value); }
 
-/// Aligned rows under a title on a line of its own; nothing when there are none.
-void print_section(std::ostream& out, std::string_view title, const std::vector<Row>& rows);
+void print_json(const Json& json);
 
-void print_json(std::ostream& out, const Json& json);
+/// What a command tells, each thing said once: as text for people, or as one JSON object for programs.
+struct Printout {
+  bool for_programs = false;
+  std::vector<Row> head = {};  ///< what the text begins with
+  std::string text = {};       ///< what follows
+  Json json = Json::object();
+
+  void say(const std::string& name, const std::string& word) { say(name, word, word); }
+  void say(const std::string& name, const Json& value, const std::string& words);
+  /// Aligned rows under a title on a line of its own; nothing when there are none.
+  void section(const std::string& title, const std::vector<Row>& rows);
+  void print() const;
+};
+
 /// Null for no text, or for no value.
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 template <class T>
@@ -39,6 +50,14 @@ Json json_or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json();
 }
 Json to_json(const OptionValue& value);
+
+/// A list of what `say` makes of each thing.
+template <class List, class Say>
+Json list_json(const List& things, const Say& say) {
+  Json list = Json::array();
+  for (const auto& thing : things) list.push_back(say(thing));
+  return list;
+}
 
 /// {name: value, ...} of things with a name and their values, in one order.
 template <class Named>
@@ -48,5 +67,7 @@ Json values_by_name(const Named& named, std::span<const double> values) {
   return object;
 }
 Json values_by_name(const std::vector<std::pair<std::string, double>>& values);
+/// The same as rows of text.
+std::vector<Row> rows_of(const std::vector<std::pair<std::string, double>>& values);
 
 }  // namespace pkm

@@ -1,37 +1,40 @@
 #include "experiments/app/program.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "constraints/all.hpp"
 #include "engine/core/instruction_set.hpp"
+#include "engine/core/printable.hpp"
 #include "engine/mechanisms/all.hpp"
+#include "engine/storage/contained_reading.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/printable_stream.hpp"
 #include "experiments/app/version.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm {
 namespace {
 
-std::string version() {
-  return program_words() + "\ninstruction set: " + std::string(name_of(instruction_set())) + " of " +
-         join({kInstructionSets.begin(), kInstructionSets.end()});
-}
+/// How the program calls itself to parse a study file that may crash the parser.
+constexpr const char* kCheckFile = "--check-study-on-standard-input";
+constexpr std::size_t kLongestProgram = 40;  // bytes of its name in messages
 
 /// For comparisons: results are the same on all.
 void add_instruction_set(CLI::App& command) {
   const auto choose = [](const std::string& name) {
     const std::vector<std::string> known{kInstructionSets.begin(), kInstructionSets.end()};
-    const auto found = std::find(known.begin(), known.end(), name);
+    const auto found = std::ranges::find(known, name);
     if (found == known.end())
       throw ConfigError({"", 0, "--instruction-set"}, "'" + name + "'", "one of " + join(known),
                         nearest_name(name, known));
@@ -50,7 +53,8 @@ void add_instruction_set(CLI::App& command) {
 
 void run(const std::vector<std::string>& arguments, Session& session) {
   CLI::App app("Design-space optimisation of parallel kinematic machines.", session.program);
-  app.set_version_flag("--version", version());
+  app.set_version_flag("--version", program_words() + "\ninstruction set: " + std::string(name_of(instruction_set())) +
+                                        " of " + join({kInstructionSets.begin(), kInstructionSets.end()}));
   app.get_formatter()->column_width(36);
   app.get_formatter()->label("REQUIRED", "(required)");
   app.require_subcommand(1);
@@ -58,23 +62,12 @@ void run(const std::vector<std::string>& arguments, Session& session) {
       "'pkmopt COMMAND --help' tells more of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
       "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint to go on from.\n"
       "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml");
-  add_run(app, session);
-  add_resume(app, session);
-  add_check(app, session);
-  add_evaluate(app, session);
-  add_pose(app, session);
-  add_forward(app, session);
-  add_dynamics(app, session);
-  add_coupling(app, session);
-  add_trajectory(app, session);
-  add_simulate(app, session);
-  add_workspace(app, session);
-  add_show(app, session);
-  add_report(app, session);
-  add_export(app, session);
-  add_list(app, session);
+  for (AddCommand* const add :
+       {add_run, add_resume, add_check, add_evaluate, add_pose, add_forward, add_dynamics, add_coupling, add_trajectory,
+        add_simulate, add_workspace, add_show, add_report, add_export, add_list})
+    add(app, session);
   for (const char* name : {"run", "resume", "evaluate", "coupling"}) add_instruction_set(*app.get_subcommand(name));
-  if (!parse_command_line(app, arguments)) return;
+  parse_command_line(app, arguments);
   std::cout.flush();
   if (!std::cout) throw std::runtime_error("the results cannot be written to the standard output");
 }
@@ -84,12 +77,16 @@ void run(const std::vector<std::string>& arguments, Session& session) {
 Catalogues all_catalogues() { return {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()}; }
 
 int program_main(int argc, char** argv, const Catalogues& catalogues) {
+  if (argc == 2 && std::string_view(argv[1]) == kCheckFile) return check_standard_input();
+  use_file_checker({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   Session session{catalogues, name.empty() ? "pkmopt" : name};
+  const PrintableStream out(std::cout), err(std::cerr);
   const auto complain = [&session](const std::string& sentence, int exit_code) {
-    std::cerr << session.program << ": " << sentence << '\n';
+    std::cerr << excerpt(session.program, kLongestProgram) << ": " << sentence << '\n';
     return exit_code;
   };
+  std::signal(SIGXFSZ, SIG_IGN);  // so that a limit of file sizes is an error that can be told
   try {
     run({argv + std::min(argc, 1), argv + argc}, session);
     return session.exit_code;
@@ -97,8 +94,12 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
     return complain(error.what(), kBadInput);
   } catch (const std::bad_alloc&) {
     return complain("out of memory", kFailure);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain(StorageError(error.path1().string() + ": " + error.code().message()).what(), kFailure);
+  } catch (const std::system_error& error) {
+    return complain(error.code().message(), kFailure);
   } catch (const std::exception& error) {
-    return complain(error.what(), kFailure);
+    return complain(message_of(error), kFailure);
   }
 }
 

@@ -3,15 +3,10 @@
 #include <filesystem>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
 #include "engine/core/team.hpp"
 #include "engine/report/html_page.hpp"
-#include "engine/report/page_parts.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/run_study.hpp"
-#include "experiments/app/commands.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
@@ -42,37 +37,28 @@ PageStudy page_study(const std::string& file, const Session& session) {
 void report(const ReportArguments& arguments, const Session& session) {
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
-  refuse_existing({output}, arguments.force);
-  for (const std::string& file : arguments.files)
-    if (std::error_code none; std::filesystem::equivalent(file, output, none))
-      throw ConfigError({"", 0, "--output"}, output, "another file than the study's own");
+  check_outputs({output}, arguments.files, if_forced(arguments.force));
   page_parts();  // or say at once that there are none
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
   std::string page;
   with_team(arguments.threads, [&] { page = html_page(page_data(studies, program_words())); });
-  replace_file(output, page);
-  char size[32];
-  std::snprintf(size, sizeof size, "%.1f MB", 1e-6 * static_cast<double>(page.size()));
-  std::cout << output << ": " << size << '\n';
+  write_file(output, page, if_forced(arguments.force));
+  std::cout << output << ": " << formatted("%.1f MB", 1e-6 * static_cast<double>(page.size())) << '\n';
 }
 
 }  // namespace
 
 void add_report(CLI::App& app, Session& session) {
-  auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command = app.add_subcommand("report", "Writes what studies found as one HTML page with plots.");
-  command->add_option("files", arguments->files, "Study files; several are also compared")
-      ->required()
-      ->type_name("F.h5");
-  command->add_option("-o,--output", arguments->output, "The page (default: the first file's stem + .html)")
-      ->type_name("R.html");
-  command->add_flag("--force", arguments->force, "Overwrite the page if it exists");
-  add_threads(*command, arguments->threads);
-  command->footer(
+  const auto [command, arguments] = add_command<ReportArguments>(
+      app, "report", "Writes what studies found as one HTML page with plots.",
       "The page opens from disk and needs no network. What a study file does not hold is evaluated again.\n"
-      "Example: pkmopt report paper-problem.h5");
-  command->callback([arguments, &session] { report(*arguments, session); });
+      "Example: pkmopt report paper-problem.h5",
+      [&session](const ReportArguments& given) { report(given, session); });
+  add_option(command, "files F.h5", arguments.files, "Study files; several are also compared")->required();
+  add_option(command, "-o,--output R.html", arguments.output, "The page (default: the first file's stem + .html)");
+  command.add_flag("--force", arguments.force, "Overwrite the page if it exists");
+  add_threads(command, arguments.threads);
 }
 
 }  // namespace pkm

@@ -7,12 +7,9 @@
 #include <iostream>
 #include <limits>
 
-#include <CLI/CLI.hpp>
-
-#include "engine/core/text_table.hpp"
+#include "engine/core/printable.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
-#include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 
@@ -20,8 +17,7 @@ namespace pkm {
 namespace {
 
 struct RunArguments {
-  std::string study;
-  std::string output;
+  std::string study, output;
   bool resume = false, force = false;
   std::optional<std::int64_t> seed;
   int seeds = 1;
@@ -44,7 +40,7 @@ void print_estimate(const Study& study, int seeds, int threads) {
   }
   std::int64_t limit = 0;
   for (const auto& stage : study.stages) limit += stage.optimiser->evaluation_limit(problem);
-  std::cout << study.name << ": at most " << limit << " evaluations";
+  std::cout << printable(study.name) << ": at most " << limit << " evaluations";
   if (seeds > 1) std::cout << " for each of " << seeds << " seeds";
   std::cout << " of about " << duration_text(seconds) << ", together about "
             << duration_text(seconds * static_cast<double>(limit) * seeds / threads) << " on " << threads
@@ -61,10 +57,15 @@ void warn_of_box(const Study& study, const std::string& program) {
               << " touch the box of [workspace]; the workspace may be larger than what is counted\n";
 }
 
+bool exists(const std::string& file) {
+  std::error_code unseen;  // the attempt to open it tells
+  return std::filesystem::exists(file, unseen);
+}
+
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments, Session& session,
                    Progress& progress) {
   const RunOptions options = run_options(arguments.common);
-  if (arguments.resume && std::filesystem::exists(output)) {
+  if (arguments.resume && exists(output)) {
     StudyContents contents = read_study(output);
     const std::string way_out =
         "; go on with it by '" + session.program + " resume " + quoted(output) + "', or overwrite it with --force";
@@ -73,11 +74,7 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
     if (contents.seed != study.seed)
       throw StorageError(output + " holds the study with seed " + std::to_string(contents.seed) + ", not " +
                          std::to_string(study.seed) + way_out);
-    if (contents.state == StudyState::finished) {
-      RunOutcome outcome;
-      outcome.contents = std::move(contents);
-      return outcome;
-    }
+    if (contents.state == StudyState::finished) return {.contents = std::move(contents)};
     return resume_study(output, session.catalogues, {}, options, progress);
   }
   return run_study(study, output, arguments.force, options, progress);
@@ -118,43 +115,38 @@ std::optional<double> evolved_hypervolume(const Study& study, const StudyContent
 
 /// What came of the seeds: a row each, and the numbers of the spread.
 struct SeedTable {
-  explicit SeedTable(bool several_objectives)
-      : trade_off(several_objectives),
-        rows{{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}} {}
-
   bool trade_off;
   int feasible_seeds = 0;
-  std::vector<std::vector<std::string>> rows;
-  std::vector<double> best, exact, seconds;
+  std::vector<Row> rows = {{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
+  std::vector<double> best = {}, exact = {}, seconds = {};
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
-    const auto& final = contents.final;
-    const auto objective = [](const std::optional<DesignRecord>& r) { return r && !r->objectives.empty(); };
-    const bool feasible = final && objective(final->best) && final->best->status == Status::feasible;
-    const bool has_exact = feasible && !trade_off && objective(final->best_exact);
-    std::string value = feasible ? "" : "nothing feasible";
-    const auto shown = !feasible   ? std::nullopt
-                       : trade_off ? evolved_hypervolume(study, contents)
-                                   : std::optional(final->best->objectives[0]);
+    const FinalRecord final = contents.final.value_or(FinalRecord());
+    const auto objective = [](const std::optional<DesignRecord>& record) -> std::optional<double> {
+      if (!record || record->objectives.empty()) return {};
+      return record->objectives[0];
+    };
+    const bool feasible = objective(final.best) && final.best->status == Status::feasible;
     feasible_seeds += feasible;
-    if (shown) best.push_back(*shown);
-    if (shown) value = digits(*shown);
-    if (has_exact) exact.push_back(final->best_exact->objectives[0]);
+    const auto keep = [feasible](std::optional<double> value, std::vector<double>& all) -> std::string {
+      if (!feasible || !value) return "";
+      all.push_back(*value);
+      return digits(*value);
+    };
+    const auto value = trade_off ? evolved_hypervolume(study, contents) : objective(final.best);
+    const std::string best_text = feasible ? keep(value, best) : "nothing feasible";
     seconds.push_back(contents.seconds);
-    rows.push_back({std::to_string(contents.seed), value, has_exact ? digits(exact.back()) : "",
+    rows.push_back({std::to_string(contents.seed), best_text, trade_off ? "" : keep(objective(final.best_exact), exact),
                     std::to_string(contents.evaluations()), duration_text(contents.seconds), file});
   }
 
   void add_spread() {
-    const auto row = [&](const char* name, auto pick) {
-      const auto of = [&](std::vector<double> values) -> std::optional<double> {
-        if (values.empty()) return {};
-        std::sort(values.begin(), values.end());
-        return pick(values);
+    const auto row = [&](const char* name, const auto& pick) {
+      const auto of = [&](std::vector<double> values, const auto& text) {
+        std::ranges::sort(values);
+        return values.empty() ? std::string() : text(pick(values));
       };
-      const auto text = [](std::optional<double> value) { return value ? digits(*value) : std::string(); };
-      const auto time = of(seconds);
-      rows.push_back({name, text(of(best)), text(of(exact)), "", time ? duration_text(*time) : "", ""});
+      rows.push_back({name, of(best, digits), of(exact, digits), "", of(seconds, duration_text), ""});
     };
     row("least", [](const std::vector<double>& v) { return v.front(); });
     row("median", [](const std::vector<double>& v) { return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]); });
@@ -169,11 +161,13 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(arguments.seeds))
     throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "one that leaves room for them");
   const auto file_of = [&](int i) { return seed_file(output, first + static_cast<std::uint64_t>(i)); };
-  for (int i = 0; i < arguments.seeds && !arguments.force && !arguments.resume; ++i)
-    if (std::filesystem::exists(file_of(i)))
+  for (int i = 0; i < arguments.seeds; ++i) {
+    check_outputs({file_of(i)}, {arguments.study}, Existing::replaced);
+    if (!arguments.force && !arguments.resume && exists(file_of(i)))
       throw StorageError(file_of(i) + " exists already; resume it with --resume, or overwrite it with --force");
+  }
 
-  SeedTable table(study.problem->objectives().size() > 1);
+  SeedTable table{study.problem->objectives().size() > 1};
   const auto screen = make_progress(arguments.common);
   SeedProgress progress(*screen, arguments.seeds);
   for (int i = 0; i < arguments.seeds && session.exit_code == kDone; ++i) {
@@ -187,7 +181,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   screen->finish();
   table.add_spread();
   if (!arguments.common.quiet)
-    std::cout << study.name << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
+    std::cout << printable(study.name) << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
               << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
               << " seeds ended feasible\n";
   if (session.exit_code == kStoppedEarly)
@@ -195,40 +189,41 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
               << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output) << '\n';
 }
 
+void run(const RunArguments& arguments, Session& session) {
+  Study study = load_study_toml(arguments.study, session.catalogues);
+  if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
+  const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;
+  check_outputs({output}, {arguments.study}, Existing::replaced);
+  for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
+  warn_of_box(study, session.program);
+  if (!arguments.common.quiet) print_estimate(study, arguments.seeds, team_size(arguments.common.threads));
+  if (arguments.seeds > 1) {
+    run_seeds(study, output, arguments, session);
+    return;
+  }
+  const auto progress = make_progress(arguments.common);
+  const RunOutcome outcome = run_one(study, output, arguments, session, *progress);
+  progress->finish();
+  print_outcome(outcome, study, output, arguments.common, session);
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Session& session) {
-  auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = app.add_subcommand("run", "Runs a study and writes its study file.");
-  command->add_option("study", arguments->study, "The study, a TOML file")->required()->type_name("STUDY.toml");
-  command->add_option("--output", arguments->output, "The study file (default: as the study says, else its stem + .h5)")
-      ->type_name("F.h5");
-  command->add_flag("--resume", arguments->resume, "Go on with the study file if it exists");
-  command->add_flag("--force", arguments->force, "Overwrite the study file if it exists")->excludes("--resume");
-  command->add_option("--seed", arguments->seed, "Seed, instead of the study's own")
-      ->type_name("N")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
-  command->add_option("--seeds", arguments->seeds, "Repeat the study over N seeds, a file each, and print the spread")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100000));
-  add_running_options(*command, arguments->common);
-  command->footer("Example: pkmopt run experiments/4ppa-2par/paper-problem.toml --threads 2");
-  command->callback([arguments, &session] {
-    Study study = load_study_toml(arguments->study, session.catalogues);
-    if (arguments->seed) study.seed = static_cast<std::uint64_t>(*arguments->seed);
-    const std::string output = arguments->output.empty() ? study.output_file() : arguments->output;
-    for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
-    warn_of_box(study, session.program);
-    if (!arguments->common.quiet) print_estimate(study, arguments->seeds, threads_of(arguments->common));
-    if (arguments->seeds > 1) {
-      run_seeds(study, output, *arguments, session);
-      return;
-    }
-    const auto progress = make_progress(arguments->common);
-    const RunOutcome outcome = run_one(study, output, *arguments, session, *progress);
-    progress->finish();
-    session.exit_code = print_outcome(outcome, study, output, arguments->common, session.program);
-  });
+  const auto [command, arguments] =
+      add_command<RunArguments>(app, "run", "Runs a study and writes its study file.",
+                                "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml --threads 2",
+                                [&session](const RunArguments& given) { run(given, session); });
+  add_option(command, "study STUDY.toml", arguments.study, "The study, a TOML file")->required();
+  add_option(command, "--output F.h5", arguments.output,
+             "The study file (default: as the study says, else its stem + .h5)");
+  command.add_flag("--resume", arguments.resume, "Go on with the study file if it exists");
+  command.add_flag("--force", arguments.force, "Overwrite the study file if it exists")->excludes("--resume");
+  add_integer(command, "--seed N", arguments.seed, 0, std::numeric_limits<std::int64_t>::max(),
+              "Seed, instead of the study's own");
+  add_integer(command, "--seeds N", arguments.seeds, 1, 100'000,
+              "Repeat the study over N seeds, a file each, and print the spread");
+  add_running_options(command, arguments.common);
 }
 
 }  // namespace pkm

@@ -5,18 +5,14 @@
 #include <cstring>
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
-#include "experiments/app/commands.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/version.hpp"
 
 namespace pkm {
 
 void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "Number of threads (default: OMP_NUM_THREADS, else one per core)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+  add_integer(command, "--threads N", threads, 1, 1024,
+              "Number of threads (default: OMP_NUM_THREADS, else one per core)");
 }
 
 void add_running_options(CLI::App& command, RunningArguments& arguments) {
@@ -25,13 +21,8 @@ void add_running_options(CLI::App& command, RunningArguments& arguments) {
 }
 
 RunOptions run_options(const RunningArguments& arguments) {
-  RunOptions options;
-  options.threads = arguments.threads;
-  options.program = {program_version(), program_revision()};
-  return options;
+  return {.threads = arguments.threads, .program = {program_version(), program_revision()}};
 }
-
-int threads_of(const RunningArguments& arguments) { return team_size(arguments.threads); }
 
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments) {
   if (arguments.quiet) return std::make_unique<Progress>();
@@ -46,26 +37,24 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-int print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
-                  const RunningArguments& arguments, const std::string& program) {
+void print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
+                   const RunningArguments& arguments, Session& session) {
+  if (!arguments.quiet) std::cout << summary_text(outcome.contents, study);
   if (!outcome.stopped.empty()) {
-    if (!arguments.quiet) std::cout << summary_text(outcome.contents, study);
     // Also when quiet: it must not be missed.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations()
-              << " evaluations; go on with: " << program << " resume " << quoted(file) << '\n';
-    return kStoppedEarly;
+              << " evaluations; go on with: " << session.program << " resume " << quoted(file) << '\n';
+    session.exit_code = kStoppedEarly;
+  } else if (!arguments.quiet) {
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %d threads, checkpoints %.1f %% of "
+                  "the time\n",
+                  static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
+                  100 * outcome.parallel_efficiency, team_size(arguments.threads), 100 * outcome.checkpoint_share);
+    std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n") << "written to "
+              << file << '\n';
   }
-  if (arguments.quiet) return kDone;
-  std::cout << summary_text(outcome.contents, study);
-  char line[200];
-  std::snprintf(
-      line, sizeof line,
-      "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %d threads, checkpoints %.1f %% of the time\n",
-      static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
-      100 * outcome.parallel_efficiency, threads_of(arguments), 100 * outcome.checkpoint_share);
-  std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
-  std::cout << "written to " << file << '\n';
-  return kDone;
 }
 
 }  // namespace pkm

@@ -5,10 +5,7 @@
 #include <string>
 
 #include "engine/study/run_study.hpp"
-
-namespace CLI {
-class App;
-}
+#include "experiments/app/commands.hpp"
 
 namespace pkm {
 
@@ -23,16 +20,13 @@ void add_threads(CLI::App& command, int& threads);
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 
 RunOptions run_options(const RunningArguments& arguments);
-/// The number of threads that 0 stands for.
-int threads_of(const RunningArguments& arguments);
 /// A bar or lines on stderr; nothing when quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
 /// A word for a shell: quoted where it needs to be.
 std::string quoted(const std::string& word);
-/// The end of a run; returns the exit code.
-/// @param program  that goes on with it
-int print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
-                  const RunningArguments& arguments, const std::string& program);
+/// The end of a run, and what the program's exit code is for it.
+void print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
+                   const RunningArguments& arguments, Session& session);
 
 }  // namespace pkm

@@ -2,11 +2,7 @@
 
 #include <iostream>
 
-#include <CLI/CLI.hpp>
-
-#include "engine/core/text_table.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/progress.hpp"
 #include "engine/study/run_study.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/summary.hpp"
@@ -59,25 +55,25 @@ std::string text(const StudyContents& contents, const Catalogues& catalogues) {
   return summary_text(contents, study) + history(contents) + note;
 }
 
+struct ShowArguments {
+  std::string file;
+  bool json = false;
+};
+
 }  // namespace
 
 void add_show(CLI::App& app, Session& session) {
-  struct Arguments {
-    std::string file;
-    bool json = false;
-  };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("show", "Shows what a study found: best design, margins, history in brief.");
-  command->add_option("file", arguments->file, "The study file")->required()->type_name("F.h5");
-  command->add_flag("--json", arguments->json, "One JSON object, numbers in full precision");
-  command->footer("Example: pkmopt show paper-problem.h5");
-  command->callback([arguments, &session] {
-    const StudyContents contents = read_study(arguments->file);
-    if (arguments->json)
-      print_json(std::cout, summary_json(contents));
-    else
-      std::cout << text(contents, session.catalogues);
-  });
+  const auto [command, arguments] =
+      add_command<ShowArguments>(app, "show", "Shows what a study found: best design, margins, history in brief.",
+                                 "Example: pkmopt show paper-problem.h5", [&session](const ShowArguments& given) {
+                                   const StudyContents contents = read_study(given.file);
+                                   if (given.json)
+                                     print_json(summary_json(contents));
+                                   else
+                                     std::cout << text(contents, session.catalogues);
+                                 });
+  add_option(command, "file F.h5", arguments.file, "The study file")->required();
+  command.add_flag("--json", arguments.json, "One JSON object, numbers in full precision");
 }
 
 }  // namespace pkm

@@ -1,24 +1,19 @@
 // `pkmopt simulate`: how a mechanism moves under given forces.
 
-#include <iostream>
-#include <stdexcept>
-
-#include <CLI/CLI.hpp>
-
 #include "engine/core/unit.hpp"
 #include "engine/dynamics/simulation.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
+#include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/commands.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
 
-struct SimulateArguments : DesignArguments, ModeArguments {
-  std::vector<std::string> at, velocity, forces, wrench;
-  std::string duration, step, csv;
+struct SimulateArguments : DesignArguments, MotionArguments, TableOutput {
+  std::vector<std::string> forces, wrench;
+  std::string duration, step;
 };
 
 double time_of(const std::string& text, const std::string& option) {
@@ -55,8 +50,7 @@ CsvTable table_of(const MechanismInfo& info, const Simulation& run) {
   std::vector<std::string> columns = {"time"};
   for (const char* suffix : {"", "_speed", "_acceleration"})
     for (const AxisInfo& axis : info.coordinates) columns.push_back(axis.name + suffix);
-  for (const char* name : {"kinetic_energy", "work_of_drives", "work_of_weight", "work_of_wrench"})
-    columns.emplace_back(name);
+  columns.insert(columns.end(), {"kinetic_energy", "work_of_drives", "work_of_weight", "work_of_wrench"});
   CsvTable table(columns);
   for (const SimulationState& s : run.states) {
     table.begin_row();
@@ -79,78 +73,64 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
           {"work_of_wrench", s.work_of_wrench}};
 }
 
-Json run_json(const MechanismInfo& info, const std::string& mode, const Simulation& run) {
-  Json states = Json::array();
-  for (const auto& state : run.states) states.push_back(state_json(info, state));
-  return {{"mechanism", info.name},         {"mode", mode},     {"imbalance", run.imbalance},
-          {"turned_over", run.turned_over}, {"states", states}, {"stopped", text_or_null(run.stopped)}};
-}
+std::string simulate_target(const Target& target, const SimulateArguments& arguments, Printout& out) {
+  check_outputs({arguments.csv}, inputs_of(arguments), if_forced(arguments.force));
+  const MechanismInfo& info = target.info();
+  const Dynamics& dynamics = needed(target.mechanism->dynamics(), "simulate", "dynamics", info);
+  if (const Refusal reason = no_joint_forces(*target.mechanism))
+    throw ConfigError({"", 0, "simulate"}, *reason + ", so no dynamics");
+  const std::string mode = known_mode(info, arguments);
+  const MotionSample at = parse_motion(*target.mechanism, arguments);
+  const Simulation run = simulate(setup_of(target, dynamics, mode, arguments), at.pose, at.velocity);
+  if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
+  if (!arguments.csv.empty()) write_table(arguments, table_of(info, run));
 
-void print_run(const MechanismInfo& info, const std::string& mode, const Simulation& run) {
   const SimulationState &first = run.states.front(), &last = run.states.back();
-  std::cout << aligned({{"mechanism", info.name},
-                        {"mode", mode},
-                        {"steps", std::to_string(run.states.size() - 1)},
-                        {"end", number(last.time, "s")}});
+  out.say("mechanism", info.name);
+  out.say("mode", mode);
+  out.json["imbalance"] = run.imbalance;
+  out.json["turned_over"] = run.turned_over;
+  out.json["states"] = Json::array();
+  for (const auto& state : run.states)
+    if (out.for_programs) out.json["states"].push_back(state_json(info, state));
+  out.json["stopped"] = text_or_null(run.stopped);
+  out.head.push_back({"steps", std::to_string(run.states.size() - 1)});
+  out.head.push_back({"end", number(last.time, "s")});
   std::vector<Row> rows = {{"", "begin", "end", "speed at end"}};
   for (std::size_t i = 0; i < info.coordinates.size(); ++i) {
     const auto& [name, unit] = info.coordinates[i];
     rows.push_back(
         {name, number(first.pose[i], unit), number(last.pose[i], unit), number(last.velocity[i], unit + "/s")});
   }
-  print_section(std::cout, "pose", rows);
-  print_section(
-      std::cout, "energy",
-      {{"kinetic energy, begin", number(first.kinetic_energy, "J")},
-       {"work of the actuators", number(last.work_of_drives, "J")},
-       {"work of the weight", number(last.work_of_weight, "J")},
-       {"work of the wrench", number(last.work_of_wrench, "J")},
-       {"kinetic energy, end", number(last.kinetic_energy, "J")},
-       {"greatest imbalance", number(run.imbalance, "J"), "of " + number(run.turned_over, "J") + " turned over"}});
-}
-
-int simulate_target(const Catalogues& catalogues, const SimulateArguments& arguments) {
-  const Target target = find_target(catalogues, arguments);
-  const MechanismInfo& info = target.info();
-  const Dynamics& dynamics = needed(target.mechanism->dynamics(), "simulate", "dynamics", info);
-  const std::string mode = known_mode(info, arguments);
-  const auto pose = parse_all_assignments(arguments.at, "--at", assignable_coordinates(info));
-  const auto velocity =
-      parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(*target.mechanism, "s"));
-  const Simulation run = simulate(setup_of(target, dynamics, mode, arguments), axis_vector(pose),
-                                  axis_vector(std::span(velocity).first(pose.size())));
-  if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
-  if (!arguments.csv.empty()) table_of(info, run).write(arguments.csv);
-  if (arguments.json)
-    print_json(std::cout, run_json(info, mode, run));
-  else
-    print_run(info, mode, run);
-  if (!run.stopped.empty()) throw std::runtime_error("the simulation ends early: " + run.stopped);
-  return kDone;
+  out.section("pose", rows);
+  out.section("energy", {{"kinetic energy, begin", number(first.kinetic_energy, "J")},
+                         {"work of the actuators", number(last.work_of_drives, "J")},
+                         {"work of the weight", number(last.work_of_weight, "J")},
+                         {"work of the wrench", number(last.work_of_wrench, "J")},
+                         {"kinetic energy, end", number(last.kinetic_energy, "J")},
+                         {"greatest imbalance", number(run.imbalance, "J"),
+                          "of " + number(run.turned_over, "J") + " turned over"}});
+  return run.stopped.empty() ? "" : "the simulation ends early: " + run.stopped;
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app, Session& session) {
-  const auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand("simulate", "How a mechanism moves under given forces, from a pose on.");
-  add_design_arguments(*command, *arguments);
-  add_list_option(*command, "--at", arguments->at, "The pose at the beginning: every coordinate", true);
-  add_list_option(*command, "--velocity", arguments->velocity, "Its rates at the beginning; default: at rest", false);
-  add_list_option(*command, "--forces", arguments->forces, "Forces of the actuators, the same all the time; default: 0",
-                  false);
-  add_list_option(*command, "--wrench", arguments->wrench, "Force and moment on the platform, the same all the time",
-                  false);
-  command->add_option("--duration", arguments->duration, "Time to simulate")->type_name("TIME")->required();
-  command->add_option("--step", arguments->step, "Time between two states")->type_name("TIME")->required();
-  add_mode_options(*command, *arguments);
-  command->add_option("--csv", arguments->csv, "Write all states to this file, numbers in SI")->type_name("FILE");
-  command->footer(
+  const auto [command, arguments] = add_design_command<SimulateArguments>(
+      app, session, "simulate", "How a mechanism moves under given forces, from a pose on.",
       "Ends early, with exit code 1 and a sentence, where the mechanism leaves its reach, its slides' ranges or the\n"
       "study's limits, nears a singularity, or energy is not conserved to 1e-9 of what was turned over.\n"
       "Example: pkmopt simulate 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --forces rho3=8 --duration 0.1s --step "
-      "1ms");
-  command->callback([&session, arguments] { session.exit_code = simulate_target(session.catalogues, *arguments); });
+      "1ms",
+      simulate_target);
+  add_list_option(command, "--at", arguments.at, "The pose at the beginning: every coordinate")->required();
+  add_list_option(command, "--velocity", arguments.velocity, "Its rates at the beginning; default: at rest");
+  add_list_option(command, "--forces", arguments.forces, "Forces of the actuators, the same all the time; default: 0");
+  add_list_option(command, "--wrench", arguments.wrench, "Force and moment on the platform, the same all the time");
+  add_option(command, "--duration TIME", arguments.duration, "Time to simulate")->required();
+  add_option(command, "--step TIME", arguments.step, "Time between two states")->required();
+  add_mode_options(command, arguments);
+  add_table_output(command, arguments, "Write all states to this file, numbers in SI");
 }
 
 }  // namespace pkm

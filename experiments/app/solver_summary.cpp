@@ -1,17 +1,15 @@
-#include "experiments/app/solver_summary.hpp"
+#include "experiments/app/stage_summary.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "engine/core/text_table.hpp"
 #include "engine/problem/order.hpp"
-#include "experiments/app/front_summary.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr std::size_t kMostStarts = 12;  // that a table shows
+constexpr std::size_t kMostStarts = 12, kMostStartsOnFront = 20;  // that a table shows
 
 /// "3.47 rad/m" -> per mm for lengths, per degree for angles: what an engineer thinks in.
 struct Step {
@@ -24,16 +22,14 @@ Step handy(const std::string& unit) {
   return {1, unit};
 }
 
-/// The starts, best end first.
+/// The starts, best end first; as they come where there are several objectives.
 std::vector<std::size_t> by_end(const ProblemRecord& problem, const StageRecord& stage) {
   std::vector<std::size_t> order(stage.starts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const auto rank = [&](std::size_t start) {
-      return ranked(problem.objectives, stage.table, static_cast<std::size_t>(stage.starts[start].end_row));
-    };
-    return better(rank(a), rank(b));
-  });
+  const auto rank = [&](std::size_t start) {
+    return ranked(problem.objectives, stage.table, static_cast<std::size_t>(stage.starts[start].end_row));
+  };
+  if (problem.objectives.size() == 1) std::ranges::stable_sort(order, better, rank);
   return order;
 }
 
@@ -47,87 +43,97 @@ bool same_optimum(const ProblemRecord& problem, const StageRecord& stage, std::s
 }
 
 /// Number of the optimum in which each start ended, 1 for the best; 0 where it has not converged or nothing says that
-/// this is an optimum.
-std::vector<std::size_t> optima(const ProblemRecord& problem, const StageRecord& stage,
-                                const std::vector<std::size_t>& order) {
+/// this is an optimum: of several objectives there is no one optimum.
+std::vector<std::size_t> optima(const ProblemRecord& problem, const StageRecord& stage) {
   std::vector<std::size_t> number_of(stage.starts.size(), 0), first;
-  for (const std::size_t s : order) {
+  if (problem.objectives.size() > 1) return number_of;
+  for (const std::size_t s : by_end(problem, stage)) {
     const StartOutcome& start = stage.starts[s];
     const bool feasible = stage.table.status[static_cast<std::size_t>(start.end_row)] == Status::feasible;
     const bool optimal = start.optimality < 1e-4;
     if (start.stop != words(StopReason::tolerance) || !feasible || !optimal) continue;
-    std::size_t k = 0;
-    while (k < first.size() && !same_optimum(problem, stage, first[k], s)) ++k;
-    if (k == first.size()) first.push_back(s);
-    number_of[s] = k + 1;
+    const auto known = std::ranges::find_if(first, [&](std::size_t k) { return same_optimum(problem, stage, k, s); });
+    number_of[s] = static_cast<std::size_t>(known - first.begin()) + 1;
+    if (known == first.end()) first.push_back(s);
   }
   return number_of;
 }
 
-std::string objective_at(const StageRecord& stage, std::int64_t row) {
-  const auto r = static_cast<std::size_t>(row);
-  if (stage.table.status[r] == Status::failed) return "failed";
-  const std::string value = formatted("%.10g", stage.table.objective_row(r)[0]);
-  return stage.table.status[r] == Status::feasible ? value : value + " (infeasible)";
+/// A start's objective, or each of several, at its beginning and at its end.
+Row objectives_text(const StageRecord& stage, const StartOutcome& start) {
+  const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);
+  const auto from = stage.table.objective_row(first), to = stage.table.objective_row(end);
+  const auto& status = stage.table.status;
+  if (from.size() == 1) {
+    const auto text = [&](std::size_t row, double value) {
+      if (status[row] == Status::failed) return std::string("failed");
+      return digits(value) + (status[row] == Status::feasible ? "" : " (infeasible)");
+    };
+    return {text(first, from[0]), text(end, to[0])};
+  }
+  Row texts(from.size(), "failed");
+  for (std::size_t k = 0; status[first] != Status::failed && k < from.size(); ++k)
+    texts[k] = formatted("%.6g", from[k]) + " -> " + formatted("%.6g", to[k]);
+  return texts;
 }
 
 }  // namespace
 
 std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) {
   if (stage.starts.empty()) return "";
-  if (problem.objectives.size() > 1) return front_starts_text(problem, stage);
-  const auto order = by_end(problem, stage);
-  const auto optimum = optima(problem, stage, order);
-  std::vector<std::vector<std::string>> rows = {
-      {"  start", "evaluations", problem.objectives[0].name, "to", "optimum", "optimality", "ended"}};
-  for (std::size_t k = 0; k < std::min(order.size(), kMostStarts); ++k) {
+  const bool one = problem.objectives.size() == 1;
+  const auto order = by_end(problem, stage), optimum = optima(problem, stage);
+  const std::size_t most = one ? kMostStarts : kMostStartsOnFront;
+  std::vector<Row> rows = {{"  start", "evaluations"}};
+  for (const ObjectiveInfo& o : problem.objectives) rows[0].push_back(o.name);
+  if (one) rows[0].insert(rows[0].end(), {"to", "optimum"});
+  rows[0].insert(rows[0].end(), {"optimality", "ended"});
+  for (std::size_t k = 0; k < std::min(order.size(), most); ++k) {
     const StartOutcome& start = stage.starts[order[k]];
-    rows.push_back({"  " + start.origin, std::to_string(start.rows), objective_at(stage, start.first_row),
-                    objective_at(stage, start.end_row), optimum[order[k]] ? std::to_string(optimum[order[k]]) : "-",
-                    formatted("%.1e", start.optimality),
-                    start.stop + (start.message.empty() ? "" : " (" + start.message + ")")});
+    const bool feasible = stage.table.status[static_cast<std::size_t>(start.end_row)] == Status::feasible;
+    Row& row = rows.emplace_back(Row{"  " + start.origin, std::to_string(start.rows)});
+    std::ranges::copy(objectives_text(stage, start), std::back_inserter(row));
+    if (one) row.push_back(optimum[order[k]] ? std::to_string(optimum[order[k]]) : "-");
+    row.push_back(formatted("%.1e", start.optimality));
+    row.push_back(start.stop + (start.message.empty() ? "" : " (" + start.message + ")") +
+                  (one || feasible ? "" : ", infeasible"));
   }
-  std::string text = aligned(rows);
-  if (order.size() > kMostStarts)
-    text += "  and " + std::to_string(order.size() - kMostStarts) + " more, none better\n";
-  return text;
+  const std::string more = "  and " + std::to_string(order.size() - rows.size() + 1) + " more";
+  return aligned(rows) + (order.size() <= most ? "" : more + (one ? ", none better\n" : "\n"));
 }
 
 std::string optimality_text(const ProblemRecord& problem, const StageRecord& stage) {
   if (!stage.optimality) return "";
   const OptimalityRecord& record = *stage.optimality;
-  const ObjectiveInfo& objective = problem.objectives[0];
-  std::string text = "first-order optimality " + formatted("%.1e", record.optimality) + '\n';
-  std::vector<std::vector<std::string>> rows = {{"active", "", "multiplier", ""}};
+  const auto per = [&problem](const Step& step) {
+    return problem.objectives[0].unit + (step.unit == "1" ? "" : " per " + step.unit);
+  };
+  std::vector<Row> active = {{"active", "", "multiplier", ""}},
+                   rates = {{"sensitivity", "", "as built", "reoptimised"}};
   for (const ActiveRecord& a : record.active) {
     const Step step = handy(a.unit);
-    rows.push_back({a.name, a.kind, formatted("%.4g", a.multiplier * step.size),
-                    objective.unit + (step.unit == "1" ? "" : " per " + step.unit)});
+    active.push_back({a.name, a.kind, formatted("%.4g", a.multiplier * step.size), per(step)});
   }
-  if (rows.size() > 1) text += '\n' + aligned(rows);
-  rows = {{"sensitivity", "", "as built", "reoptimised", ""}};
   for (const SensitivityRecord& s : record.sensitivities) {
-    if (s.as_built == 0 && !(s.reoptimised != 0)) continue;  // has no influence
+    const bool varies = std::isnan(s.reoptimised);
+    if (s.as_built == 0 && (varies || s.reoptimised == 0)) continue;  // has no influence
     const Step step = handy(s.unit);
-    rows.push_back({s.parameter, std::isnan(s.reoptimised) ? "varies" : "fixed",
-                    formatted("%+.4g", s.as_built * step.size),
-                    std::isnan(s.reoptimised) ? "" : formatted("%+.4g", s.reoptimised * step.size),
-                    objective.unit + (step.unit == "1" ? "" : " per " + step.unit)});
+    rates.push_back({s.parameter, varies ? "varies" : "fixed", formatted("%+.4g", s.as_built * step.size),
+                     varies ? "" : formatted("%+.4g", s.reoptimised * step.size), per(step)});
   }
-  return text + '\n' + aligned(rows);
+  return "first-order optimality " + formatted("%.1e", record.optimality) + '\n' +
+         (active.size() > 1 ? '\n' + aligned(active) : "") + '\n' + aligned(rates);
 }
 
 Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
   Json list = Json::array();
-  const bool one = problem.objectives.size() == 1;  // of several there is no one optimum
-  const auto optimum =
-      one ? optima(problem, stage, by_end(problem, stage)) : std::vector<std::size_t>(stage.starts.size(), 0);
+  const auto optimum = optima(problem, stage);
   const auto point = [&](std::int64_t row) {
     const auto r = static_cast<std::size_t>(row);
-    return Json{{"design", values_by_name(problem.variables, stage.table.design(r))},
-                {"objectives", values_by_name(problem.objectives, stage.table.objective_row(r))},
-                {"constraints", values_by_name(problem.margins, stage.table.margin_row(r))},
-                {"feasible", stage.table.status[r] == Status::feasible}};
+    Json json = row_json(problem, stage.table, r);
+    json.erase("reports");
+    json["feasible"] = stage.table.status[r] == Status::feasible;
+    return json;
   };
   for (std::size_t s = 0; s < stage.starts.size(); ++s) {
     const StartOutcome& start = stage.starts[s];
@@ -144,15 +150,15 @@ Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
 }
 
 Json optimality_json(const OptimalityRecord& record) {
-  Json json = {{"optimality", record.optimality}, {"active", Json::array()}, {"sensitivities", Json::array()}};
-  for (const ActiveRecord& a : record.active)
-    json["active"].push_back({{"name", a.name}, {"kind", a.kind}, {"multiplier", a.multiplier}, {"unit", a.unit}});
-  for (const SensitivityRecord& s : record.sensitivities)
-    json["sensitivities"].push_back({{"parameter", s.parameter},
-                                     {"unit", s.unit},
-                                     {"as_built", finite(s.as_built)},
-                                     {"reoptimised", s.reoptimised}});
-  return json;
+  const auto active = [](const ActiveRecord& a) -> Json {
+    return {{"name", a.name}, {"kind", a.kind}, {"multiplier", a.multiplier}, {"unit", a.unit}};
+  };
+  const auto sensitivity = [](const SensitivityRecord& s) -> Json {
+    return {{"parameter", s.parameter}, {"unit", s.unit}, {"as_built", s.as_built}, {"reoptimised", s.reoptimised}};
+  };
+  return {{"optimality", record.optimality},
+          {"active", list_json(record.active, active)},
+          {"sensitivities", list_json(record.sensitivities, sensitivity)}};
 }
 
 }  // namespace pkm

@@ -1,94 +1,32 @@
 #include "experiments/app/summary.hpp"
 
-#include <cmath>
 #include <sstream>
 
-#include "engine/core/text_table.hpp"
-#include "engine/report/standing.hpp"
+#include "engine/core/printable.hpp"
+#include "engine/report/design_table.hpp"
 #include "engine/study/progress.hpp"
-#include "experiments/app/front_summary.hpp"
-#include "experiments/app/solver_summary.hpp"
+#include "experiments/app/stage_summary.hpp"
 
 namespace pkm {
 namespace {
 
-/// "+1.52 %": how much better than the baseline, in the objective's direction.
-std::string gain(double best, double baseline, Direction direction) {
-  const std::optional<Gain> found = gain_over(baseline, best, direction);
-  if (!found) return "";
-  char text[48];
-  std::snprintf(text, sizeof text, "%+.2f %%%s", found->percent, found->worse ? ", worse" : "");
-  return text;
-}
-
-/// The table's columns beside the names: best, baseline, gain, rounded, references.
-struct Columns {
-  const StudyContents& contents;
-  const Study& study;
-  const FinalRecord& final;
-
-  std::vector<std::string> header() const {
-    std::vector<std::string> row = {"", "", contents.problem.objectives.size() > 1 ? "compromise" : "best"};
-    if (final.rounded) row.push_back("rounded");
-    if (final.baseline) row.insert(row.end(), {"baseline", "gain"});
-    for (const auto& r : study.references) row.push_back(r.name);
-    return row;
-  }
-
-  std::vector<std::string> parameter(std::size_t variable, std::size_t index) const {
-    const auto& p = contents.problem.parameters[index];
-    std::vector<std::string> row = {p.name, p.unit, digits(final.best->parameters[index])};
-    if (final.rounded) row.push_back(digits(final.rounded->parameters[index]));
-    if (final.baseline) row.insert(row.end(), {digits(final.baseline->parameters[index]), ""});
-    for (const auto& r : study.references)
-      row.push_back(!r.design.empty() && r.design[variable] ? digits(*r.design[variable]) : "");
-    return row;
-  }
-
-  /// An objective or report: `of` takes the value from a record.
-  template <class Of>
-  std::vector<std::string> value(const std::string& name, const std::string& unit, std::optional<Direction> direction,
-                                 const std::optional<DesignRecord>& best, const std::optional<DesignRecord>& baseline,
-                                 bool exact, const Of& of) const {
-    std::vector<std::string> row = {exact ? name + ", exact" : name, unit, best ? digits(of(*best)) : "-"};
-    if (final.rounded) row.push_back(exact ? "" : digits(of(*final.rounded)));
-    if (final.baseline) {
-      row.push_back(baseline ? digits(of(*baseline)) : "-");
-      row.push_back(best && baseline && direction ? gain(of(*best), of(*baseline), *direction) : "");
-    }
-    for (const auto& r : study.references) {
-      std::string text;
-      for (const auto& [key, v] : r.values)
-        if (key == name && !exact) text = digits(v);
-      row.push_back(text);
-    }
-    return row;
-  }
-};
-
-std::vector<std::vector<std::string>> table(const StudyContents& contents, const Study& study) {
-  const Columns columns{contents, study, *contents.final};
-  const FinalRecord& final = *contents.final;
-  std::vector<std::vector<std::string>> rows = {columns.header()};
-  for (std::size_t i = 0; i < contents.problem.parameters.size(); ++i)
-    if (const auto v = contents.problem.parameters[i].variable; v >= 0)
-      rows.push_back(columns.parameter(static_cast<std::size_t>(v), i));
-  const auto& problem = contents.problem;
-  const auto add = [&](const std::string& name, const std::string& unit, std::optional<Direction> direction,
-                       const auto& of) {
-    rows.push_back(columns.value(name, unit, direction, final.best, final.baseline, false, of));
-    if (final.best_exact)
-      rows.push_back(columns.value(name, unit, direction, final.best_exact, final.baseline_exact, true, of));
+/// Names down, and across: best, rounded, baseline, gain ("+1.52 %"), references.
+std::vector<Row> table(const StudyContents& contents, const Study& study) {
+  const DesignTable designs = design_table(contents, study.references);
+  const auto append = [](Row& row, const std::vector<std::optional<double>>& values) {
+    for (const auto& value : values) row.push_back(value ? digits(*value) : "");
   };
-  for (std::size_t i = 0; i < problem.objectives.size(); ++i)
-    add(problem.objectives[i].name, problem.objectives[i].unit, problem.objectives[i].direction,
-        [i](const DesignRecord& r) { return r.objectives[i]; });
-  for (std::size_t i = 0; i < problem.reports.size(); ++i)
-    add(problem.reports[i].name, problem.reports[i].unit, std::optional<Direction>(),
-        [i](const DesignRecord& r) { return r.reports[i]; });
-  for (std::size_t i = 0; i < problem.margins.size(); ++i)
-    rows.push_back(columns.value(problem.margins[i].name + " margin", problem.margins[i].unit, {}, final.best,
-                                 final.baseline, false, [i](const DesignRecord& r) { return r.margins[i]; }));
+  std::vector<Row> rows = {{"", ""}};
+  for (const auto& column : designs.columns) rows[0].push_back(column.name);
+  if (designs.has_baseline()) rows[0].push_back("gain");
+  for (const auto& r : study.references) rows[0].push_back(r.name);
+  for (const DesignTable::Line& line : designs.lines) {
+    Row& row = rows.emplace_back(Row{line.name + (line.kind == "constraint" ? " margin" : ""), line.unit});
+    append(row, line.values);
+    if (designs.has_baseline())
+      row.push_back(line.gain ? formatted("%+.2f %%", line.gain->percent) + (line.gain->worse ? ", worse" : "") : "");
+    append(row, line.published);
+  }
   return rows;
 }
 
@@ -109,13 +47,6 @@ std::string rounded_remarks(const StudyContents& contents, const DesignRecord& r
   return (rounded.status == Status::feasible ? ", but " : ": ") + join(remarks, "; ");
 }
 
-std::int64_t generation_of(const StageRecord& stage, std::int64_t row) {
-  std::int64_t generation = 0;
-  for (std::size_t g = 0; g < stage.generations.size(); ++g)
-    if (stage.generations.first_row[g] <= row) generation = static_cast<std::int64_t>(g);
-  return generation;
-}
-
 Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
   Json design = Json::object();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i)
@@ -134,8 +65,8 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
 
 std::string summary_text(const StudyContents& contents, const Study& study) {
   std::ostringstream out;
-  out << contents.name << ": " << words(contents.state) << ", " << contents.evaluations() << " evaluations in "
-      << duration_text(contents.seconds) << ", seed " << contents.seed << '\n';
+  out << printable(contents.name) << ": " << words(contents.state) << ", " << contents.evaluations()
+      << " evaluations in " << duration_text(contents.seconds) << ", seed " << contents.seed << '\n';
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
     out << "stage " << i + 1 << ": " << stage.optimiser << ", ";
@@ -146,19 +77,20 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
     out << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", ended: " + stage.stop) << '\n'
         << starts_text(contents.problem, stage) << front_text(contents.problem, stage);
   }
-  for (const std::string& note : contents.notes) out << "note: " << note << '\n';
+  for (const std::string& note : contents.notes) out << "note: " << printable(note) << '\n';
   if (!contents.reproducible())
     out << "note: the clock ended a start, so another run with this seed may end elsewhere\n";
   if (!contents.final) {
     if (contents.best.row >= 0 && !contents.problem.objectives.empty()) {
-      const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
+      const StageRecord& stage = contents.best_stage();
       const auto row = static_cast<std::size_t>(contents.best.row);
       const Status status = stage.table.status[row];
       out << (status == Status::feasible ? "best so far:" : "best so far, which is " + words(status) + ":");
       for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
-        out << ' ' << contents.problem.variables[i].name << " = " << digits(stage.table.design(row)[i]);
+        out << ' ' << printable(contents.problem.variables[i].name) << " = " << digits(stage.table.design(row)[i]);
       for (std::size_t i = 0; i < contents.problem.objectives.size(); ++i)
-        out << ", " << contents.problem.objectives[i].name << " = " << digits(stage.table.objective_row(row)[i]);
+        out << ", " << printable(contents.problem.objectives[i].name) << " = "
+            << digits(stage.table.objective_row(row)[i]);
       out << '\n';
     }
     return out.str();
@@ -177,16 +109,13 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
   if (final.rounded && (final.rounded->status != Status::feasible || !final.rounded->reason.empty()))
     out << "the rounded design is " << words(final.rounded->status) << rounded_remarks(contents, *final.rounded)
         << '\n';
-  const StageRecord& of_best = contents.stages[static_cast<std::size_t>(contents.best.stage)];
-  const StageRecord& last = contents.stages.back();
-  out << optimality_text(contents.problem, of_best.optimality ? of_best : last);
+  const StageRecord& of_best = contents.best_stage();
+  out << optimality_text(contents.problem, of_best.optimality ? of_best : contents.stages.back());
   if (!final.active.empty()) out << "active: " << join(final.active, "; ") << '\n';
   if (final.best->touches_box)
     out << "warning: feasible cells of the best design touch the box; a larger box may hold more workspace\n";
   for (const auto& r : study.references)
-    if (r.seconds && contents.seconds > 0)
-      out << r.name << " took " << duration_text(*r.seconds) << ": this study is "
-          << digits(std::round(*r.seconds / contents.seconds)) << " times as fast\n";
+    if (r.seconds) out << printable(r.name) << " took " << duration_text(*r.seconds) << '\n';
   return out.str();
 }
 
@@ -215,25 +144,20 @@ Json summary_json(const StudyContents& contents) {
   object["stop"] = contents.stages.empty() ? "" : contents.stages.back().stop;
   object["best"] = nullptr;
   if (contents.best.row >= 0) {
-    const StageRecord& stage = contents.stages[static_cast<std::size_t>(contents.best.stage)];
+    const StageRecord& stage = contents.best_stage();
     const auto row = static_cast<std::size_t>(contents.best.row);
-    object["best"] = {{"design", values_by_name(contents.problem.variables, stage.table.design(row))},
-                      {"objectives", values_by_name(contents.problem.objectives, stage.table.objective_row(row))},
-                      {"constraints", values_by_name(contents.problem.margins, stage.table.margin_row(row))},
-                      {"reports", values_by_name(contents.problem.reports, stage.table.report_row(row))},
-                      {"status", words(stage.table.status[row])},
-                      {"stage", contents.best.stage + 1},
-                      {"generation", generation_of(stage, contents.best.row)}};
+    object["best"] = row_json(contents.problem, stage.table, row);
+    object["best"].update({{"status", words(stage.table.status[row])},
+                           {"stage", contents.best.stage + 1},
+                           {"generation", stage.generations.generation_of_rows(stage.table.size())[row]}});
   }
   if (contents.final) {
     const FinalRecord& final = *contents.final;
-    const auto add = [&](const char* key, const std::optional<DesignRecord>& record) {
-      if (record) object[key] = design_json(contents.problem, *record);
-    };
-    add("baseline", final.baseline);
-    add("rounded", final.rounded);
-    add("best_exact", final.best_exact);
-    add("baseline_exact", final.baseline_exact);
+    for (const auto& [key, record] : {std::pair("baseline", &final.baseline),
+                                      {"rounded", &final.rounded},
+                                      {"best_exact", &final.best_exact},
+                                      {"baseline_exact", &final.baseline_exact}})
+      if (*record) object[key] = design_json(contents.problem, **record);
     object["active"] = final.active;
   }
   return object;

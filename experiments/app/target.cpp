@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
-
-#include <CLI/CLI.hpp>
+#include <limits>
 
 #include "engine/setup/assignments.hpp"
+#include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
+#include "experiments/app/axes.hpp"
 
 namespace pkm {
 namespace {
@@ -50,10 +51,7 @@ Target named_target(const Catalogues& catalogues, const std::string& name) {
 Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
   Target target = of_study(study_of(contents, catalogues));
-  ChosenDesign design = chosen_design(contents, *target.study, arguments.choice);
-  target.parameters = std::move(design.parameters);
-  target.words = std::move(design.words);
-  target.file_name = std::move(design.file_name);
+  static_cast<ChosenDesign&>(target) = chosen_design(contents, *target.study, arguments.choice);
   return target;
 }
 
@@ -83,17 +81,23 @@ void set_masses(Target& target, const std::string& model) {
 
 }  // namespace
 
+SurveyPlan Target::plan() const {
+  SurveyPlan plan;
+  if (study) plan = study->problem->parts().plan;
+  plan.limits = limits;
+  return plan;
+}
+
 void add_choice_options(CLI::App& command, DesignChoice& choice) {
   command.add_flag("--baseline", choice.baseline, "Instead of the best design: the study's baseline");
-  command
-      .add_option("--generation", choice.generation,
-                  "Instead: of generation G of a stage (the first is 0) the design that --individual names")
-      ->type_name("G");
-  command.add_option("--individual", choice.individual, "Its place in the population, from 1")->type_name("I");
-  command.add_option("--front", choice.front, "Instead: point N of its trade-off (see 'pkmopt show F.h5')")
-      ->type_name("N");
-  command.add_option("--stage", choice.stage, "The stage of generation or front (default: the last that has one)")
-      ->type_name("N");
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  add_integer(command, "--generation G", choice.generation, 0, kMost,
+              "Instead: of generation G of a stage (the first is 0) the design that --individual names");
+  add_integer(command, "--individual I", choice.individual, 0, kMost, "Its place in the population, from 1");
+  add_integer(command, "--front N", choice.front, 0, kMost,
+              "Instead: point N of its trade-off (see 'pkmopt show F.h5')");
+  add_integer(command, "--stage N", choice.stage, 0, kMost,
+              "The stage of generation or front (default: the last that has one)");
 }
 
 const char* given_option(const DesignChoice& choice) {
@@ -105,21 +109,17 @@ const char* given_option(const DesignChoice& choice) {
                              : nullptr;
 }
 
-void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
-                     const std::string& meaning, bool required) {
-  command.add_option(option, lists, meaning + "; separated by commas or repeated")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false)
-      ->required(required);
+CLI::Option* add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
+                             const std::string& meaning) {
+  return add_option(command, option + " NAME=VALUE", lists, meaning + "; separated by commas or repeated")
+      ->allow_extra_args(false);
 }
 
 void add_mode_options(CLI::App& command, ModeArguments& arguments) {
-  command.add_option("--mode", arguments.mode, "Working mode (see 'pkmopt list mechanisms NAME'); default: the first")
-      ->type_name("MODE");
-  command
-      .add_option("--branch", arguments.branch,
-                  "Branch of the assembly that a pose must be on, for mechanisms that have several; default: the first")
-      ->type_name("SIGN");
+  add_option(command, "--mode MODE", arguments.mode,
+             "Working mode (see 'pkmopt list mechanisms NAME'); default: the first");
+  add_option(command, "--branch SIGN", arguments.branch,
+             "Branch of the assembly that a pose must be on, for mechanisms that have several; default: the first");
 }
 
 std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments) {
@@ -127,33 +127,51 @@ std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments
   const SourcePlace place{"", 0, "--branch"};
   if (!branch.empty() && info.branches.empty())
     throw ConfigError(place, "mechanism " + info.name + " has one branch only");
-  if (!branch.empty() && std::find(info.branches.begin(), info.branches.end(), branch) == info.branches.end())
+  if (!branch.empty() && std::ranges::find(info.branches, branch) == info.branches.end())
     throw ConfigError(place, "'" + branch + "'", "one of " + join(info.branches));
   if (!branch.empty() && mode.find('/') != std::string::npos)
     throw ConfigError(place, "the mode " + mode + " says its branch itself");
   if (!branch.empty() && branch != info.branches.front())
     return known_mode(info, {(mode.empty() ? info.modes.front() : mode) + "/" + branch, ""});
   if (mode.empty()) return info.modes.front();
-  if (std::find(info.modes.begin(), info.modes.end(), mode) != info.modes.end()) return mode;
+  if (std::ranges::find(info.modes, mode) != info.modes.end()) return mode;
   throw ConfigError({"", 0, "--mode"}, "the unknown mode '" + mode + "'", "one of " + join(info.modes, "; "),
                     nearest_name(mode, info.modes));
 }
 
+MotionSample parse_motion(const Mechanism& mechanism, const MotionArguments& arguments) {
+  const auto pose = parse_all_assignments(arguments.at, "--at", assignable_axes(mechanism.info().coordinates));
+  const auto rates = parse_some_assignments(arguments.velocity, "--velocity", assignable_rates(mechanism, "s"));
+  const auto changes =
+      parse_some_assignments(arguments.acceleration, "--acceleration", assignable_rates(mechanism, "s^2"));
+  const std::size_t n = pose.size();
+  MotionSample sample{.pose = axis_vector(pose),
+                      .velocity = axis_vector(std::span(rates).first(n)),
+                      .acceleration = axis_vector(std::span(changes).first(n))};
+  if (mechanism.chain()) sample.input = {0, rates[n], changes[n]};
+  return sample;
+}
+
 void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
-  command.add_option("MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path; else --from")
-      ->type_name("");
-  command
-      .add_option("--from", arguments.from,
-                  "The best design of a study file (of a trade-off the compromise), and its problem")
-      ->type_name("F.h5");
+  add_option(command, "MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path; else --from");
+  add_option(command, "--from F.h5", arguments.from,
+             "The best design of a study file (of a trade-off the compromise), and its problem");
   add_choice_options(command, arguments.choice);
-  add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults",
-                  false);
-  command
-      .add_option("--masses", arguments.masses,
-                  "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself")
-      ->type_name("MODEL");
+  add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults");
+  add_option(command, "--masses MODEL", arguments.masses,
+             "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself");
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
+}
+
+std::vector<std::string> inputs_of(const DesignArguments& arguments) { return {arguments.target, arguments.from}; }
+
+void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning) {
+  add_option(command, "--csv FILE", output.csv, meaning);
+  command.add_flag("--force", output.force, "Overwrite the file if it exists");
+}
+
+void write_table(const TableOutput& output, const CsvTable& table) {
+  write_file(output.csv, table.text(), if_forced(output.force));
 }
 
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {

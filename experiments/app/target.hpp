@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "engine/report/chosen_design.hpp"
-
-namespace CLI {
-class App;
-}
+#include "engine/report/csv_table.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/print.hpp"
 
 namespace pkm {
 
@@ -23,17 +22,14 @@ struct DesignArguments {
   bool json = false;
 };
 
-/// Declares the arguments above; what is parsed goes to `arguments`, which must outlive `command`.
-void add_design_arguments(CLI::App& command, DesignArguments& arguments);
-
 /// Declares --baseline, --generation, --individual, --front and --stage.
 void add_choice_options(CLI::App& command, DesignChoice& choice);
 /// The first of them that is given; null: none.
 const char* given_option(const DesignChoice& choice);
 
 /// Declares a list option such as --at: name=value, separated by commas, repeatable.
-void add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
-                     const std::string& meaning, bool required);
+CLI::Option* add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
+                             const std::string& meaning);
 
 struct ModeArguments {
   std::string mode;    ///< "": the default
@@ -45,6 +41,13 @@ void add_mode_options(CLI::App& command, ModeArguments& arguments);
 /// The mode asked for, as the mechanism calls it. Refuses one that it does not have.
 std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments);
 
+/// A pose and how the mechanism moves there.
+struct MotionArguments : ModeArguments {
+  std::vector<std::string> at, velocity, acceleration;
+};
+/// What they say, an auxiliary chain's input included; rates that are not given are 0.
+MotionSample parse_motion(const Mechanism& mechanism, const MotionArguments& arguments);
+
 /// The ability of a mechanism that a command needs. Throws ConfigError, naming both, where it has it not.
 template <class Ability>
 const Ability& needed(const Ability* ability, const std::string& command, const std::string& what,
@@ -53,20 +56,49 @@ const Ability& needed(const Ability* ability, const std::string& command, const 
   return *ability;
 }
 
-/// One design of a mechanism, and the study that it comes from, if it does.
-struct Target {
+/// One design of a mechanism, and the study that it comes from, if it does: the study's baseline, else its parameters,
+/// else the mechanism's defaults, unless a study file's design is chosen; then what --set names.
+struct Target : ChosenDesign {
   std::shared_ptr<const Mechanism> mechanism;
   std::optional<Study> study;
   LimitSpec limits;  ///< the study's; none for a bare mechanism
-  /// The study's baseline, else its parameters, else the mechanism's defaults; then what --set names.
-  std::vector<double> parameters;
-  std::string words;      ///< where they come from: "the baseline"
-  std::string file_name;  ///< the same for names of files: "baseline"
 
   const MechanismInfo& info() const { return mechanism->info(); }
+  /// The study's, else columns over all that the design reaches; under the limits.
+  SurveyPlan plan() const;
 };
+
+/// The files that a command's target stands for, none for a mechanism's name: no output may be one of them.
+std::vector<std::string> inputs_of(const DesignArguments& arguments);
+
+/// A table that a command writes when it is asked for.
+struct TableOutput {
+  std::string csv;
+  bool force = false;
+};
+/// Declares --csv and --force.
+void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning);
+void write_table(const TableOutput& output, const CsvTable& table);
 
 /// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments);
+
+/// Declares the arguments of one design; what is parsed goes to `arguments`, which must outlive `command`.
+void add_design_arguments(CLI::App& command, DesignArguments& arguments);
+
+/// Adds a subcommand that looks at one design and tells what it finds. What `look` returns is wrong with that all the
+/// same, for exit code 1; "": nothing.
+template <class Arguments, class Look>
+std::pair<CLI::App&, Arguments&> add_design_command(CLI::App& app, Session& session, const std::string& name,
+                                                    const std::string& meaning, const std::string& footer, Look look) {
+  const auto added = add_command<Arguments>(app, name, meaning, footer, [&session, look](const Arguments& arguments) {
+    Printout out{.for_programs = arguments.json};
+    const std::string wrong = look(find_target(session.catalogues, arguments), arguments, out);
+    out.print();
+    if (!wrong.empty()) throw std::runtime_error(wrong);
+  });
+  add_design_arguments(added.first, added.second);
+  return added;
+}
 
 }  // namespace pkm

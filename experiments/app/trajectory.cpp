@@ -1,10 +1,6 @@
 // `pkmopt trajectory`: a mechanism along a motion.
 
-#include <iostream>
 #include <numeric>
-#include <stdexcept>
-
-#include <CLI/CLI.hpp>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
@@ -12,17 +8,17 @@
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/setup/motion_section.hpp"
+#include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/commands.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
 
-struct TrajectoryArguments : DesignArguments, ModeArguments {
+struct TrajectoryArguments : DesignArguments, ModeArguments, TableOutput {
   std::string motion;
   std::size_t samples = 201;
-  std::string csv, zeta;
+  std::string zeta;
   std::vector<std::string> wrench;
   bool allow_infeasible = false;
 };
@@ -59,15 +55,6 @@ NamedValues chain_values(const AuxiliaryChain* chain, const TrajectoryPoint& p) 
   return values;
 }
 
-/// Names of the above, as far as any sample has a chain.
-std::vector<std::string> chain_columns(const AuxiliaryChain* chain, const Trajectory& trajectory) {
-  std::vector<std::string> names;
-  for (const TrajectoryPoint& p : trajectory.points)
-    if (names.empty())
-      for (const auto& [name, value] : chain_values(chain, p)) names.push_back(name);
-  return names;
-}
-
 CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
   const MechanismInfo& info = mechanism.info();
   std::vector<std::string> columns = {"time"};
@@ -81,8 +68,10 @@ CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
     for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
     columns.emplace_back("power");
   }
-  const auto chain = chain_columns(mechanism.chain(), trajectory);
-  columns.insert(columns.end(), chain.begin(), chain.end());
+  const auto with_chain = std::ranges::find_if(trajectory.points, [](const auto& p) { return p.chain.has_value(); });
+  NamedValues chain;
+  if (with_chain != trajectory.points.end()) chain = chain_values(mechanism.chain(), *with_chain);
+  for (const auto& [name, value] : chain) columns.push_back(name);
   CsvTable table(columns);
   const auto add = [&](const Values& values) { values ? table.add(*values) : table.add_empty(info.joints.size()); };
   for (const TrajectoryPoint& p : trajectory.points) {
@@ -98,30 +87,10 @@ CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
       add(p.power);
       p.power ? table.add(std::accumulate(p.power->begin() + 1, p.power->end(), (*p.power)[0])) : table.add_empty(1);
     }
-    const NamedValues turning = chain_values(mechanism.chain(), p);
-    for (const auto& [name, value] : turning) table.add(value);
-    if (turning.empty()) table.add_empty(chain.size());
+    for (const auto& [name, value] : chain_values(mechanism.chain(), p)) table.add(value);
+    if (!p.chain) table.add_empty(chain.size());
   }
   return table;
-}
-
-Json summary_json(const Mechanism& mechanism, const Trajectory& trajectory) {
-  const Axes& joints = mechanism.info().joints;
-  const TrajectorySummary& s = trajectory.summary;
-  Json json = {{"infeasible", s.infeasible}, {"peak_speed", axes_json(joints, s.peak_speed)}};
-  if (!mechanism.dynamics()) return json;
-  const auto number_or_null = [&s](double value) { return s.has_forces ? Json(value) : Json(); };
-  const auto values_or_null = [&](const AxisVector<double>& values) {
-    return axes_json(joints, s.has_forces ? Values(values) : Values());
-  };
-  json["peak_force"] = values_or_null(s.peak_force);
-  json["rms_force"] = values_or_null(s.rms_force);
-  json["peak_power"] = values_or_null(s.peak_power);
-  json["peak_total_power"] = number_or_null(s.peak_total_power);
-  json["least_total_power"] = number_or_null(s.least_total_power);
-  json["energy"] = number_or_null(s.energy);
-  json["energy_drawn"] = number_or_null(s.energy_drawn);
-  return json;
 }
 
 Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
@@ -132,75 +101,78 @@ Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
                {"acceleration", axes_json(info.coordinates, p.motion.acceleration)},
                {"joints", axes_json(info.joints, p.joints)},
                {"speeds", axes_json(info.joints, p.speeds)},
-               {"accelerations", axes_json(info.joints, p.accelerations)}};
-  json["conditioning"] = json_or_null(p.conditioning);
-  json["feasible"] = p.feasible;
-  json["reason"] = text_or_null(p.reason);
+               {"accelerations", axes_json(info.joints, p.accelerations)},
+               {"conditioning", json_or_null(p.conditioning)},
+               {"feasible", p.feasible},
+               {"reason", text_or_null(p.reason)}};
   if (mechanism.dynamics()) {
     json["forces"] = axes_json(info.joints, p.forces);
     json["power"] = axes_json(info.joints, p.power);
   }
-  if (p.chain) {
-    json["chain"] = values_by_name(chain_values(mechanism.chain(), p));
-  }
+  if (p.chain) json["chain"] = values_by_name(chain_values(mechanism.chain(), p));
   return json;
 }
 
-Json trajectory_json(const Mechanism& mechanism, const std::string& mode, const std::string& motion,
-                     const Trajectory& trajectory) {
-  Json samples = Json::array();
-  for (const auto& point : trajectory.points) samples.push_back(sample_json(mechanism, point));
-  return {{"mechanism", mechanism.info().name},
-          {"mode", mode},
-          {"motion", motion},
-          {"duration", trajectory.duration},
-          {"periodic", trajectory.periodic},
-          {"summary", summary_json(mechanism, trajectory)},
-          {"samples", samples}};
+/// " at t = 0.5 s (sample 51)", counted from 1.
+std::string place_of(const Trajectory& trajectory, std::vector<TrajectoryPoint>::const_iterator point) {
+  return " at t = " + with_unit(point->motion.time, "s") + " (sample " +
+         std::to_string(point - trajectory.points.begin() + 1) + ")";
 }
 
-void print_trajectory(const Mechanism& mechanism, const std::string& mode, const std::string& motion,
-                      const Trajectory& trajectory) {
+/// Why peaks of the summary are absent; "" where they are all there.
+std::string why_absent(const Mechanism& mechanism, const Trajectory& trajectory) {
+  const std::string name = "\nmechanism " + mechanism.info().name + " has no ";
+  if (!mechanism.dynamics())
+    return name + "dynamics: no forces, no power\n" +
+           (mechanism.velocities() ? "" : name.substr(1) + "influence coefficients: no speeds\n");
+  if (trajectory.summary.has_forces) return "";
+  const auto first = std::ranges::find_if(trajectory.points, [](const auto& p) { return !p.forces; });
+  return "\npeaks and energies of the forces are not known: the motion has none" + place_of(trajectory, first) + ": " +
+         first->reason + '\n';
+}
+
+void tell_summary(const Mechanism& mechanism, const Trajectory& trajectory, Printout& out) {
   const MechanismInfo& info = mechanism.info();
   const TrajectorySummary& s = trajectory.summary;
-  const std::string all = std::to_string(trajectory.points.size());
-  std::cout << aligned(
-      {{"mechanism", info.name},
-       {"mode", mode},
-       {"motion", motion + (trajectory.periodic ? " (ends as it begins)" : "")},
-       {"duration", number(trajectory.duration, "s")},
-       {"samples", all},
-       {"feasible", s.infeasible == 0 ? "yes" : "not at " + std::to_string(s.infeasible) + " samples"}});
-  std::vector<Row> rows = {{""}};
+  Json& json = out.json["summary"] = {{"infeasible", s.infeasible}};
+  std::vector<Row> rows = {{""}}, totals;
   for (const AxisInfo& joint : info.joints) rows[0].push_back(joint.name);
-  const auto add = [&rows](const std::string& title, const AxisVector<double>& values) {
-    rows.push_back({title});
-    for (const double value : values) rows.back().push_back(number(value));
+  const auto add = [&](const std::string& key, const std::string& title, const Values& values) {
+    json[key] = axes_json(info.joints, values);
+    Row& row = rows.emplace_back(Row{title});
+    for (std::size_t i = 0; i < info.joints.size(); ++i) row.push_back(values ? number((*values)[i]) : "-");
   };
-  const std::string forces = force_units_of(info.joints);
-  add("peak speed [" + units_of(info.joints, "/s") + "]", s.peak_speed);
-  if (s.has_forces) {
-    add("peak force [" + forces + "]", s.peak_force);
-    add("RMS force [" + forces + "]", s.rms_force);
-    add("peak power [W]", s.peak_power);
-  }
-  print_section(std::cout, "joints", rows);
-  if (!mechanism.dynamics()) std::cout << "\nmechanism " << info.name << " has no dynamics: no forces, no power\n";
-  if (!s.has_forces) return;
+  const auto add_total = [&](const std::string& key, const std::string& title, double value, const std::string& unit,
+                             const std::string& note = "") {
+    json[key] = s.has_forces ? Json(value) : Json();
+    totals.push_back({title, s.has_forces ? number(value, unit) : "-", note});
+  };
+  const auto if_known = [&s](const AxisVector<double>& values) { return s.has_forces ? Values(values) : Values(); };
+  const std::string forces = units_of(assignable_forces(info));
   const std::string per = trajectory.periodic ? "per cycle" : "over the motion";
-  print_section(std::cout, "all joints together",
-                {{"peak power", number(s.peak_total_power, "W")},
-                 {"least power", number(s.least_total_power, "W")},
-                 {"energy " + per, number(s.energy, "J"), "braking gives back what it takes"},
-                 {"energy drawn " + per, number(s.energy_drawn, "J"), "braking gives back nothing"}});
+  add("peak_speed", "peak speed [" + units_of(info.joints, "/s") + "]", s.peak_speed);
+  if (mechanism.dynamics()) {
+    add("peak_force", "peak force [" + forces + "]", if_known(s.peak_force));
+    add("rms_force", "RMS force [" + forces + "]", if_known(s.rms_force));
+    add("peak_power", "peak power [W]", if_known(s.peak_power));
+    add_total("peak_total_power", "peak power", s.peak_total_power, "W");
+    add_total("least_total_power", "least power", s.least_total_power, "W");
+    add_total("energy", "energy " + per, s.energy, "J", "braking gives back what it takes");
+    add_total("energy_drawn", "energy drawn " + per, s.energy_drawn, "J", "braking gives back nothing");
+  }
+  out.section("joints", rows);
+  out.section("all joints together", totals);
+  out.text += why_absent(mechanism, trajectory);
 }
 
-int trajectory(const Catalogues& catalogues, const TrajectoryArguments& arguments) {
-  const Target target = find_target(catalogues, arguments);
+std::string trajectory(const Target& target, const TrajectoryArguments& arguments, Printout& out) {
+  check_outputs({arguments.csv}, {arguments.target, arguments.from, arguments.motion}, if_forced(arguments.force));
   const Mechanism& mechanism = *target.mechanism;
   const MechanismInfo& info = target.info();
   const std::string mode = known_mode(info, arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
+  if (const Refusal reason = no_joint_forces(mechanism); reason && mechanism.dynamics())
+    throw ConfigError({"", 0, "trajectory"}, *reason + ", so no forces of its drives");
   if (!arguments.wrench.empty() && !mechanism.dynamics())
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
   if (!arguments.zeta.empty() && !mechanism.chain())
@@ -209,45 +181,46 @@ int trajectory(const Catalogues& catalogues, const TrajectoryArguments& argument
   const auto motion = find_motion(target, arguments.motion);
   const Trajectory found =
       follow(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench, zeta);
-  if (!arguments.csv.empty()) table_of(mechanism, found).write(arguments.csv);
-  if (arguments.json)
-    print_json(std::cout, trajectory_json(mechanism, mode, arguments.motion, found));
-  else
-    print_trajectory(mechanism, mode, arguments.motion, found);
-  if (found.summary.infeasible == 0 || arguments.allow_infeasible) return kDone;
+  if (!arguments.csv.empty()) write_table(arguments, table_of(mechanism, found));
+
+  const std::string infeasible = std::to_string(found.summary.infeasible), all = std::to_string(found.points.size());
+  out.say("mechanism", info.name);
+  out.say("mode", mode);
+  out.say("motion", arguments.motion, arguments.motion + (found.periodic ? " (ends as it begins)" : ""));
+  out.say("duration", found.duration, number(found.duration, "s"));
+  out.json["periodic"] = found.periodic;
+  out.head.push_back({"samples", all});
+  out.head.push_back({"feasible", found.summary.infeasible == 0 ? "yes" : "not at " + infeasible + " samples"});
+  tell_summary(mechanism, found, out);
+  out.json["samples"] = Json::array();
   for (const auto& point : found.points)
-    if (!point.feasible)
-      throw std::runtime_error(std::to_string(found.summary.infeasible) + " of " + std::to_string(found.points.size()) +
-                               " samples are infeasible, the first at t = " + with_unit(point.motion.time, "s") + ": " +
-                               point.reason + " (--allow-infeasible takes them)");
-  return kDone;
+    if (out.for_programs) out.json["samples"].push_back(sample_json(mechanism, point));
+  const auto first = std::ranges::find(found.points, false, &TrajectoryPoint::feasible);
+  if (first == found.points.end() || arguments.allow_infeasible) return "";
+  return infeasible + " of " + all + " samples are infeasible, the first" + place_of(found, first) + ": " +
+         first->reason + " (--allow-infeasible takes them)";
 }
 
 }  // namespace
 
 void add_trajectory(CLI::App& app, Session& session) {
-  const auto arguments = std::make_shared<TrajectoryArguments>();
-  CLI::App* command =
-      app.add_subcommand("trajectory", "A motion: joints, conditioning, and with masses forces and power.");
-  add_design_arguments(*command, *arguments);
-  command->add_option("--motion", arguments->motion, "A motion in TOML, or the name of a [[motion]] of the study")
-      ->type_name("MOTION.toml")
-      ->required();
-  command->add_option("--samples", arguments->samples, "Poses at equal distances in time, both ends included")
-      ->type_name("N")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 10'000'000));
-  add_mode_options(*command, *arguments);
-  add_list_option(*command, "--wrench", arguments->wrench, "Force and moment on the platform, the same all the time",
-                  false);
-  command->add_option("--zeta", arguments->zeta, "Phase of an auxiliary chain's forks; default 0")->type_name("ANGLE");
-  command->add_option("--csv", arguments->csv, "Write all samples to this file, numbers in SI")->type_name("FILE");
-  command->add_flag("--allow-infeasible", arguments->allow_infeasible, "Exit code 0 also with infeasible samples");
-  command->footer(
+  const auto [command, arguments] = add_design_command<TrajectoryArguments>(
+      app, session, "trajectory", "A motion: joints, conditioning, and with masses forces and power.",
       "The limits are those of the study; a bare mechanism has none but its design's. Samples that break a limit\n"
       "are marked with the reason and make the exit code 1. experiments/README.md tells how motions are written.\n"
-      "Example: pkmopt trajectory 3crr-r-cru --motion experiments/3crr-r-cru/motions/pick-and-place.toml --csv f.csv");
-  command->callback([&session, arguments] { session.exit_code = trajectory(session.catalogues, *arguments); });
+      "Example: pkmopt trajectory 3crr-r-cru --motion experiments/3crr-r-cru/motions/pick-and-place.toml --csv f.csv",
+      trajectory);
+  add_option(command, "--motion MOTION.toml", arguments.motion,
+             "A motion in TOML, or the name of a [[motion]] of the study")
+      ->required();
+  add_integer(command, "--samples N", arguments.samples, 2, 10'000'000,
+              "Poses at equal distances in time, both ends included")
+      ->default_str(std::to_string(arguments.samples));
+  add_mode_options(command, arguments);
+  add_list_option(command, "--wrench", arguments.wrench, "Force and moment on the platform, the same all the time");
+  add_option(command, "--zeta ANGLE", arguments.zeta, "Phase of an auxiliary chain's forks; default 0");
+  add_table_output(command, arguments, "Write all samples to this file, numbers in SI");
+  command.add_flag("--allow-infeasible", arguments.allow_infeasible, "Exit code 0 also with infeasible samples");
 }
 
 }  // namespace pkm

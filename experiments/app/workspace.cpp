@@ -1,26 +1,19 @@
 // `pkmopt workspace`: the workspace of one design, cell by cell, in short or as files for other programs.
 
-#include <iostream>
-
-#include <CLI/CLI.hpp>
-
 #include "engine/core/team.hpp"
+#include "engine/math/rounding.hpp"
 #include "engine/report/html_page.hpp"
-#include "engine/report/page_parts.hpp"
 #include "engine/report/workspace_export.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/storage/safe_file.hpp"
-#include "experiments/app/commands.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/grid.hpp"
-#include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {
 namespace {
-
-constexpr double kMostCells = 1e7;
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs {
   std::vector<std::string> held;
@@ -32,22 +25,20 @@ struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, Works
 /// sweep serves; where another does, the study's box and cells are of other axes.
 void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists) {
   const SourcePlace place{"", 0, "--held"};
-  const auto values = parse_assignments(lists, place.key, assignable_coordinates(info));
+  const auto values = parse_assignments(lists, place.key, assignable_axes(info.coordinates));
   std::vector<int> known;
-  std::size_t most = 0;
+  bool several = false;
   for (const Sweep& sweep : info.sweeps) {
-    most = std::max(most, sweep.held.size());
+    several = several || sweep.held.size() > 1;
     for (const int held : sweep.held)
       if (std::ranges::find(known, held) == known.end()) known.push_back(held);
   }
-  const auto name = [&info](int coordinate) { return info.coordinates[static_cast<std::size_t>(coordinate)].name; };
-  std::vector<std::string> names;
-  for (const int coordinate : known) names.push_back(name(coordinate));
   std::vector<HeldCoordinate> given;
   for (int i = 0; i < std::ssize(values); ++i) {
     const auto& value = values[static_cast<std::size_t>(i)];
     if (value && std::ranges::find(known, i) == known.end())
-      throw ConfigError(place, name(i), "a coordinate that surveys can hold: " + join(names));
+      throw ConfigError(place, coordinate_names(info, {i})[0],
+                        "a coordinate that surveys can hold: " + join(coordinate_names(info, known)));
     if (value) given.push_back({i, HeldCoordinate::Kind::value, *value});
   }
   const auto serves = [&given](const Sweep& sweep) {
@@ -57,7 +48,7 @@ void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std
   if (std::ranges::none_of(info.sweeps, serves))
     throw ConfigError(
         place, join(lists),
-        most > 1 ? "coordinates that one survey can hold, with their values" : "one coordinate with its value");
+        several ? "coordinates that one survey can hold, with their values" : "one coordinate with its value");
   if (!serves(sweep_of(info, plan))) {
     plan.held.clear();
     plan.method = ColumnOptions();
@@ -67,160 +58,136 @@ void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std
   plan.held = given;
 }
 
-/// The voxels asked for: the study's limits, its plan where the command line says nothing.
-SurveyPlan plan_of(const Target& target, const WorkspaceArguments& arguments) {
-  SurveyPlan plan;
-  if (target.study) plan = target.study->problem->parts().plan;
-  plan.limits = target.limits;
-  if (!arguments.held.empty()) set_held(plan, target.info(), arguments.held);
-  set_grid(plan, target.info(), arguments, kPictureCells, kMostCells);
-  return plan;
-}
-
 /// Least and greatest value of each axis at which a cell is feasible: the cells' outer faces. Absent: none is.
 using Extents = std::optional<std::vector<std::array<double, 2>>>;
 
 Extents extents_of(const WorkspaceFields& workspace) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Extents extents;
   const VoxelGrid grid = workspace.grid();
   const std::vector<double>& feasible = workspace.field("feasible").values;
   for (std::size_t cell = 0; cell < feasible.size(); ++cell) {
     if (!(feasible[cell] > 0)) continue;
+    if (!extents) extents.emplace(workspace.axes.size(), std::array{kInfinity, -kInfinity});
     const Pose<double> pose = workspace.pose(cell);
-    const bool first = !extents;
-    if (first) extents.emplace(workspace.axes.size());
     for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
       const double centre = pose[static_cast<std::size_t>(workspace.axes[i].coordinate)], half = grid.step[i] / 2;
       auto& [least, greatest] = (*extents)[i];
-      least = first ? centre - half : std::min(least, centre - half);
-      greatest = first ? centre + half : std::max(greatest, centre + half);
+      least = std::min(least, centre - half);
+      greatest = std::max(greatest, centre + half);
     }
   }
   return extents;
 }
 
-std::int64_t feasible_cells(const WorkspaceFields& workspace) {
-  return std::ranges::count(workspace.field("feasible").values, 1.0);
-}
-
-Json workspace_json(const Target& target, const WorkspaceFields& workspace, const std::vector<std::string>& files) {
-  const Extents extents = extents_of(workspace);
-  Json held = Json::array();
+void tell_workspace(const Target& target, const WorkspaceFields& workspace, Printout& out) {
+  Json& json = out.json;
+  out.say("mechanism", target.info().name);
+  if (target.study) out.head.push_back({"study", target.study->name});
+  out.say("design", target.words);
+  json["parameters"] = values_by_name(target.info().parameters, target.parameters);
+  json["held"] = Json::array();
   for (std::size_t i = 0; i < workspace.held.size(); ++i) {
-    const WorkspaceAxis& axis = workspace.held[i];
-    held.push_back({{"name", axis.name}, {"value", axis.lower}, {"unit", axis.unit}, {"why", workspace.held_note[i]}});
+    const auto& [coordinate, name, unit, value, upper, cells] = workspace.held[i];
+    const std::string& why = workspace.held_note[i];
+    json["held"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
+    out.head.push_back({name, number(value, unit), why});
   }
-  Json json = {{"mechanism", target.info().name},
-               {"design", target.words},
-               {"parameters", values_by_name(target.info().parameters, target.parameters)},
-               {"held", held.size() == 1 ? held[0] : held},
-               {"axes", Json::array()}};
+  if (workspace.held.size() == 1) json["held"] = Json(json["held"][0]);
+
+  std::vector<Row> rows;
+  const Extents extents = extents_of(workspace);
+  json["axes"] = Json::array();
   for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
     const WorkspaceAxis& axis = workspace.axes[i];
+    const double size = std::max(std::fabs(axis.lower), std::fabs(axis.upper));
+    const std::array whole = {beyond_rounding(axis.lower, size), beyond_rounding(axis.upper, size)};
+    std::array feasible = whole;
+    if (extents)
+      std::ranges::transform((*extents)[i], feasible.begin(), [&](double end) { return beyond_rounding(end, size); });
+    const auto range = [&axis](const std::array<double, 2>& ends) {
+      return number(ends[0], axis.unit) + " .. " + number(ends[1], axis.unit);
+    };
     json["axes"].push_back({{"name", axis.name},
                             {"unit", axis.unit},
-                            {"lower", axis.lower},
-                            {"upper", axis.upper},
+                            {"lower", whole[0]},
+                            {"upper", whole[1]},
                             {"cells", axis.cells},
-                            {"feasible", extents ? Json((*extents)[i]) : Json()}});
+                            {"feasible", extents ? Json(feasible) : Json()}});
+    rows.push_back(
+        {axis.name, extents ? range(feasible) : "none", "of " + range(whole), std::to_string(axis.cells) + " cells"});
   }
+  out.section("extent of the feasible cells", rows);
+
+  const auto feasible = std::ranges::count(workspace.field("feasible").values, 1.0);
   json["cells"] = workspace.cells();
-  json["feasible_cells"] = feasible_cells(workspace);
+  json["feasible_cells"] = feasible;
   json["volume"] = workspace.volume;
   json["unit"] = workspace.volume_unit;
   json["touches_box"] = workspace.touches_box;
-  json["fields"] = Json::object();
+  out.head.push_back({"feasible cells", std::to_string(feasible) + " of " + std::to_string(workspace.cells())});
+  out.head.push_back({"volume", number(workspace.volume, workspace.volume_unit)});
+  if (workspace.touches_box) out.head.push_back({"warning", "the feasible set touches the box: it may go on"});
+
+  rows.clear();
   for (const WorkspaceField& field : workspace.fields) {
     const auto range = range_of(field);
     json["fields"][field.name] = {{"unit", field.unit},
                                   {"least", range ? Json(range->least) : Json()},
                                   {"greatest", range ? Json(range->greatest) : Json()},
                                   {"meaning", field.meaning}};
-  }
-  json["files"] = files;
-  return json;
-}
-
-void print_workspace(const Target& target, const WorkspaceFields& workspace, const std::vector<std::string>& files) {
-  const Extents extents = extents_of(workspace);
-  std::vector<Row> head = {{"mechanism", target.info().name}};
-  if (target.study) head.push_back({"study", target.study->name});
-  head.push_back({"design", target.words});
-  for (std::size_t i = 0; i < workspace.held.size(); ++i)
-    head.push_back(
-        {workspace.held[i].name, number(workspace.held[i].lower, workspace.held[i].unit), workspace.held_note[i]});
-  head.push_back(
-      {"feasible cells", std::to_string(feasible_cells(workspace)) + " of " + std::to_string(workspace.cells())});
-  head.push_back({"volume", number(workspace.volume, workspace.volume_unit)});
-  if (workspace.touches_box) head.push_back({"warning", "the feasible set touches the box: it may go on"});
-  std::cout << aligned(head);
-
-  std::vector<Row> axes, fields;
-  for (std::size_t i = 0; i < workspace.axes.size(); ++i) {
-    const WorkspaceAxis& axis = workspace.axes[i];
-    const auto range = [&](double lower, double upper) {
-      return number(lower, axis.unit) + " .. " + number(upper, axis.unit);
-    };
-    axes.push_back({axis.name, extents ? range((*extents)[i][0], (*extents)[i][1]) : "none",
-                    "of " + range(axis.lower, axis.upper), std::to_string(axis.cells) + " cells"});
-  }
-  for (const WorkspaceField& field : workspace.fields)
-    if (const auto range = range_of(field); range && field.name != "feasible")
-      fields.push_back(
+    if (range && field.name != "feasible")
+      rows.push_back(
           {field.name, number(range->least, field.unit), number(range->greatest, field.unit), field.meaning});
-  print_section(std::cout, "extent of the feasible cells", axes);
-  print_section(std::cout, "fields (least and greatest value)", fields);
-  for (const std::string& file : files) std::cout << "wrote " << file << '\n';
+  }
+  out.section("fields (least and greatest value)", rows);
 }
 
-int workspace(const Catalogues& catalogues, const WorkspaceArguments& arguments) {
-  const Target target = find_target(catalogues, arguments);
+std::string workspace(const Target& target, const WorkspaceArguments& arguments, Printout& out) {
   std::vector<std::string> files = files_of(arguments, target);
   for (const std::string& file : {arguments.csv, arguments.html})
     if (!file.empty()) files.push_back(file);
-  refuse_existing(files, arguments.force);
+  const Existing existing = if_forced(arguments.force);
+  check_outputs(files, inputs_of(arguments), existing);
   if (!arguments.html.empty()) page_parts();  // or say at once that there are none
   with_team(arguments.threads, [&] {
-    const SurveyPlan plan = plan_of(target, arguments);
+    SurveyPlan plan = target.plan();
+    if (!arguments.held.empty()) set_held(plan, target.info(), arguments.held);
+    set_grid(plan, target.info(), arguments, kPictureCells, kMostCells);
     const std::string mode = known_mode(target.info(), arguments);
     const WorkspaceFields found = fields_of(target, plan, mode);
     write_workspace(arguments, target, found);
-    if (!arguments.csv.empty()) replace_file(arguments.csv, workspace_table(found).text());
+    if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {
       const auto motions = target.study ? target.study->motions : std::vector<NamedMotion>();
       const Views views = views_of(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
-      replace_file(arguments.html, html_page(page_data(views, program_words())));
+      write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
-    if (arguments.json)
-      print_json(std::cout, workspace_json(target, found, files));
-    else
-      print_workspace(target, found, files);
+    tell_workspace(target, found, out);
   });
-  return kDone;
+  out.json["files"] = files;
+  for (const std::string& file : files) out.text += "wrote " + file + '\n';
+  return "";
 }
 
 }  // namespace
 
 void add_workspace(CLI::App& app, Session& session) {
-  const auto arguments = std::make_shared<WorkspaceArguments>();
-  CLI::App* command = app.add_subcommand("workspace", "The workspace of one design, for ParaView, tables and CAD.");
-  add_design_arguments(*command, *arguments);
-  add_grid_options(*command, *arguments, kPictureCells);
-  add_list_option(*command, "--held", arguments->held,
-                  "Coordinates that are not swept; default: the study's, else the design's middle", false);
-  command->add_option("--mode", arguments->mode, "Working mode of the coupling indices; default: the first")
-      ->type_name("MODE");
-  add_workspace_outputs(*command, *arguments);
-  command->add_option("--csv", arguments->csv, "Write a row per cell to this file")->type_name("FILE");
-  command->add_option("--html", arguments->html, "Write a page with plots of the design to this file")
-      ->type_name("FILE");
-  add_threads(*command, arguments->threads);
-  command->footer(
+  const auto [command, arguments] = add_design_command<WorkspaceArguments>(
+      app, session, "workspace", "The workspace of one design, for ParaView, tables and CAD.",
       "Cells count where their centre is feasible under the study's limits; a bare mechanism has none. Files are in "
       "SI:\n"
       "an axis of angles is in rad beside others in m.\n"
-      "Example: pkmopt workspace 3crr-r-cru --held phi=30deg --vtk phi-30.vtkhdf");
-  command->callback([&session, arguments] { session.exit_code = workspace(session.catalogues, *arguments); });
+      "Example: pkmopt workspace 3crr-r-cru --held phi=30deg --vtk phi-30.vtkhdf",
+      workspace);
+  add_grid_options(command, arguments, kPictureCells);
+  add_list_option(command, "--held", arguments.held,
+                  "Coordinates that are not swept; default: the study's, else the design's middle");
+  add_option(command, "--mode MODE", arguments.mode, "Working mode of the coupling indices; default: the first");
+  add_workspace_outputs(command, arguments);
+  add_option(command, "--csv FILE", arguments.csv, "Write a row per cell to this file");
+  add_option(command, "--html FILE", arguments.html, "Write a page with plots of the design to this file");
+  add_threads(command, arguments.threads);
 }
 
 }  // namespace pkm

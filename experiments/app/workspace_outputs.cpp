@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <CLI/CLI.hpp>
-
 #include "engine/report/workspace_export.hpp"
 #include "engine/storage/safe_file.hpp"
 
@@ -24,12 +22,6 @@ std::string title_of(const Target& target) {
 
 }  // namespace
 
-void refuse_existing(const std::vector<std::string>& files, bool force) {
-  for (const std::string& file : files)
-    if (!force && std::filesystem::exists(file))
-      throw StorageError(file + " exists already; overwrite it with --force");
-}
-
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -37,10 +29,9 @@ void make_folder(const std::string& folder) {
 }
 
 void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs) {
-  command.add_option("--vtk", outputs.vtk, "Write all fields of the workspace's cells to this file, for ParaView")
-      ->type_name("F.vtkhdf");
-  command.add_option("--stl", outputs.stl, "Write the workspace's surface into this folder, as binary STL")
-      ->type_name("DIR");
+  add_option(command, "--vtk F.vtkhdf", outputs.vtk,
+             "Write all fields of the workspace's cells to this file, for ParaView");
+  add_option(command, "--stl DIR", outputs.stl, "Write the workspace's surface into this folder, as binary STL");
   command.add_flag("--force", outputs.force, "Overwrite files that exist");
 }
 
@@ -49,6 +40,15 @@ std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target&
   if (!outputs.vtk.empty()) files.push_back(outputs.vtk);
   if (!outputs.stl.empty()) files.push_back(stl_path(outputs, target));
   return files;
+}
+
+void expect_few_cells(const SurveyPlan& plan) {
+  double cells = 1;
+  if (const VoxelOptions* const voxels = plan.voxels())
+    for (const std::int64_t along : voxels->cells) cells *= static_cast<double>(along);
+  if (cells > kMostCells)
+    throw ConfigError({"", 0, "[workspace] cells"}, shortest(cells) + " cells",
+                      "at most " + shortest(kMostCells) + " to write; 'pkmopt workspace --cells' takes others");
 }
 
 WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode) {
@@ -63,13 +63,14 @@ void write_workspace(const WorkspaceOutputs& outputs, const Target& target, cons
   if (const Refusal reason = refuse_surface(workspace); reason && !outputs.stl.empty())
     throw ConfigError({"", 0, "--stl"}, *reason);
   const std::string title = title_of(target);
-  if (!outputs.vtk.empty()) write_vtk_image(outputs.vtk, vtk_image(workspace, target.info(), target.parameters, title));
+  const Existing existing = if_forced(outputs.force);
+  if (!outputs.vtk.empty()) write_vtk_image(outputs.vtk, workspace, target.info(), target.parameters, title, existing);
   if (outputs.stl.empty()) return;
   const PoseMargin margin(*target.mechanism, target.parameters, target.limits);
   const Isosurface surface = isosurface(workspace, &margin);
   if (surface.triangles.empty()) throw std::runtime_error("the workspace has no surface: no cell is feasible");
   make_folder(outputs.stl);
-  replace_file(stl_path(outputs, target), stl_file(surface, title));
+  write_file(stl_path(outputs, target), stl_file(surface, title), existing);
 }
 
 }  // namespace pkm

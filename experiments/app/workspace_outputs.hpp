@@ -9,8 +9,6 @@
 
 namespace pkm {
 
-/// Throws StorageError, unless `force`, when one of the files exists.
-void refuse_existing(const std::vector<std::string>& files, bool force);
 /// Makes a folder, and those it lies in, if it is not there. Throws StorageError.
 void make_folder(const std::string& folder);
 
@@ -27,6 +25,12 @@ void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs);
 
 /// What they will be for a design.
 std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target& target);
+
+/// Cells whose fields are computed, at most: each takes some 100 bytes.
+inline constexpr double kMostCells = 1e7;
+
+/// Throws ConfigError where the plan has more cells.
+void expect_few_cells(const SurveyPlan& plan);
 
 /// The workspace's fields. Throws ConfigError when the mechanism cannot serve the plan.
 WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode);

@@ -20,6 +20,7 @@ class ChildProcess {
  public:
   struct Settings {
     rlim_t file_size = RLIM_INFINITY;  ///< RLIMIT_FSIZE: a full disk in small
+    bool ignores_hangup = false;       ///< as by nohup
   };
 
   /// Starts `arguments` in `folder`; stdout and stderr go to `folder`/output.txt.
@@ -37,6 +38,8 @@ class ChildProcess {
     dup2(file, 2);
     const rlimit limit{settings.file_size, settings.file_size};
     setrlimit(RLIMIT_FSIZE, &limit);
+    for (const int number : {SIGINT, SIGTERM}) ::signal(number, SIG_DFL);  // a script's background process ignores some
+    ::signal(SIGHUP, settings.ignores_hangup ? SIG_IGN : SIG_DFL);
     execv(argv[0], argv.data());
     _exit(127);
   }

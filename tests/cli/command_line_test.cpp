@@ -89,6 +89,54 @@ TEST(CliErrors, AWrongStudyIsNamedWithFileLineAndKey) {
   }
 }
 
+TEST(CliErrors, WholeNumbersAreDecimalAndWithinTheirRange) {
+  for (const std::string number : {"99999999999999999999", "010", "0x10", "-1", "1e3", "1.0", "", "abc"}) {
+    const auto result = pkmopt({"run", "none.toml", "--seed", number});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, "pkmopt: --seed: found '" + number +
+                              "'; expected a whole number from 0 to 9223372036854775807, in decimal without leading "
+                              "zeros\n");
+  }
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"run", "none.toml", "--threads", "4294967297"},
+        {"resume", "none.h5", "--generations", "012"},
+        {"export", "none.h5", "--front", "18446744073709551617"},
+        {"trajectory", "4ppa-2par", "--samples", "4294967298"}}) {
+    const auto result = pkmopt(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(": found '" + arguments.back() + "'; expected a whole number from "));
+  }
+}
+
+TEST(CliErrors, WhatIsPrintedDoesNotSteerATerminal) {
+  const StudyFolder folder;
+  folder.write("esc.toml",
+               "[study]\nname = \"a\\u001b[2Jb\\u009bc\\nd\"\n[mechanism]\ntype = \"4ppa-2par\"\n"
+               "[variables]\na = { min = 0.1, max = 0.2 }\n[[objective]]\ntype = \"workspace-volume\"\n"
+               "[[stage]]\noptimiser = \"sweep\"\n");
+  const auto steers = [](const std::string& text) { return text.find_first_of("\x1b\r\a\x9b") != std::string::npos; };
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"pose", "4ppa-2par", "--at", "x=.1", "--ve\x14\x1b[31m"},
+        {"evaluate", "\x1b[31m"},
+        {"\x1b[31m"},
+        {"list", "\r\x9b"},
+        {"check", "esc.toml"},
+        {"check", "esc.toml", "--json"}}) {
+    const auto result = pkmopt(arguments, folder.path());
+    EXPECT_FALSE(steers(result.out)) << result.out;
+    EXPECT_FALSE(steers(result.err)) << result.err;
+    EXPECT_FALSE((result.out + result.err).empty());
+  }
+  EXPECT_EQ(pkmopt({"check", "esc.toml", "--json"}, folder.path()).json()["name"], "a\x1b[2Jb\u009bc\nd");
+}
+
+TEST(CliErrors, ThreadsThatCannotBeStartedAreAFailure) {
+  const auto result =
+      run_program({"/bin/sh", "-c", "ulimit -v 600000; exec '" PKM_PROGRAM "' evaluate 4ppa-2par --threads 200"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, MatchesRegex("pkmopt: a team of 200 threads cannot be started: [^\n]*\n"));
+}
+
 TEST(CliErrors, ResultsThatCannotBeWrittenAreAFailure) {
   const auto result = run_program({"/bin/sh", "-c", "'" PKM_PROGRAM "' list > /dev/full"});
   EXPECT_EQ(result.exit_code, 1);
@@ -111,6 +159,10 @@ TEST(CliHelp, EveryCommandHasHelpWithAnExample) {
 }
 
 TEST(CliHelp, VersionAndRevision) {
+  const std::string full = std::string(PKM_PROGRAM) + " --version > /dev/full";
+  if (std::filesystem::exists("/dev/full")) {
+    EXPECT_EQ(run_program({"/bin/sh", "-c", full}).exit_code, 1);
+  }
   const auto version = pkmopt({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_THAT(version.out, MatchesRegex("pkmopt [0-9]+\\.[0-9]+\\.[0-9]+ \\(([0-9a-f]{12}(\\+changes)?|unknown)\\)\n"

@@ -101,9 +101,9 @@ TEST(CliCoupling, GoldenStatisticsAndTheMapBehindThem) {
     const auto range = [&](const char* name, std::size_t k) {
       return std::string(name) + "=" + entry["lo"][k].dump() + ":" + entry["hi"][k].dump();
     };
-    const auto result =
-        pkmopt({"coupling", entry["mechanism"], "--box", range("x", 0) + "," + range("y", 1) + "," + range("z", 2),
-                "--cells", "x=7,y=7,z=7", "--phi", entry["phi"].dump(), "--csv", folder.path() + "/map.csv", "--json"});
+    const auto result = pkmopt(
+        {"coupling", entry["mechanism"], "--box", range("x", 0) + "," + range("y", 1) + "," + range("z", 2), "--cells",
+         "x=7,y=7,z=7", "--phi", entry["phi"].dump(), "--csv", folder.path() + "/map.csv", "--force", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json found = result.json()["statistics"];
     EXPECT_EQ(found["samples"], entry["feasible"]);

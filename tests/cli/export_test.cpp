@@ -127,6 +127,12 @@ TEST_F(ExportProgram, WorkspaceSaysWhatEvaluateSays) {
   EXPECT_THAT(output_, HasSubstr("dci_worst"));
 }
 
+TEST_F(ExportProgram, EndsOfTheExtentThatAreRoundingAreZero) {
+  ASSERT_EQ(run({"workspace", "3crr-r-cru", "--cells", "x=8,y=8,z=8"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("  y  0 m .. 0.4 m "));
+  EXPECT_THAT(output_, HasSubstr(" of 0 m .. 0.4 m "));
+}
+
 TEST_F(ExportProgram, AnotherCoordinateCanBeHeld) {
   ASSERT_EQ(run({"workspace", "3crr-r-cru", "--held", "z=200mm", "--cells", "x=8,y=8,phi=9", "--box",
                  "x=0:0.3,y=0.1:0.4,phi=-30deg:30deg", "--json"}),
@@ -231,6 +237,12 @@ TEST_F(ExportProgram, OverwritesOnlyWhenTold) {
   EXPECT_NE(slurp("best.vtkhdf"), "mine");
   EXPECT_EQ(run({"export", "study.h5", "--csv", "t"}), 1);
   EXPECT_THAT(output_, HasSubstr("t/evaluations.csv exists already"));
+  ChildProcess::Settings small;
+  small.file_size = 1000;
+  EXPECT_EQ(run({"export", "study.h5", "--csv", "limited"}, small), 1);
+  EXPECT_THAT(output_, HasSubstr("limited/evaluations.csv: cannot be written, the previous state is kept (File too "
+                                 "large)"));
+  EXPECT_TRUE(fs::is_empty(path("limited")));
   EXPECT_EQ(run({"export", "study.h5", "--csv", "study.toml"}), 1);
   EXPECT_THAT(output_, HasSubstr("study.toml"));
 }

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/report/page_parts.hpp"
+#include "engine/report/html_page.hpp"
 #include "engine/study/run_study.hpp"
 #include "tests/cli/study_program.hpp"
 
@@ -157,7 +157,7 @@ TEST_P(OldStudiesOfTheseAlgorithms, EndAsTheirOwnProgramEndedThem) {
     arguments.insert(arguments.end(), how.begin(), how.end());
     ASSERT_EQ(run(arguments), 0) << output_;
     EXPECT_EQ(first_difference(straight, read("s.h5")), "") << how[1] << " threads";
-    EXPECT_THAT(slurp("s.h5"), StartsWith("pkmopt-study schema=3 "));
+    EXPECT_THAT(slurp("s.h5"), StartsWith("pkmopt-study schema=4 "));
   }
 }
 

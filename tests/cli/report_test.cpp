@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/report/page_parts.hpp"
+#include "engine/report/html_page.hpp"
 #include "tests/cli/study_program.hpp"
 
 namespace pkm::testing {
@@ -43,7 +43,7 @@ TEST_F(ReportProgram, IsCalledLikeTheStudyAndOverwritesNothingUnasked) {
   EXPECT_EQ(run({"report", "study.h5", "--force", "--threads", "1"}), 0) << output_;
   EXPECT_EQ(slurp("study.html"), page) << "the same on any number of threads";
   EXPECT_EQ(run({"report", "study.h5", "-o", "./study.h5", "--force"}), 2);
-  EXPECT_THAT(output_, HasSubstr("another file than the study's own"));
+  EXPECT_THAT(output_, HasSubstr("./study.h5: is read by this command, so it is not overwritten"));
 }
 
 TEST_F(ReportProgram, DamagedAndMissingFilesAreSaidInOneSentence) {

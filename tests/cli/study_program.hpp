@@ -12,6 +12,7 @@
 
 #include "engine/storage/study_file.hpp"
 #include "tests/cli/child_process.hpp"
+#include "tests/unit/storage/first_difference.hpp"
 
 namespace pkm::testing {
 

@@ -223,6 +223,30 @@ TEST_F(GaProgram, ExistingFilesAreNotOverwritten) {
   EXPECT_NE(output_.find("study.h5 holds another text of the study than study.toml"), std::string::npos) << output_;
 }
 
+TEST_F(GaProgram, NoOutputIsAnInputOrWithoutAName) {
+  write_toml(2);
+  const auto size = fs::file_size(path("study.toml"));
+  EXPECT_EQ(run({"run", "study.toml", "--output", "study.toml", "--force"}), 2);
+  EXPECT_EQ(output_, "pkmopt: study.toml: is read by this command, so it is not overwritten\n");
+  EXPECT_EQ(fs::file_size(path("study.toml")), size);
+  EXPECT_EQ(run({"run", "study.toml", "--output", ""}), 2);
+  EXPECT_EQ(output_, "pkmopt: --output: an empty text where there has to be something\n");
+  EXPECT_FALSE(fs::exists(path("study.h5")));
+  std::ofstream(folder_ + "/precious.txt") << "precious";
+  std::ofstream(folder_ + "/nul.toml") << "[study]\noutput = \"precious.txt\\u0000.h5\"\n"
+                                       << "[mechanism]\n";
+  EXPECT_EQ(run({"run", "nul.toml", "--force"}), 2) << output_;
+  EXPECT_EQ(fs::file_size(path("precious.txt")), 8u);
+}
+
+TEST_F(GaProgram, AHangupThatIsIgnoredEndsNothing) {
+  write_toml(60);
+  ChildProcess child(command({"run", "study.toml", "--quiet"}), folder_, {.ignores_hangup = true});
+  while (!fs::exists(path("study.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  child.signal(SIGHUP);
+  EXPECT_EQ(child.wait(), 0) << child.output();
+}
+
 TEST_F(GaProgram, ASecondProcessIsTurnedAway) {
   write_toml(100000, "");
   ChildProcess first(command({"run", "study.toml", "--quiet"}), folder_);
@@ -244,7 +268,7 @@ TEST_F(GaProgram, AFullDiskIsAnErrorAndTheLastCheckpointStays) {
   EXPECT_NE(output_.find("the previous state is kept (File too large)"), std::string::npos) << output_;
   const StudyContents left = read("study.h5");
   EXPECT_GT(left.evaluations(), 0);
-  EXPECT_FALSE(fs::exists(path("study.h5.part")));
+  for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_NE(entry.path().extension(), ".part");
   ASSERT_EQ(run({"resume", "study.h5", "--quiet"}), 0) << output_;
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   EXPECT_EQ(first_difference(read("straight.h5"), read("study.h5")), "");

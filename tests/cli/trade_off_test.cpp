@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/optimisers/dominance.hpp"
 #include "engine/problem/front.hpp"
 #include "tests/cli/study_program.hpp"
+#include "tests/unit/optimisers/dominates.hpp"
 
 namespace pkm::testing {
 namespace {

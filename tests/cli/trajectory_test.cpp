@@ -68,6 +68,33 @@ TEST(CliTrajectory, TablesHaveAColumnForEverything) {
   for (const auto& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 36);
 }
 
+TEST(CliTrajectory, TablesOverwriteNothingUnaskedAndNothingThatIsRead) {
+  const StudyFolder folder;
+  folder.write("m.toml", kOscillation);
+  folder.write("f.csv", "mine");
+  folder.write("study.toml", study_with(""));
+  const auto refusal = [&](std::vector<std::string> command, const std::string& csv) {
+    command.insert(command.end(), {"--csv", csv});
+    return pkmopt(command, folder.path()).err;
+  };
+  const std::string exists = "pkmopt: f.csv exists already; overwrite it with --force\n";
+  const std::vector<std::string> trajectory = {"trajectory", "3crr-r-cru", "--motion", "m.toml", "--samples", "3"};
+  EXPECT_EQ(refusal(trajectory, "f.csv"), exists);
+  EXPECT_EQ(refusal(trajectory, "m.toml"), "pkmopt: m.toml: is read by this command, so it is not overwritten\n");
+  EXPECT_EQ(refusal({"coupling", "study.toml", "--force"}, "study.toml"),
+            "pkmopt: study.toml: is read by this command, so it is not overwritten\n");
+  EXPECT_EQ(refusal({"coupling", "3crr-r-cru"}, "f.csv"), exists);
+  EXPECT_EQ(
+      refusal({"simulate", "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3", "--duration", "1ms", "--step", "1ms"},
+              "f.csv"),
+      exists);
+  EXPECT_EQ(lines_of(folder.path() + "/f.csv"), std::vector<std::string>{"mine"});
+  std::vector<std::string> forced = trajectory;
+  forced.insert(forced.end(), {"--csv", "f.csv", "--force"});
+  EXPECT_EQ(pkmopt(forced, folder.path()).exit_code, 0);
+  EXPECT_EQ(lines_of(folder.path() + "/f.csv").size(), 4u);
+}
+
 TEST(CliTrajectory, InfeasibleSamplesAreMarkedAndMakeItFail) {
   const StudyFolder folder;
   folder.write("m.toml", kLeaves);
@@ -84,6 +111,28 @@ TEST(CliTrajectory, InfeasibleSamplesAreMarkedAndMakeItFail) {
   EXPECT_THAT(last["reason"].get<std::string>(), HasSubstr("out of reach"));
   EXPECT_TRUE(last["forces"].is_null());
   EXPECT_TRUE(taken.json()["summary"]["peak_force"].is_null());
+}
+
+TEST(CliTrajectory, SingularSamplesHaveNoForces) {
+  const StudyFolder folder;
+  folder.write("m.toml",
+               "type = \"points\"\ntime = 1\npoints = [{ x = 0.35, y = 0.8, z = -0.8, theta = 0 }, "
+               "{ theta = \"90 deg\" }]\n");
+  const auto told =
+      pkmopt({"trajectory", "4ppa-2par", "--motion", "m.toml", "--samples", "11", "--csv", "f.csv"}, folder.path());
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_THAT(told.err, HasSubstr("1 of 11 samples are infeasible, the first at t = 1 s (sample 11): the Jacobian is "
+                                  "singular to working precision"));
+  EXPECT_THAT(told.out, HasSubstr("peak force [N]    -"));
+  EXPECT_THAT(told.out, HasSubstr("are not known: the motion has none at t = 1 s (sample 11)"));
+  EXPECT_THAT(lines_of(folder.path() + "/f.csv").back(), ::testing::EndsWith(",0,the Jacobian is singular to working "
+                                                                             "precision,,,,,,,,,"));
+  const auto pose =
+      pkmopt({"dynamics", "4ppa-2par", "--at", "x=0.35,y=0.8,z=-0.8,theta=90deg", "--json"}, folder.path());
+  EXPECT_EQ(pose.exit_code, 1);
+  EXPECT_THAT(pose.err, HasSubstr("the Jacobian of the pose is singular to working precision"));
+  for (const char* key : {"tau", "power", "Mq", "dci", "gravity", "coriolis"}) EXPECT_TRUE(pose.json()[key].is_null());
+  EXPECT_TRUE(pose.json()["J"].is_array());
 }
 
 TEST(CliTrajectory, TheLimitsAreTheStudys) {

@@ -7,6 +7,7 @@ read_study.py contiguous FILE     writes one dataset anew, in h5py's own layout
 read_study.py put FILE PATH INDEX VALUE  changes one value
 read_study.py shorten FILE PATH   takes the last row off a dataset
 read_study.py remove FILE PATH    removes a dataset
+read_study.py forge FILE KIND     does what pkmopt never writes, see forge()
 """
 
 import math
@@ -96,6 +97,38 @@ def remove(path, name):
         del f[name]
 
 
+def forge(path, kind):
+    rows = "stages/1/evaluations/objective"
+    with h5py.File(path, "r+") as f:
+        shape = f[rows].shape
+        if kind == "count":
+            f["stages"].attrs["count"] = 2**32
+            return
+        if kind == "variable":
+            f["problem/parameters/variable"][2] = 0
+            return
+        if kind == "cells":
+            f["final/best"].attrs["feasible_cells"] = -1
+            return
+        del f[rows]
+        if kind == "soft":
+            f[rows] = h5py.SoftLink("/stages/1/evaluations/seconds")
+        elif kind == "link":
+            f[rows] = h5py.ExternalLink("/etc/passwd", "/x")
+        elif kind == "external":
+            f.create_dataset(rows, shape, "<f8", external=[("/etc/passwd", 0, h5py.h5f.UNLIMITED)])
+        elif kind == "virtual":
+            layout = h5py.VirtualLayout(shape, "<f8")
+            layout[:] = h5py.VirtualSource("/etc/passwd", "x", shape)
+            f.create_virtual_dataset(rows, layout)
+        elif kind == "filter":
+            f.create_dataset(rows, shape, "<f8", compression="lzf")
+        elif kind == "type":
+            f.create_dataset(rows, shape, "<i8")
+        elif kind == "huge":
+            f.create_dataset(rows, shape, "<f8", chunks=shape)  # no chunk is stored
+
+
 if __name__ == "__main__":
-    commands = {c.__name__: c for c in (values, labels, snippets, contiguous, put, shorten, remove)}
+    commands = {c.__name__: c for c in (values, labels, snippets, contiguous, put, shorten, remove, forge)}
     commands[sys.argv[1]](*sys.argv[2:])

@@ -1,4 +1,4 @@
-"""Reads an image with VTK's own reader and prints what it finds, for tests of engine/storage/vtk_image_file.hpp.
+"""Reads an image with VTK's own reader and prints what it finds, for tests of engine/report/workspace_export.hpp.
 
 read_vtk.py FILE            dimensions, spacing, origin, and a line of bits per array, x running fastest
 read_vtk.py FILE TABLE.csv  compares every array with the column of its name in a table of pkmopt workspace --csv

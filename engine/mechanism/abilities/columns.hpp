@@ -22,11 +22,8 @@ class Voxels {
  public:
   virtual ~Voxels() = default;
   /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
-  virtual std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
-                                                  const Demand& demand) const = 0;
-  /// The cells of a plan for one design, box as in a survey.
-  virtual VoxelMap map(std::span<const double> parameters, const SurveyPlan& plan,
-                       const VoxelOptions& voxels) const = 0;
+  virtual std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                       const Demand& demand) const = 0;
 };
 
 }  // namespace pkm

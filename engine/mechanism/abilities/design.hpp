@@ -1,4 +1,5 @@
-// Abilities that look at the design alone, or at margins of poses in one unit; and derivatives of all of them.
+// Abilities that look at the design alone, or at margins of poses in one unit: for numbers, and with derivatives by
+// parameters (both_scalars.hpp: written once for the two).
 #pragma once
 
 #include <span>
@@ -18,6 +19,7 @@ class Size {
   virtual std::string unit() const = 0;
   virtual std::string meaning() const = 0;
   virtual double of(std::span<const double> parameters) const = 0;
+  virtual Dual4 of(std::span<const Dual4> parameters) const = 0;
 };
 
 /// A test of the design alone.
@@ -33,6 +35,7 @@ class DesignTests {
   virtual const std::vector<DesignMarginInfo>& list() const = 0;
   /// Margins in the order of list(). Limits enter some of them.
   virtual void test(std::span<const double> parameters, const LimitSpec& limits, std::span<double> margins) const = 0;
+  virtual void test(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> margins) const = 0;
 };
 
 /// Margins of poses in one unit: a pose is feasible where all of its margins are >= 0.
@@ -43,19 +46,8 @@ class PoseMargins {
   /// Appends the margins of poses. They exist, finite, also where a pose does not assemble.
   virtual void append(std::span<const double> parameters, const LimitSpec& limits, std::span<const Pose<double>> poses,
                       std::vector<double>& margins) const = 0;
-};
-
-/// The same with derivatives by parameters, and the thresholds in force. What a mechanism does not have is not asked
-/// for.
-class Derivatives {
- public:
-  virtual ~Derivatives() = default;
-  virtual void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits,
-                          std::span<Dual4> values) const = 0;
-  virtual Dual4 size(std::span<const Dual4>) const { return {}; }
-  virtual void design_margins(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const {}
-  virtual void pose_margins(std::span<const Dual4>, const LimitSpec&, std::span<const Pose<double>>,
-                            std::vector<Dual4>&) const {}
+  virtual void append(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<const Pose<double>> poses,
+                      std::vector<Dual4>& margins) const = 0;
 };
 
 }  // namespace pkm

@@ -1,7 +1,6 @@
 #include "engine/mechanisms/crr_cru/bodies.hpp"
 
 #include "engine/mechanisms/crr_cru/dynamics.hpp"
-#include "engine/mechanisms/crr_cru/inspect.hpp"
 
 namespace pkm::crr_cru {
 namespace {
@@ -95,24 +94,10 @@ Arm<double> on_arm(double distance, double angle) {
   return {{distance * c, distance * s, 0}, true};
 }
 
-std::vector<JointCouple> normal_to(std::size_t axis) {
-  std::vector<JointCouple> couples;
+std::vector<Vec> normal_to(std::size_t axis) {
+  std::vector<Vec> couples;
   for (std::size_t k = 0; k < 3; ++k)
-    if (k != axis) couples.push_back({unit(k)});
-  return couples;
-}
-
-/// Couples of C_i: those of an R joint along e, or of a U joint along e and z.
-std::vector<JointCouple> couples_at_platform(Platform platform, std::size_t i) {
-  const std::size_t e = kLimbs[i].e;
-  const bool universal = i == 3 || (platform == Platform::rigid && i != 2);
-  std::vector<JointCouple> couples = universal ? std::vector<JointCouple>{{unit(1 - e)}} : normal_to(e);
-  // the couples that the square closure sets to zero, as axes
-  using Axes = std::vector<std::size_t>;
-  const std::array<Axes, 4> jointed = {Axes{}, {2}, {0, 1}, {0}}, rigid = {Axes{1}, {0}, {}, {0}};
-  for (JointCouple& couple : couples)
-    for (const std::size_t axis : (platform == Platform::jointed ? jointed : rigid)[i])
-      if (couple.direction[axis] == 1) couple.redundant = true;
+    if (k != axis) couples.push_back(unit(k));
   return couples;
 }
 
@@ -120,11 +105,14 @@ void add_joints(const Geometry<double>& g, const Limbs<double>& limbs, std::size
                 std::vector<Joint>& joints) {
   const Limb<double>& limb = limbs.limb[i];
   const std::size_t e = kLimbs[i].e, inner = 2 * i, outer = inner + 1;
-  const std::size_t platform = i == 3 && g.platform == Platform::jointed ? 9 : 8;
+  const bool jointed = g.platform == Platform::jointed, universal = jointed ? i == 3 : i != 2;
+  const std::size_t platform = i == 3 && jointed ? 9 : 8;
+  // C_i is an R joint along e, or a U joint along e and z
+  const std::vector<Vec> at_platform = universal ? std::vector<Vec>{unit(1 - e)} : normal_to(e);
   const std::string number = std::to_string(i + 1);
   joints.push_back({"a" + number, vector(limb.A), inner, {}, normal_to(e), Actuator{i, unit(e), on_slide}});
   joints.push_back({"b" + number, vector(limb.B), inner, outer, normal_to(e), {}});
-  joints.push_back({"c" + number, vector(limb.C), outer, platform, couples_at_platform(g.platform, i), {}});
+  joints.push_back({"c" + number, vector(limb.C), outer, platform, at_platform, {}});
 }
 
 }  // namespace
@@ -177,16 +165,6 @@ NewtonEuler newton_euler(const Geometry<double>& g, const Masses<double>& b, con
   apply(system.bodies.back(), D + vector(on_arm(b.c, state.pose.angle).to_joint),
         Vec{{wrench[0], wrench[1], wrench[2]}}, Vec{{wrench[3], wrench[4], wrench[5]}});
   return system;
-}
-
-Reactions reactions(const Geometry<double>& g, const Masses<double>& b, const WorkingMode& mode,
-                    const MotionState<double>& state, const Vector<double, 4>& acceleration,
-                    const Wrench<double>& wrench) {
-  const Limbs<double> limbs = inverse(g, state.pose, mode);
-  if (limbs.assembles) return pkm::reactions(newton_euler(g, b, limbs, state, acceleration, wrench));
-  Reactions none;
-  none.reason = inspect(g, {}, {}, state.pose, mode).reason;
-  return none;
 }
 
 }  // namespace pkm::crr_cru

@@ -30,9 +30,4 @@ NewtonEuler newton_euler(const Geometry<double>& g, const Masses<double>& b, con
                          const pkm::MotionState<double, 4>& state, const Vector<double, 4>& acceleration,
                          const Wrench<double>& wrench);
 
-/// What all joints carry; a reason where the limbs do not reach.
-Reactions reactions(const Geometry<double>& g, const Masses<double>& b, const WorkingMode& mode,
-                    const pkm::MotionState<double, 4>& state, const Vector<double, 4>& acceleration,
-                    const Wrench<double>& wrench);
-
 }  // namespace pkm::crr_cru

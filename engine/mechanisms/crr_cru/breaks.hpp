@@ -2,6 +2,8 @@
 // a closed form.
 #pragma once
 
+#include <span>
+
 #include "engine/math/pieces.hpp"
 #include "engine/mechanisms/crr_cru/section.hpp"
 
@@ -71,55 +73,46 @@ void breaks_in_x(const Sweeping<S>& s, std::vector<Break<S>>& breaks) {
   const auto add = [&](const S& at, bool root) {
     if (value_of(at) > first && value_of(at) < last) breaks.push_back({at, root, root});
   };
-  struct Level {
+  struct Line {
     S at;
     bool tangent;
   };
-  const auto find_levels = [&](std::size_t axis, std::array<Level, 15>& level) {  // returns how many
-    std::size_t n = 0;
-    const auto keep = [&](const S& at, bool tangent) {
-      const bool inside = value_of(at) >= value_of(range[axis].lower) && value_of(at) <= value_of(range[axis].upper);
-      if (inside) level[n++] = {at, tangent};
-    };
-    const std::size_t other = 3 - axis;
-    const Vector3<S>& center = s.frame.center[0];
-    keep(range[axis].lower, false);
-    keep(range[axis].upper, false);
-    keep(center[axis], false);
-    for (const S& radius2 : {d.in2[0], d.out2[0]}) {
-      const S radius = root_or_zero(radius2);
-      keep(center[axis] - radius, true);
-      keep(center[axis] + radius, true);
-      for (const S& end : {range[other].lower, range[other].upper}) {
-        const S away = end - center[other], half2 = radius2 - away * away;
-        if (!(value_of(half2) > 0)) continue;
-        const S half = sqrt(half2);
-        keep(center[axis] - half, false);
-        keep(center[axis] + half, false);
-      }
-    }
-    return n;
-  };
-  std::array<Level, 15> level;
-  const auto add_circles = [&](std::size_t limb, std::size_t axis, std::size_t levels) {
+  // where along one axis the circles of a limb's ring begin, end, and cross lines of the other axis
+  const auto visit_circles = [&](std::size_t limb, std::size_t along, std::size_t across, std::span<const Line> lines,
+                                 const auto& visit) {
     const Vector3<S>& center = s.frame.center[limb];
     for (const S& radius2 : {d.in2[limb], d.out2[limb]}) {
       const S radius = root_or_zero(radius2);
-      add(center[0] - radius, true);
-      add(center[0] + radius, true);
-      for (std::size_t k = 0; k < levels; ++k) {
-        const S away = level[k].at - center[axis], half2 = radius2 - away * away;
+      visit(center[along] - radius, true);
+      visit(center[along] + radius, true);
+      for (const Line& line : lines) {
+        const S away = line.at - center[across], half2 = radius2 - away * away;
         if (!(value_of(half2) > 0)) continue;
         const S half = sqrt(half2);
-        add(center[0] - half, level[k].tangent);
-        add(center[0] + half, level[k].tangent);
+        visit(center[along] - half, line.tangent);
+        visit(center[along] + half, line.tangent);
       }
     }
   };
-  add_circles(2, 1, find_levels(1, level));
-  const std::size_t levels = find_levels(2, level);
-  add_circles(1, 2, levels);
-  add_circles(3, 2, levels);
+  std::array<Line, 15> room;
+  const auto find_levels = [&](std::size_t axis) {
+    std::size_t n = 0;
+    const auto keep = [&](const S& at, bool tangent) {
+      const bool inside = value_of(at) >= value_of(range[axis].lower) && value_of(at) <= value_of(range[axis].upper);
+      if (inside) room[n++] = {at, tangent};
+    };
+    const std::size_t other = 3 - axis;
+    keep(range[axis].lower, false);
+    keep(range[axis].upper, false);
+    keep(s.frame.center[0][axis], false);
+    visit_circles(0, axis, other, std::array<Line, 2>{{{range[other].lower, false}, {range[other].upper, false}}},
+                  keep);
+    return std::span<const Line>(room).first(n);
+  };
+  visit_circles(2, 0, 1, find_levels(1), add);
+  const std::span<const Line> levels = find_levels(2);
+  visit_circles(1, 0, 2, levels, add);
+  visit_circles(3, 0, 2, levels, add);
 
   const Vector3<S>&p = s.frame.center[1], &q = s.frame.center[3];
   const S dx = q[0] - p[0], dz = q[2] - p[2], apart2 = dx * dx + dz * dz;

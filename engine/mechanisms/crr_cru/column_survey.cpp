@@ -1,7 +1,7 @@
 #include "engine/mechanisms/crr_cru/columns.hpp"
 #include "engine/mechanisms/crr_cru/coupling.hpp"
 #include "engine/mechanisms/crr_cru/survey.hpp"
-#include "engine/mechanisms/crr_cru/surveyor.hpp"
+#include "engine/survey/with_slopes.hpp"
 
 namespace pkm::crr_cru {
 namespace {
@@ -15,47 +15,30 @@ PoseBox pose_box(const Held& held, const std::optional<Box>& swept) {
   return box;
 }
 
-/// Adds what was demanded of one pose's inertia.
-template <class S>
-void add_inertia(const Matrix<S, 4, 4>& M_q, const Demand& demand, Survey<S>& survey) {
-  if (demand.dci) {
-    const Vector<S, 4> index = coupling_indices(M_q);
-    for (std::size_t i = 0; i < 4; ++i) survey.dci[i].push_back(index[i]);
-  }
-  if (demand.inertia_condition) survey.inertia_condition.push_back(inertia_condition(M_q));
-}
-
-class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
+class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
  public:
-  ColumnSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
-                 const ColumnOptions& columns, const Demand& demand)
-      : SurveyorOfPlan(platform, mass_model, mode, held, plan, demand),
-        box_(pose_box(held_, columns.box)),
+  ColumnSurveyor(const Planned& planned, const ColumnOptions& columns)
+      : planned_(planned),
+        box_(pose_box(planned_.held, columns.box)),
         tolerance_(columns.tolerance),
         fixed_(columns.nodes[0] > 0) {
     // Nodes come in the order of the swept coordinates; phi is the last of them.
-    const std::size_t outer = cuts(held_).outer_is_phi ? 1 : 0;
-    const int usual = needs_inertia() ? kInertiaNodes : kSampleNodes;
+    const std::size_t outer = cuts(planned_.held).outer_is_phi ? 1 : 0;
+    const int usual = planned_.demand.needs_inertia() ? kInertiaNodes : kSampleNodes;
     outer_rule_ = gauss_legendre(fixed_ ? columns.nodes[outer] : usual);
     inner_rule_ = gauss_legendre(fixed_ ? columns.nodes[1 - outer] : kInertiaNodes);
   }
 
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    run(parameters, scratch.get<ColumnScratch<double>>(), survey);
-  }
-  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
-    run(parameters, scratch.get<ColumnScratch<Dual4>>(), survey);
-  }
-  const SlopeSurveyor* slopes() const override { return this; }
-
  private:
+  friend WithSlopes<ColumnSurveyor>;
   static constexpr int kSampleNodes = 32;
   static constexpr int kInertiaNodes = 8;  // per piece and coordinate
 
   template <class S>
-  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
-    survey.clear();
-    const auto s = sweeping(design(geometry(platform_, parameters), limits_, box_), held_);
+  void run(std::span<const S> parameters, Scratch& room, Survey<S>& survey) const {
+    survey.clear(planned_.demand.fields);
+    ColumnScratch<S>& scratch = room.get<ColumnScratch<S>>();
+    const auto s = sweeping(design(geometry(planned_.platform, parameters), planned_.limits, box_), planned_.held);
     find_outer_pieces(s, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     long columns = 0;
     if (!fixed_) {
@@ -67,7 +50,7 @@ class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
       columns = volume.evaluations;
     }
     const Geometry<S>& g = s.design.g;
-    if (needs_inertia()) {
+    if (planned_.demand.needs_inertia()) {
       sample_inertia(s, parameters, scratch, survey);
       if (fixed_) {
         for (const S& weight : survey.weight) survey.volume += weight;
@@ -76,16 +59,16 @@ class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
       survey.columns = columns;
       return;
     }
-    if (fixed_ || (demand_.conditioning && s.cuts.outer_is_phi))
+    if (fixed_ || (planned_.with_conditioning && s.cuts.outer_is_phi))
       for (const Piece<S>& piece : scratch.pieces)
         for (std::size_t i = 0; i < outer_rule_.node.size(); ++i) {
           const auto [outer, jacobian] = map_node(piece, outer_rule_.node[i]);
           const S area = fixed_ ? area_of_columns(s, outer, inner_rule_, scratch, columns) : area_at(s, outer, scratch);
           const S weight = area * jacobian * outer_rule_.weight[i];
           if (fixed_) survey.volume += weight;
-          if (demand_.conditioning && s.cuts.outer_is_phi) add_conditioning(g, outer, weight, survey);
+          if (planned_.with_conditioning && s.cuts.outer_is_phi) planned_.add_conditioning(g, outer, weight, survey);
         }
-    if (demand_.conditioning && !s.cuts.outer_is_phi) add_conditioning(g, s.held, survey.volume, survey);
+    if (planned_.with_conditioning && !s.cuts.outer_is_phi) planned_.add_conditioning(g, s.held, survey.volume, survey);
     survey.columns = columns;
   }
 
@@ -94,13 +77,13 @@ class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
   void sample_inertia(const Sweeping<S>& s, std::span<const S> parameters, ColumnScratch<S>& scratch,
                       Survey<S>& survey) const {
     const Geometry<S>& g = s.design.g;
-    const Masses<S> b = masses(mass_model_, parameters);
+    const Masses<S> b = masses(planned_.mass_model, parameters);
     InertiaFrame<S> frame;
     S angle(0.0), index(0.0);
     const auto set_phi = [&](const S& phi) {
       angle = phi;
       frame = inertia_frame(g, b, phi);
-      if (demand_.conditioning) index = conditioning_at(g, phi);
+      if (planned_.with_conditioning) index = planned_.conditioning_at(g, phi);
     };
     if (!s.cuts.outer_is_phi) set_phi(s.held);
     for (const Piece<S>& piece : scratch.pieces)
@@ -112,9 +95,9 @@ class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
           const S measure = outer_weight * weight;
           if (!(value_of(measure) > 0)) return;
           survey.weight.push_back(measure);
-          if (demand_.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
-          if (demand_.conditioning) survey.conditioning.push_back(index);
-          add_inertia(joint_inertia(g, b, frame, at, mode_), demand_, survey);
+          if (planned_.demand.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
+          if (planned_.with_conditioning) survey.find(kConditioning)->push_back(index);
+          add_inertia(joint_inertia(g, b, frame, at, planned_.mode), survey);
         });
       }
   }
@@ -122,11 +105,12 @@ class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
   /// The design as constants of another scalar.
   template <class To, class From>
   Sweeping<To> still(std::span<const From> parameters) const {
-    std::array<To, kParameters> values;
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = To(value_of(parameters[i]));
-    return sweeping(design(geometry(platform_, std::span<const To>(values)), limits_, box_), held_);
+    const std::array<To, kParameters> values = constants<To, kParameters>(parameters);
+    return sweeping(design(geometry(planned_.platform, std::span<const To>(values)), planned_.limits, box_),
+                    planned_.held);
   }
 
+  Planned planned_;
   PoseBox box_;
   double tolerance_;
   bool fixed_;  ///< numbers of nodes are given
@@ -135,10 +119,8 @@ class ColumnSurveyor final : public SurveyorOfPlan, public SlopeSurveyor {
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_column_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                     int held, const SurveyPlan& plan, const ColumnOptions& columns,
-                                                     const Demand& demand) {
-  return std::make_unique<ColumnSurveyor>(platform, mass_model, mode, held, plan, columns, demand);
+std::unique_ptr<const Surveyor> make_surveyor(const Planned& planned, const ColumnOptions& columns) {
+  return std::make_unique<ColumnSurveyor>(planned, columns);
 }
 
 }  // namespace pkm::crr_cru

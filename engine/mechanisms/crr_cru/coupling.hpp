@@ -30,9 +30,7 @@ InertiaFrame<S> inertia_frame(const Geometry<S>& g, const Masses<S>& b, const S&
     const LimbFrame& limb = kLimbs[i];
     f.arm[i] = arm[i].to_joint;
     f.per_slide[i] = {X[limb.p] + turn[i][limb.p] * w, X[limb.q] + turn[i][limb.q] * w};
-    Matrix<S, 3, 3> rail;
-    rail(limb.e, limb.e) = rail_mass(b, i);
-    add_at_joint(rail, turn[i], M);
+    add_at_joint(limb, {}, rail_mass(b, i), turn[i], M);
   }
   const Vector<S, 4> v = M * X;
   f.xx = M(0, 0);

@@ -10,13 +10,13 @@
 
 namespace pkm::crr_cru {
 
-/// A limb's share of the inertia at its joint, in world axes: its plane's lower axis, both, the higher one [kg]. None
-/// where rounding has put a sample just outside the reach.
 template <class S>
 using MotionState = pkm::MotionState<S, 4>;
 template <class S>
 using PoseDynamics = pkm::PoseDynamics<S, 4>;
 
+/// A limb's share of the inertia at its joint, in world axes: its plane's lower axis, both, the higher one [kg]. None
+/// where rounding has put a sample just outside the reach.
 template <class S>
 PlaneInertia<S> plane_inertia(const Geometry<S>& g, const Masses<S>& b, std::size_t i, const Limb<S>& limb) {
   if (!limb.reaches) return {};
@@ -39,21 +39,16 @@ S rail_mass(const Masses<S>& b, std::size_t i) {
   return b.m_1[i] + b.m_2[i] + b.slide;
 }
 
-/// The same in space, with what moves along the rail.
+/// Adds J_C^T A J_C, J_C = [1 | turning], to M_X, where A is a limb's share in space: in its plane, and what moves
+/// along its rail.
 template <class S>
-Matrix<S, 3, 3> inertia_at_joint(const PlaneInertia<S>& d, const S& along, std::size_t i) {
-  const LimbFrame& f = kLimbs[i];
+void add_at_joint(const LimbFrame& f, const PlaneInertia<S>& share, const S& along, const Vector<S, 3>& turning,
+                  Matrix<S, 4, 4>& M) {
   Matrix<S, 3, 3> at;
-  at(f.p, f.p) = d.pp;
-  at(f.q, f.q) = d.qq;
-  at(f.p, f.q) = at(f.q, f.p) = d.pq;
+  at(f.p, f.p) = share.pp;
+  at(f.q, f.q) = share.qq;
+  at(f.p, f.q) = at(f.q, f.p) = share.pq;
   at(f.e, f.e) = along;
-  return at;
-}
-
-/// Adds J_C^T at J_C, J_C = [1 | turning], to M_X.
-template <class S>
-void add_at_joint(const Matrix<S, 3, 3>& at, const Vector<S, 3>& turning, Matrix<S, 4, 4>& M) {
   const Vector<S, 3> column = at * turning;
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t c = 0; c < 3; ++c) M(r, c) += at(r, c);
@@ -115,7 +110,7 @@ PoseDynamics<S> pose_dynamics(const Geometry<S>& g, const Masses<S>& b, const Mo
     }
     d.J_rate_X[i] = a[f.e];
     const S along = rail_mass(b, i);
-    add_at_joint(inertia_at_joint(plane_inertia(g, b, i, limb), along, i), t, d.M_X);
+    add_at_joint(f, plane_inertia(g, b, i, limb), along, t, d.M_X);
 
     // forces that the rods need in the plane at C_i: by rates alone, and by weight alone
     const RodRates<S> rate = rod_rates(g, i, limb, v.m, a.m);

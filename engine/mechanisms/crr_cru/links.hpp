@@ -73,21 +73,11 @@ inline constexpr std::array<LinkPair, kLinkPairs> kPairs = [] {
   return pairs;
 }();
 
-/// The two links that are nearest to each other.
-template <class S>
-struct Nearest {
-  S clearance;  ///< [m], negative where they overlap
-  std::size_t first = 0, second = 0;
-};
-
 template <class S>
 Nearest<S> nearest_links(const Links<S>& all) {
-  Nearest<S> nearest{capsule_distance(all[kPairs[0].first], all[kPairs[0].second]), kPairs[0].first, kPairs[0].second};
-  for (const LinkPair& pair : kPairs) {
-    const S found = capsule_distance(all[pair.first], all[pair.second]);
-    if (value_of(found) < value_of(nearest.clearance)) nearest = {found, pair.first, pair.second};
-  }
-  return nearest;
+  return nearest_of(all, [](const auto& visit) {
+    for (const LinkPair& pair : kPairs) visit(pair.first, pair.second);
+  });
 }
 
 /// Whether no pair is nearer than `least` [m]: as nearest_links says, but it stops at the first pair that is.

@@ -37,13 +37,6 @@ void state_margins(const Design<S>& d, const Pose<double>& pose, const Say& say)
   say(kParallel, S(parallel_index(d.yaw, sin, cos) - d.c_min));
 }
 
-/// The plain test of one pose, but for clearance.
-inline bool keeps_limits(const Design<double>& d, const Pose<double>& pose) {
-  bool keeps = true;
-  state_margins(d, pose, [&keeps](std::size_t, double margin) { keeps = keeps && margin >= 0; });
-  return keeps;
-}
-
 /// Appends 17 margins [m] per pose; that of kappa_p is R (kappa_p - c_min), the distance from the parallel singularity
 /// along the slides.
 template <class S>

@@ -3,6 +3,7 @@
 
 #include "engine/core/options.hpp"
 #include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanism/with_abilities.hpp"
 #include "engine/mechanisms/crr_cru/bodies.hpp"
 #include "engine/mechanisms/crr_cru/dynamics.hpp"
 #include "engine/mechanisms/crr_cru/forward.hpp"
@@ -16,23 +17,14 @@ namespace {
 
 using namespace crr_cru;
 
-/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
-constexpr double kNoClearance = -2;
-
-/// "-,-,+,-"
-std::string name_of(const WorkingMode& mode) {
-  std::string name;
-  for (const int sign : mode) name += (name.empty() ? "" : ",") + std::string(sign > 0 ? "+" : "-");
-  return name;
-}
-
 /// All 16, the nominal one first.
-std::vector<WorkingMode> all_modes() {
-  const WorkingMode nominal = {-1, -1, 1, -1};
-  std::vector<WorkingMode> modes = {nominal};
+std::vector<std::string> all_modes() {
+  std::vector<std::string> modes = {"-,-,+,-"};
   for (int bits = 0; bits < 16; ++bits) {
-    const WorkingMode mode = {bits & 8 ? 1 : -1, bits & 4 ? 1 : -1, bits & 2 ? 1 : -1, bits & 1 ? 1 : -1};
-    if (mode != nominal) modes.push_back(mode);
+    std::string mode = "-,-,-,-";
+    for (std::size_t i = 0; i < 4; ++i)
+      if (bits & 8 >> i) mode[2 * i] = '+';
+    if (mode != modes.front()) modes.push_back(mode);
   }
   return modes;
 }
@@ -70,7 +62,7 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
   for (Parameter& parameter : mass_parameters(mass_model)) i.parameters.push_back(std::move(parameter));
   i.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"phi", "rad"}};
   i.joints = {{"rho1", "m"}, {"rho2", "m"}, {"rho3", "m"}, {"rho4", "m"}};
-  for (const WorkingMode& mode : all_modes()) i.modes.push_back(name_of(mode));
+  i.modes = all_modes();
   i.sweeps = {{.swept = {0, 1, 2}, .held = {3}, .column = 2},
               {.swept = {1, 2, 3}, .held = {0}, .column = 2},
               {.swept = {0, 2, 3}, .held = {1}, .column = 2},
@@ -85,32 +77,13 @@ MechanismInfo make_info(Platform platform, MassModel mass_model) {
   return i;
 }
 
-class CrrCru final : public Mechanism,
-                     Voxels,
-                     Columns,
-                     Derivatives,
-                     PoseMarginsOf<CrrCru>,
-                     Velocities,
-                     ForwardKinematics,
-                     pkm::Links,
-                     DynamicsOf<CrrCru>,
-                     JointReactions {
+class CrrCru final : public MechanismWith<Voxels, Columns, PoseMarginsOf<CrrCru>, Velocities, ForwardKinematics,
+                                          pkm::Links, DynamicsOf<CrrCru>, JointReactions> {
  public:
   explicit CrrCru(Platform platform, MassModel mass_model = MassModel::table)
       : platform_(platform), mass_model_(mass_model), info_(make_info(platform, mass_model)) {}
 
   const MechanismInfo& info() const override { return info_; }
-  const Voxels* voxels() const override { return this; }
-  const Columns* columns() const override { return this; }
-  const Derivatives* derivatives() const override { return this; }
-  const PoseMargins* pose_margins() const override { return this; }
-  const Velocities* velocities() const override { return this; }
-  const ForwardKinematics* forward() const override { return this; }
-  const pkm::Links* links() const override { return this; }
-  const Dynamics* dynamics() const override { return this; }
-  const JointReactions* reactions() const override { return this; }
-
-  using Mechanism::thresholds;
   std::optional<double> middle(std::span<const double> p, int coordinate) const override {
     return held_value(geometry(platform_, p), Held{static_cast<std::size_t>(coordinate)});
   }
@@ -136,38 +109,23 @@ class CrrCru final : public Mechanism,
   friend PoseMarginsOf<CrrCru>;
   friend DynamicsOf<CrrCru>;
 
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
-                                          const Demand& demand) const override {
-    const WorkingMode& mode = surveyed_mode(demand);
-    if (is_clear(plan) && mode != modes_.front())
+  std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                               const Demand& demand) const override {
+    if (asks_clearance(plan, kClearanceMin) && mode_called(demand.mode) != mode_called(""))
       throw std::invalid_argument("mechanism " + info_.name + " surveys a clearance (clearance_min) in the mode " +
-                                  name_of(modes_.front()) + " only, so inertia is not surveyed in the mode " +
-                                  demand.mode + " beside it");
-    return make_voxel_surveyor(platform_, mass_model_, mode, held_by(plan), plan, voxels, demand);
+                                  info_.modes.front() + " only, so inertia is not surveyed in the mode " + demand.mode +
+                                  " beside it");
+    return make_surveyor(planned(plan, demand), voxels);
   }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
                                           const Demand& demand) const override {
-    if (is_clear(plan))
+    if (asks_clearance(plan, kClearanceMin))
       throw std::invalid_argument("mechanism " + info_.name +
                                   " has no column surveys under a clearance (clearance_min), because rods that meet "
                                   "end columns where no formula says; take workspace.method = \"voxels\"");
-    return make_column_surveyor(platform_, mass_model_, surveyed_mode(demand), held_by(plan), plan, columns, demand);
+    return make_surveyor(planned(plan, demand), columns);
   }
   bool take_box() const override { return true; }
-  VoxelMap map(std::span<const double> p, const SurveyPlan& plan, const VoxelOptions& voxels) const override {
-    return voxel_map(platform_, modes_.front(), held_by(plan), p, plan, voxels);
-  }
-
-  void thresholds(std::span<const Dual4>, const LimitSpec& spec, std::span<Dual4> values) const override {
-    const Limits l = limits(spec);
-    values[kSMin] = l.s_min;
-    values[kCMin] = l.c_min;
-    values[kClearanceMin] = l.clearance_min.value_or(kNoClearance);
-  }
-  void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
-                    std::vector<Dual4>& margins) const override {
-    find_margins(p, spec, poses, margins);
-  }
 
   std::optional<pkm::Influence<double>> influence(std::span<const double> p, const pkm::Pose<double>& pose,
                                                   const std::string& mode) const override {
@@ -184,8 +142,13 @@ class CrrCru final : public Mechanism,
   }
   Reactions find(std::span<const double> p, const std::string& mode, const pkm::MotionState<double>& state,
                  const AxisVector<double>& acceleration, const Wrench<double>& wrench) const override {
-    return crr_cru::reactions(geometry(platform_, p), masses(mass_model_, p), mode_called(mode), state,
-                              fixed<4>(acceleration), wrench);
+    const auto g = geometry(platform_, p);
+    const auto b = masses(mass_model_, p);
+    const Limbs<double> limbs = inverse(g, schoenflies(state.pose), mode_called(mode));
+    if (limbs.assembles) return pkm::reactions(newton_euler(g, b, limbs, state, fixed<4>(acceleration), wrench));
+    Reactions none;
+    none.reason = inspect(p, state.pose, mode, no_limits(info_)).reason;
+    return none;
   }
   const std::vector<std::string>& mass_models() const override { return kMassModels; }
   const std::string& mass_model() const override { return kMassModels[static_cast<std::size_t>(mass_model_)]; }
@@ -195,17 +158,20 @@ class CrrCru final : public Mechanism,
     return nullptr;
   }
 
-  int held_by(const SurveyPlan& plan) const { return sweep_of(info_, plan).held.front(); }
-  const WorkingMode& surveyed_mode(const Demand& demand) const {
-    return demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
+  Planned planned(const SurveyPlan& plan, const Demand& demand) const {
+    const HeldCoordinate held = how_held(plan, sweep_of(info_, plan).held.front());
+    return {.platform = platform_,
+            .mass_model = mass_model_,
+            .mode = mode_called(demand.mode),
+            .held = {static_cast<std::size_t>(held.coordinate), held.kind == HeldCoordinate::Kind::middle, held.value},
+            .limits = limits(plan.limits),
+            .demand = demand};
   }
-  static bool is_clear(const SurveyPlan& plan) {
-    return plan.limits.given[kClearanceMin].value_or(kNoClearance) > kNoClearance;
-  }
-  const WorkingMode& mode_called(const std::string& name) const {
-    for (const WorkingMode& known : modes_)
-      if (name == name_of(known)) return known;
-    throw std::invalid_argument("unknown working mode " + name);
+  WorkingMode mode_called(const std::string& name) const {
+    const std::string& signs = info_.modes[number_of_mode(info_, name)];
+    WorkingMode mode;
+    for (std::size_t i = 0; i < 4; ++i) mode[i] = signs[2 * i] == '+' ? 1 : -1;
+    return mode;
   }
   template <class S>
   void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
@@ -213,12 +179,12 @@ class CrrCru final : public Mechanism,
     const auto g = geometry(platform_, p);
     const Limits l = limits(spec);
     add_margins(design(g, l), poses, margins);
-    if (l.clearance_min) add_clearances(g, link_radii(p), *l.clearance_min, modes_.front(), poses, margins);
+    if (l.clearance_min) add_clearances(g, link_radii(p), *l.clearance_min, mode_called(""), poses, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const pkm::MotionState<S>> states,
                      std::span<pkm::PoseDynamics<S>> out) const {
-    const WorkingMode& signs = mode_called(mode);
+    const WorkingMode signs = mode_called(mode);
     const auto g = geometry(platform_, p);
     const auto b = masses(mass_model_, p);
     for (std::size_t i = 0; i < states.size(); ++i) out[i] = pose_dynamics<S>(g, b, states[i], signs);
@@ -227,7 +193,6 @@ class CrrCru final : public Mechanism,
   Platform platform_;
   MassModel mass_model_;
   MechanismInfo info_;
-  std::vector<WorkingMode> modes_ = all_modes();
 };
 
 }  // namespace

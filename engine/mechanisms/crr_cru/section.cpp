@@ -49,22 +49,17 @@ IntervalSet<double> column_at(const Section<double>& s, double u) {
 std::uint64_t signature_of(const Section<double>& s, const std::vector<Column>& columns) {
   if (columns.empty()) return 0;
   Fnv1a hash;
+  const auto add = [&hash](auto... values) { (hash.add(values), ...); };
   for (const auto* set : {&s.u, &s.v}) {
-    hash.add(set->size);
-    for (std::size_t i = 0; i < set->size; ++i) {
-      hash.add(set->interval[i].lower_code.number());
-      hash.add(set->interval[i].upper_code.number());
-    }
+    add(set->size);
+    for (std::size_t i = 0; i < set->size; ++i)
+      add(set->interval[i].lower_code.number(), set->interval[i].upper_code.number());
   }
   for (const Column& column : columns) {
-    for (const BreakCode& code : {column.lower, column.upper}) {
-      hash.add(static_cast<std::size_t>(code.kind));
-      hash.add(code.first);
-      hash.add(code.second);
-      hash.add(code.sign > 0);
-    }
-    hash.add(column.ends);
-    for (std::size_t k = 0; k < column.ends; ++k) hash.add(column.end[k].number());
+    for (const BreakCode& code : {column.lower, column.upper})
+      add(static_cast<std::size_t>(code.kind), code.first, code.second, code.sign > 0);
+    add(column.ends);
+    for (std::size_t k = 0; k < column.ends; ++k) add(column.end[k].number());
   }
   return hash.value();
 }
@@ -76,18 +71,12 @@ void find_structure(const Section<double>& s, Structure& structure) {
   structure.signature = 0;
   if (s.u.size == 0 || s.v.size == 0) return;
   list_candidates(s, structure.candidates);
-  auto next = structure.candidates.begin();
-  const auto end = structure.candidates.end();
   for (std::size_t i = 0; i < s.u.size; ++i) {
     const Interval<double>& part = s.u.interval[i];
-    while (next != end && next->u <= part.lower) ++next;
     BreakCode from = BreakCode::end_of_u(2 * i);
     double low = part.lower;
     bool joins = false;  // the column before reaches up to `from`
-    while (true) {
-      const bool last = next == end || next->u >= part.upper;
-      const double high = last ? part.upper : next->u;
-      const BreakCode to = last ? BreakCode::end_of_u(2 * i + 1) : next->code;
+    const auto go_to = [&](double high, const BreakCode& to) {
       if (high > low) {
         const IntervalSet<double> found = column_at(s, 0.5 * (low + high));
         Column column{.lower = from, .upper = to, .end = {}, .ends = 2 * found.size};
@@ -104,11 +93,12 @@ void find_structure(const Section<double>& s, Structure& structure) {
           structure.columns.push_back(column);
         joins = column.ends > 0;
       }
-      if (last) break;
       from = to;
       low = high;
-      ++next;
-    }
+    };
+    for (const auto& [u, code] : structure.candidates)
+      if (u > part.lower && u < part.upper) go_to(u, code);
+    go_to(part.upper, BreakCode::end_of_u(2 * i + 1));
   }
   structure.signature = signature_of(s, structure.columns);
 }

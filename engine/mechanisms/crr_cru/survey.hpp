@@ -4,24 +4,40 @@
 #include <memory>
 
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanisms/crr_cru/frame.hpp"
 #include "engine/mechanisms/crr_cru/masses.hpp"
+#include "engine/survey/pose_quantities.hpp"
 
 namespace pkm::crr_cru {
 
-/// @param held  number of the coordinate that the plan holds
-/// @param mode  of the coupling that is demanded
-/// @param plan  without a clearance
-std::unique_ptr<const Surveyor> make_column_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                     int held, const SurveyPlan& plan, const ColumnOptions& columns,
-                                                     const Demand& demand);
+/// What surveyors by columns and by voxels share.
+struct Planned {
+  Platform platform;
+  MassModel mass_model;
+  WorkingMode mode;  ///< of the coupling that is demanded and of a clearance; else feasibility does not depend on it
+  Held held;
+  Limits limits;
+  Demand demand;
+  bool with_conditioning = demand.has(kConditioning);
 
-/// @param held  number of the coordinate that the plan holds
-/// @param mode  of the coupling that is demanded and of a clearance; else feasibility does not depend on it
-std::unique_ptr<const Surveyor> make_voxel_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                    int held, const SurveyPlan& plan, const VoxelOptions& voxels,
-                                                    const Demand& demand);
+  /// Conditioning depends on phi alone.
+  template <class S>
+  S conditioning_at(const Geometry<S>& g, const S& phi) const {
+    const auto [s, c] = sincos(phi);
+    const S length = demand.characteristic_length ? S(*demand.characteristic_length) : characteristic_length(g);
+    return conditioning(arms(g, s, c), length);
+  }
+  /// One sample stands for all positions at one phi.
+  template <class S>
+  void add_conditioning(const Geometry<S>& g, const S& phi, const S& weight, Survey<S>& survey) const {
+    if (!(value_of(weight) > 0)) return;
+    survey.weight.push_back(weight);
+    survey.find(kConditioning)->push_back(conditioning_at(g, phi));
+  }
+};
 
-VoxelMap voxel_map(Platform platform, const WorkingMode& mode, int held, std::span<const double> parameters,
-                   const SurveyPlan& plan, const VoxelOptions& voxels);
+/// @param planned  without a clearance
+std::unique_ptr<const Surveyor> make_surveyor(const Planned& planned, const ColumnOptions& columns);
+std::unique_ptr<const VoxelSurveyor> make_surveyor(const Planned& planned, const VoxelOptions& voxels);
 
 }  // namespace pkm::crr_cru

@@ -3,7 +3,6 @@
 #include "engine/mechanisms/crr_cru/inertia_tables.hpp"
 #include "engine/mechanisms/crr_cru/links.hpp"
 #include "engine/mechanisms/crr_cru/survey.hpp"
-#include "engine/mechanisms/crr_cru/surveyor.hpp"
 #include "engine/mechanisms/crr_cru/voxels.hpp"
 #include "engine/survey/share_samples.hpp"
 
@@ -78,19 +77,16 @@ struct Slice {
   Survey<double>& part;  ///< of the survey: what is found here goes there
 };
 
-class VoxelSurveyor final : public SurveyorOfPlan {
+class OfVoxels final : public VoxelSurveyor {
  public:
-  VoxelSurveyor(Platform platform, MassModel mass_model, const WorkingMode& mode, int held, const SurveyPlan& plan,
-                const VoxelOptions& voxels, const Demand& demand)
-      : SurveyorOfPlan(platform, mass_model, mode, held, plan, demand), voxels_(voxels) {}
+  OfVoxels(const Planned& planned, const VoxelOptions& voxels)
+      : planned_(planned),
+        voxels_(voxels),
+        beyond_coupling_(std::ranges::any_of(planned.demand.fields, [](const PoseQuantity* quantity) {
+          return quantity->needs_inertia() && quantity != &kCouplingIndex;
+        })) {}
 
-  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
-
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    run(parameters, scratch.get<VoxelScratch>(), survey);
-  }
-
-  VoxelMap map(std::span<const double> parameters) const {
+  VoxelMap map(std::span<const double> parameters) const override {
     VoxelScratch scratch;
     const Gridded s = gridded(parameters);
     VoxelMap m = s.grid.map();
@@ -108,33 +104,34 @@ class VoxelSurveyor final : public SurveyorOfPlan {
 
  private:
   Gridded gridded(std::span<const double> parameters) const {
-    const Design<double> d = design(geometry(platform_, parameters), limits_);
+    const Design<double> d = design(geometry(planned_.platform, parameters), planned_.limits);
     Gridded s{.d = d,
-              .grid = {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, held_)},
-              .axes = grid_axes(held_),
-              .over_phi = cuts(held_).outer_is_phi,
+              .grid = {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, planned_.held)},
+              .axes = grid_axes(planned_.held),
+              .over_phi = cuts(planned_.held).outer_is_phi,
               .swept = {},
-              .held = held_.coordinate,
-              .held_at = held_value(d.g, held_),
+              .held = planned_.held.coordinate,
+              .held_at = held_value(d.g, planned_.held),
               .test = {}};
     for (std::size_t k = 0, axis = 0; k < 4; ++k)
       if (k != s.held) s.swept[axis++] = k;
-    if (limits_.clearance_min) s.test = {link_radii(parameters), mode_, *limits_.clearance_min};
+    if (planned_.limits.clearance_min) s.test = {link_radii(parameters), planned_.mode, *planned_.limits.clearance_min};
     return s;
   }
 
-  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
-    survey.clear();
+  void survey(std::span<const double> parameters, Scratch& room, Survey<double>& survey) const override {
+    survey.clear(planned_.demand.fields);
+    VoxelScratch& scratch = room.get<VoxelScratch>();
     const Gridded s = gridded(parameters);
     survey.cells = s.grid.count();
     survey.cell_volume = s.grid.cell_volume();
-    if (needs_inertia())
-      sample(s, masses(mass_model_, parameters), scratch, survey);
+    if (planned_.demand.needs_inertia())
+      sample(s, masses(planned_.mass_model, parameters), scratch, survey);
     else
       count(s, scratch, survey);
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
-    if (demand_.conditioning && survey.weight.empty())  // one phi for all
-      add_conditioning(s.d.g, s.held_at, survey.volume, survey);
+    if (planned_.with_conditioning && survey.weight.empty())  // one phi for all
+      planned_.add_conditioning(s.d.g, s.held_at, survey.volume, survey);
   }
 
   /// Cells alone, section by section. Where sections are of one phi each, its conditioning is a sample.
@@ -153,17 +150,17 @@ class VoxelSurveyor final : public SurveyorOfPlan {
       if (plane.cells == 0) return;
       slice.part.feasible_cells += plane.cells;
       slice.part.touches_box = slice.part.touches_box || plane.touches;
-      if (demand_.conditioning && s.over_phi)
-        add_conditioning(s.d.g, s.grid.centre(s.axes.outer, slice.k), static_cast<double>(plane.cells) * cell_volume,
-                         slice.part);
+      if (planned_.with_conditioning && s.over_phi)
+        planned_.add_conditioning(s.d.g, s.grid.centre(s.axes.outer, slice.k),
+                                  static_cast<double>(plane.cells) * cell_volume, slice.part);
     });
   }
 
   /// Every cell, with its inertia.
   void sample(const Gridded& s, const Masses<double>& b, VoxelScratch& scratch, Survey<double>& survey) const {
     const auto fill = [&](InertiaTables& tables, double phi) {
-      tables.fill(s.d.g, b, mode_, phi, s.grid, s.swept, s.axes.v, s.held_at);
-      return demand_.conditioning ? conditioning_at(s.d.g, phi) : 0.0;
+      tables.fill(s.d.g, b, planned_.mode, phi, s.grid, s.swept, s.axes.v, s.held_at);
+      return planned_.with_conditioning ? planned_.conditioning_at(s.d.g, phi) : 0.0;
     };
     InertiaTables& common = first_of(scratch).tables;
     const double index_of_all = s.over_phi ? 0.0 : fill(common, s.held_at);
@@ -172,9 +169,10 @@ class VoxelSurveyor final : public SurveyorOfPlan {
       const double index = s.over_phi ? fill(tables, s.grid.centre(s.axes.outer, slice.k)) : index_of_all;
       Survey<double>& part = slice.part;
       auto& dci = slice.worker.dci;
+      auto *const conditioning = part.find(kConditioning), *const indices = part.find(kCouplingIndex);
       visit_columns(s, slice, [&](Cell cell, const Row& row) {
         part.touches_box = part.touches_box || s.touches(cell, row);
-        if (demand_.dci) {
+        if (indices) {
           const auto has = [&row](std::size_t v) { return (row[v / 64] >> v % 64 & 1) != 0; };
           std::size_t first = 0, end = 64 * row.size();
           while (!has(first)) ++first;
@@ -185,10 +183,10 @@ class VoxelSurveyor final : public SurveyorOfPlan {
           cell[s.axes.v] = static_cast<std::int64_t>(v);
           ++part.feasible_cells;
           part.weight.push_back(cell_volume);
-          if (demand_.poses) part.pose.push_back(s.pose_of(cell));
-          if (demand_.conditioning) part.conditioning.push_back(index);
-          for (std::size_t i = 0; demand_.dci && i < 4; ++i) part.dci[i].push_back(dci[i][v]);
-          if (demand_.inertia_condition) part.inertia_condition.push_back(inertia_condition(tables.at(cell)));
+          if (planned_.demand.poses) part.pose.push_back(s.pose_of(cell));
+          if (conditioning) conditioning->push_back(index);
+          for (std::size_t i = 0; indices && i < 4; ++i) indices[i].push_back(dci[i][v]);
+          if (beyond_coupling_) add_inertia(tables.at(cell), part, &kCouplingIndex);
         });
       });
     });
@@ -204,14 +202,14 @@ class VoxelSurveyor final : public SurveyorOfPlan {
   template <class Visit>
   void share_sections(const Gridded& s, VoxelScratch& scratch, Survey<double>& survey, const Visit& visit) const {
     SectionCells& common = first_of(scratch).cells;
-    if (!s.over_phi && !common.fill(s.d, held_, s.grid, s.held_at)) return;
+    if (!s.over_phi && !common.fill(s.d, planned_.held, s.grid, s.held_at)) return;
     share_samples(static_cast<std::size_t>(s.grid.cells[s.axes.outer]), survey,
                   [&](std::size_t piece, Survey<double>& part, std::size_t number) {
                     const auto k = static_cast<std::int64_t>(piece);
                     VoxelWorker& worker = scratch.workers[number];
                     if (!s.over_phi)
                       visit(Slice{k, common, piece, worker, part});
-                    else if (worker.cells.fill(s.d, held_, s.grid, s.grid.centre(s.axes.outer, k)))
+                    else if (worker.cells.fill(s.d, planned_.held, s.grid, s.grid.centre(s.axes.outer, k)))
                       visit(Slice{k, worker.cells, 0, worker, part});
                   });
   }
@@ -227,20 +225,15 @@ class VoxelSurveyor final : public SurveyorOfPlan {
     });
   }
 
+  Planned planned_;
   VoxelOptions voxels_;
+  bool beyond_coupling_;  ///< fields of inertia are demanded that are not computed side by side
 };
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_voxel_surveyor(Platform platform, MassModel mass_model, const WorkingMode& mode,
-                                                    int held, const SurveyPlan& plan, const VoxelOptions& voxels,
-                                                    const Demand& demand) {
-  return std::make_unique<VoxelSurveyor>(platform, mass_model, mode, held, plan, voxels, demand);
-}
-
-VoxelMap voxel_map(Platform platform, const WorkingMode& mode, int held, std::span<const double> parameters,
-                   const SurveyPlan& plan, const VoxelOptions& voxels) {
-  return VoxelSurveyor(platform, MassModel::table, mode, held, plan, voxels, {}).map(parameters);
+std::unique_ptr<const VoxelSurveyor> make_surveyor(const Planned& planned, const VoxelOptions& voxels) {
+  return std::make_unique<OfVoxels>(planned, voxels);
 }
 
 }  // namespace pkm::crr_cru

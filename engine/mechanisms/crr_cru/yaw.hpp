@@ -1,8 +1,6 @@
 // (3CRR/R)&CRU and Quadrupteron: what depends on the yaw alone. Why: README.md, "The yaw".
 #pragma once
 
-#include <Eigen/Core>
-
 #include "engine/mechanisms/crr_cru/model.hpp"
 #include "engine/model/conditioning.hpp"
 #include "engine/model/influence.hpp"
@@ -38,20 +36,9 @@ S parallel_index(const Yaw<S>& y, const S& sin_phi, const S& cos_phi) {
   return (y.a_s * cos_phi - y.a_c * sin_phi) / y.R;
 }
 
-/// J in qdot = J Xdot, X = (x, y, z, phi): row i is (e_i, e_i . (z x arm_i)).
-template <class S>
-Eigen::Matrix<S, 4, 4> jacobian(const std::array<Arm<S>, 4>& arm) {
-  Eigen::Matrix<S, 4, 4> J = Eigen::Matrix<S, 4, 4>::Constant(S(0.0));
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    const std::size_t e = kLimbs[i].e;
-    J(i, static_cast<Eigen::Index>(e)) = S(1.0);
-    J(i, 3) = turning(arm[i])[e];
-  }
-  return J;
-}
-
-/// Influence coefficients of the slides: their speeds follow from J, and their accelerations at a steady yaw rate from
-/// dJ/dt, whose last column holds e_i . (z x (z x arm_i)) phidot.
+/// Influence coefficients of the slides: qdot = J Xdot, X = (x, y, z, phi), where row i of J is (e_i, e_i . (z x
+/// arm_i)). Accelerations at a steady yaw rate follow from dJ/dt, whose last column holds e_i . (z x (z x arm_i))
+/// phidot.
 template <class S>
 Influence<S> influence(const std::array<Arm<S>, 4>& arm) {
   Influence<S> q;

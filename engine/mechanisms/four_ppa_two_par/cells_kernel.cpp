@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The columns of kLanes thetas; L is their scalar. The one other form of visit_margins: solved for z, so that a whole
+/// The columns of kLanes thetas; L is their scalar. The one other form of margins(): solved for z, so that a whole
 /// column takes one test.
 template <class L>
 struct Slab {

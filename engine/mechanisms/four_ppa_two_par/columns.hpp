@@ -21,6 +21,7 @@ struct ColumnScratch {
   std::vector<Piece<S>> ranges, parts;
   ClearanceScratch clearance;
   ColumnConditioning<S> poses;
+  std::array<std::vector<S>, 2> inertia;  ///< values of fields at a pose and across the section
 };
 
 /// Rounding of a section's area [m^2]: it is a difference of terms of this size times some 2^-53.
@@ -156,22 +157,24 @@ void feasible_parts(const Frame<S>& f, const Section<S>& t, const Column<S>& col
 /// What samples are to hold.
 template <class S>
 struct SampleContents {
-  bool conditioning = false, poses = false, dci = false, inertia_condition = false;
+  bool conditioning = false, poses = false, inertia = false;
   S gamma{};           ///< a / (2 L_c)
   Masses<S> masses{};  ///< where inertia counts
 
-  bool inertia() const { return dci || inertia_condition; }
+  bool told_apart() const { return inertia || poses; }
 };
 
 /// Adds one sample of what was demanded.
+/// @param inertia   of inertia_values()
+/// @param mirrored  the pose is that of `inertia` with theta -> -theta (mirrored in y): the two sliders of each rail
+///                  change places
 template <class S>
 void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S>& pose, const S& conditioning,
-                const Coupling<S>& coupling, Survey<S>& survey) {
+                const std::vector<S>& inertia, bool mirrored, Survey<S>& survey) {
   survey.weight.push_back(weight);
-  if (contents.conditioning) survey.conditioning.push_back(conditioning);
+  if (contents.conditioning) survey.find(kConditioning)->push_back(conditioning);
   if (contents.poses) survey.pose.push_back(pose);
-  for (std::size_t i = 0; i < 4 && contents.dci; ++i) survey.dci[i].push_back(coupling.dci[i]);
-  if (contents.inertia_condition) survey.inertia_condition.push_back(coupling.condition);
+  if (contents.inertia) add_inertia(inertia, mirrored, survey);
 }
 
 /// Which of the two planes y and L0 - y are sampled, where y <= L0/2 is the frame's.
@@ -197,30 +200,31 @@ struct Node {
 
 template <class S>
 void add_samples(const Frame<S>& f, const SampleContents<S>& contents, const Images& images, const S& weight,
-                 const Node<S>& n, const S& index, Survey<S>& survey) {
+                 const Node<S>& n, const S& index, std::array<std::vector<S>, 2>& inertia, Survey<S>& survey) {
   const Geometry<S>& g = f.g;
-  if (!contents.inertia() && !contents.poses) {
-    add_sample(contents, S(weight * images.count()), {}, index, {}, survey);
+  auto& [here, across] = inertia;
+  if (!contents.told_apart()) {
+    add_sample(contents, S(weight * images.count()), {}, index, here, false, survey);
     return;
   }
-  const auto coupling_at = [&](const std::array<S, 2>& x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c) {
-    if (!contents.inertia()) return Coupling<S>{};
-    return coupling(joint_inertia(g, contents.masses, n.sin_theta, n.cos_theta, x, sigma, z_c),
-                    contents.inertia_condition);
+  const auto find = [&](const std::array<S, 2>& at_x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c,
+                        std::vector<S>& values) {
+    if (contents.inertia)
+      inertia_values(joint_inertia(g, contents.masses, n.sin_theta, n.cos_theta, at_x, sigma, z_c), survey, values);
   };
-  const Coupling<S> here = coupling_at(n.x, n.sigma, n.z_c),
-                    across = coupling_at({n.x[1], n.x[0]}, {n.sigma[1], n.sigma[0]}, {n.z_c[1], n.z_c[0]});
+  find(n.x, n.sigma, n.z_c, here);
+  find({n.x[1], n.x[0]}, {n.sigma[1], n.sigma[0]}, {n.z_c[1], n.z_c[0]}, across);
   const S x = n.x[0] + g.a * n.cos_theta * 0.5, x_across = g.b - x, z = n.z_c[0] - n.sigma[0] - g.d;
   for (const Planes plane : {Planes::near, Planes::far}) {
     if (images.planes != Planes::both && images.planes != plane) continue;
     const S y = plane == Planes::near ? f.y : S(g.L0 - f.y);
     if (images.symmetric || plane == Planes::near) {
-      add_sample(contents, weight, {x, y, z, n.theta}, index, here, survey);
-      add_sample(contents, weight, {x_across, y, z, S(-n.theta)}, index, across.mirrored(), survey);
+      add_sample(contents, weight, {x, y, z, n.theta}, index, here, false, survey);
+      add_sample(contents, weight, {x_across, y, z, S(-n.theta)}, index, across, true, survey);
     }
     if (images.symmetric || plane == Planes::far) {
-      add_sample(contents, weight, {x, y, z, S(-n.theta)}, index, here.mirrored(), survey);
-      add_sample(contents, weight, {x_across, y, z, n.theta}, index, across, survey);
+      add_sample(contents, weight, {x, y, z, S(-n.theta)}, index, here, true, survey);
+      add_sample(contents, weight, {x_across, y, z, n.theta}, index, across, false, survey);
     }
   }
 }
@@ -262,7 +266,8 @@ void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes,
                 const S each = outer * col.slope * delta_jacobian * map_node(part, inner_rule.node[n]).jacobian *
                                (inner_rule.weight[k] * inner_rule.weight[n]);
                 const Node<S> node{theta, s, c, col.x, col.sigma, {poses.z_c[0][n], poses.z_c[1][n]}};
-                add_samples(f, contents, images, each, node, contents.conditioning ? poses.index[n] : S(0.0), survey);
+                add_samples(f, contents, images, each, node, contents.conditioning ? poses.index[n] : S(0.0),
+                            scratch.inertia, survey);
               }
             }
           }

@@ -2,14 +2,14 @@
 // speeds that the sliders' speeds give in closed form. README.md, Motion.
 #pragma once
 
-#include <cmath>
-
-#include "engine/dynamics/coupling.hpp"
+#include "engine/dynamics/pose_dynamics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/masses.hpp"
+#include "engine/survey/pose_quantities.hpp"
 
 namespace pkm::four_ppa_two_par {
 
-/// M_q [kg], finite inside the workspace: 0 < sigma_j, 0 < h_j, z_cj < 0, 0 < cos theta, 0 < sin(beta_1 + beta_2).
+/// M_q [kg], finite inside the workspace: 0 < sigma_j, 0 < h_j, z_cj < 0, 0 < cos theta, 0 < sin(beta_1 + beta_2). NaN
+/// at its edges of the last two, where J is singular to working precision: M_q divides by both.
 /// @param x, sigma, z_c  of the two limbs [m], lower branch
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_theta, const S& cos_theta,
@@ -33,6 +33,8 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S&
   const Row z = z_cj[0] + x_j[0] * t[0];
 
   Matrix<S, 4, 4> M;
+  if (std::fabs(value_of(cos_theta)) < kSingular || std::fabs(value_of(t[0] + t[1])) < kSingular)
+    return undetermined(M);
   const auto add = [&](const S& coefficient, const Row& speed) {
     const Row scaled = speed * coefficient;
     for (std::size_t r = 0; r < 4; ++r)
@@ -56,26 +58,28 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S&
   return M;
 }
 
-/// What surveys keep of a pose's inertia.
+/// What fields of a survey hold of a pose's inertia, one after the other.
+/// @param values  overwritten
 template <class S>
-struct Coupling {
-  Vector<S, 4> dci;
-  S condition;  ///< inverse condition number of M_q
+void inertia_values(const Matrix<S, 4, 4>& M_q, Survey<S>& survey, std::vector<S>& values) {
+  values.clear();
+  evaluate_inertia(M_q, survey, nullptr,
+                   [&](auto&, std::span<const S> of) { values.insert(values.end(), of.begin(), of.end()); });
+}
 
-  /// The same pose with theta -> -theta (mirrored in y): the two sliders of each rail change places.
-  Coupling mirrored() const { return {{{dci[1], dci[0], dci[3], dci[2]}}, condition}; }
-};
-
-/// Where M_q is infinite or has no value, on the edge of the workspace without margins, the values that it tends to or
-/// that are worst: 1 and 0.
+/// Adds them.
+/// @param mirrored  they are those of the pose with theta -> -theta (mirrored in y): the two sliders of each rail
+/// change
+///                  places
 template <class S>
-Coupling<S> coupling(const Matrix<S, 4, 4>& M_q, bool with_condition) {
-  bool finite = true;
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = 0; j <= i; ++j) finite = finite && std::isfinite(value_of(M_q(i, j)));
-  for (std::size_t i = 0; i < 4; ++i) finite = finite && value_of(M_q(i, i)) > 0;
-  if (!finite) return {{{S(1.0), S(1.0), S(1.0), S(1.0)}}, S(0.0)};
-  return {coupling_indices(M_q), with_condition ? inertia_condition(M_q) : S(0.0)};
+void add_inertia(const std::vector<S>& values, bool mirrored, Survey<S>& survey) {
+  auto value = values.begin();
+  for (auto& [quantity, field] : survey.fields) {
+    if (!quantity->needs_inertia()) continue;
+    const std::size_t count = quantity->per_joint ? 4 : 1;
+    for (std::size_t i = 0; i < count; ++i) field[mirrored && count > 1 ? i ^ 1 : i].push_back(value[i]);
+    value += static_cast<std::ptrdiff_t>(count);
+  }
 }
 
 }  // namespace pkm::four_ppa_two_par

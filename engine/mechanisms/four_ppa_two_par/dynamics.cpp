@@ -6,10 +6,7 @@ namespace pkm::four_ppa_two_par {
 
 std::optional<Influence<double>> influence(const Geometry<double>& g, const Pose<double>& pose, WorkingMode mode) {
   const Limbs<double> limbs = inverse(g, pose, mode);
-  const auto zero = [](double length) { return length == 0; };
-  if (!limbs.assembles || std::any_of(limbs.sigma.begin(), limbs.sigma.end(), zero) ||
-      std::any_of(limbs.h.begin(), limbs.h.end(), zero))
-    return std::nullopt;
+  if (!limbs.assembles || std::ranges::count(limbs.sigma, 0) || std::ranges::count(limbs.h, 0)) return std::nullopt;
   const SinCosOf<double> theta = sincos(pose.angle);
   const auto sliders = [&](const Vector<double, 4>& velocity) {
     std::array<Follower<double>, 4> q;

@@ -1,7 +1,5 @@
 #include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 
-#include <limits>
-
 #include <Eigen/LU>
 
 #include "engine/mechanisms/four_ppa_two_par/links.hpp"
@@ -37,10 +35,6 @@ void add_velocities(const Geometry<double>& g, const Velocity<double>& v, PoseRe
   report.conditioning = inverse_condition(columns);
 }
 
-[[gnu::noinline]] double lower_clearance(const Geometry<double>& g, double x, double z, double s, double c) {
-  return nearest_links(links(g, lower_placement(g, x, z, s, c))).clearance;
-}
-
 }  // namespace
 
 PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
@@ -49,13 +43,7 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
   report.assembles = limb.assembles;
   const double c = sincos(pose.angle).cos;
   report.angles.emplace_back("section_type", section_type(g, c));
-  std::array<double, kMargins> margin;
-  margin.fill(std::numeric_limits<double>::infinity());
-  visit_margins<Angles::in_radians>(g, l, pose.x, pose.y, pose.z, sincos(pose.angle), mode,
-                                    [&](std::size_t index, double part) {
-                                      margin[index] = std::fmin(margin[index], part);
-                                      return true;
-                                    });
+  std::array<double, kMargins> margin = margins(g, l, limb, c, mode);
   const auto list = [&](std::size_t index) { report.margins.emplace_back(kMarginNames[index], margin[index]); };
   if (!limb.assembles) {
     report.reason = out_of_reach(limb, margin);
@@ -64,10 +52,9 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
   }
   report.joints = {limb.q[0], limb.q[1], limb.q[2], limb.q[3]};
   add_velocities(g, velocity(g, pose, limb, mode), report);
+  for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha(limb, j));
   for (std::size_t j = 0; j < 2; ++j)
-    report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha(g, limb, j).radians());
-  for (std::size_t j = 0; j < 2; ++j)
-    report.angles.emplace_back("beta_" + std::to_string(j + 1), beta(lean(g, limb, j), mode[j]));
+    report.angles.emplace_back("beta_" + std::to_string(j + 1), beta(limb, j, mode[j]));
   for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
   const Nearest<double> nearest = nearest_links(links(g, placement(limb, sincos(pose.angle).sin, mode)));
   report.angles.emplace_back("clearance", nearest.clearance);
@@ -87,13 +74,6 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
     report.feasible = report.feasible && margin[i] >= 0;
   }
   return report;
-}
-
-bool feasible(const Geometry<double>& g, const Limits<double>& l, double x, double y, double z, double sin_theta,
-              double cos_theta) {
-  const auto holds = [](std::size_t, double margin) { return margin >= 0; };
-  if (!visit_margins<Angles::by_sides>(g, l, x, y, z, {sin_theta, cos_theta}, kLowerMode, holds)) return false;
-  return !l.clearance_min || lower_clearance(g, x, z, sin_theta, cos_theta) >= *l.clearance_min;
 }
 
 }  // namespace pkm::four_ppa_two_par

@@ -114,26 +114,12 @@ void visit_links(const GroupPair& pair, const Visit& visit) {
     for (std::size_t k = pair.first == pair.second ? i + 1 : b.first; k < b.end; ++k) visit(i, k);
 }
 
-/// The two links that are nearest to each other.
-template <class S>
-struct Nearest {
-  S clearance;  ///< [m], negative where they overlap
-  std::size_t first = 0, second = 0;
-};
-
 /// Over all pairs, one by one.
 template <class S>
 Nearest<S> nearest_links(const Links<S>& all) {
-  Nearest<S> nearest{S(0.0)};
-  bool any = false;
-  for (const GroupPair& pair : kPairs)
-    visit_links(pair, [&](std::size_t i, std::size_t k) {
-      const S found = capsule_distance(all[i], all[k]);
-      if (any && !(value_of(found) < value_of(nearest.clearance))) return;
-      nearest = {found, i, k};
-      any = true;
-    });
-  return nearest;
+  return nearest_of(all, [](const auto& visit) {
+    for (const GroupPair& pair : kPairs) visit_links(pair, visit);
+  });
 }
 
 /// "slider 1", "upper bar of slider 3", "lower connector of limb 2", "platform".

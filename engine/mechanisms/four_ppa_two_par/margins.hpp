@@ -1,10 +1,12 @@
 // 4PPa-2PaR: what keeps a pose feasible, stated once.
 //
-// The report on a pose, the plain test of a pose and the names of margins come from visit_margins(); sections and cells
-// are closed forms of the lengths that the same limits leave (Ranges), and tested against it.
+// The report on a pose has its margins from here; sections and cells are closed forms of the lengths that the same
+// limits leave (Ranges), and tested against them.
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "engine/mechanisms/four_ppa_two_par/model.hpp"
 
@@ -17,82 +19,33 @@ inline constexpr std::array<const char*, kMargins> kMarginNames = {
     "reach_x_1", "reach_x_2", "reach_z_1", "reach_z_2", "below_rail_1", "below_rail_2",  "stroke",
     "alpha_min", "beta_min",  "beta_max",  "h_min",     "sin_par_min",  "cos_theta_min", "clearance_min"};
 
-/// How margins of angles are measured: reports have them in radians, tests compare the sides of triangles.
-enum class Angles { in_radians, by_sides };
-
-/// An angle in [0, pi/2] of a right triangle [m].
-template <class S>
-struct Corner {
-  S opposite, adjacent, hypotenuse;
-
-  S radians() const { return atan2(opposite, adjacent); }
-};
-template <class S>
-Corner<S> alpha(const Geometry<S>& g, const Limbs<S>& limbs, std::size_t j) {
-  return {S(-limbs.z_c[j]), limbs.h[j], g.l_u};
-}
-/// Of the lower bars, from the nearer vertical: beta_j, or pi - beta_j in the upper branch.
-template <class S>
-Corner<S> lean(const Geometry<S>& g, const Limbs<S>& limbs, std::size_t j) {
-  return {limbs.x[j], limbs.sigma[j], g.l_d};
-}
-template <class S>
-S beta(const Corner<S>& lean, Branch branch) {
-  return branch == Branch::lower ? lean.radians() : S(kPi - lean.radians());
+/// alpha_j [rad]
+inline double alpha(const Limbs<double>& limb, std::size_t j) { return atan2(-limb.z_c[j], limb.h[j]); }
+/// Of the lower bars, from the nearer vertical: beta_j, or pi - beta_j in the upper branch [rad].
+inline double lean(const Limbs<double>& limb, std::size_t j) { return atan2(limb.x[j], limb.sigma[j]); }
+inline double beta(const Limbs<double>& limb, std::size_t j, Branch branch) {
+  return branch == Branch::lower ? lean(limb, j) : kPi - lean(limb, j);
 }
 
-/// Calls keep(index, margin) until it says no; returns whether it never did. A margin may come in parts, the least of
-/// which counts. All but the clearance, which joints do not tell.
-template <Angles angles, class S, class Keep>
-[[gnu::always_inline]] inline bool visit_margins(const Geometry<S>& g, const Limits<S>& l, const S& x, const S& y,
-                                                 const S& z, const SinCosOf<S>& theta, WorkingMode mode,
-                                                 const Keep& keep) {
-  constexpr bool sides = angles == Angles::by_sides;
-  Limbs<S> limbs{};
-  for (std::size_t j = 0; j < 2; ++j) {
-    if constexpr (sides)
-      limbs.x[j] = limb_x(g, x, theta.cos, j);  // most poses fail there, before a root is taken
-    else
-      place_limb(g, x, y, z, theta, mode[j], j, limbs);
+/// All but the clearance, which joints do not tell: it is infinite.
+inline std::array<double, kMargins> margins(const Geometry<double>& g, const Limits<double>& l,
+                                            const Limbs<double>& limb, double cos_theta, WorkingMode mode) {
+  std::array<double, kMargins> m;
+  for (std::size_t j = 0; j < 2; ++j) {  // eq 12
+    m[kReachX + j] = std::fmin(limb.x[j], g.l_d - limb.x[j]);
+    m[kReachZ + j] = std::fmin(g.l_u + limb.z_c[j], g.l_u - limb.z_c[j]);
+    m[kBelowRail + j] = -limb.z_c[j];
   }
-  const auto above = [](const Corner<S>& at, const S& sine) -> S {
-    if constexpr (sides)
-      return at.opposite - at.hypotenuse * sine;
-    else
-      return at.radians() - asin(sine);
-  };
-  const auto below = [](const Corner<S>& at, const S& sine, [[maybe_unused]] const S& cosine) -> S {
-    if constexpr (sides)
-      return at.hypotenuse * sine - at.opposite;
-    else
-      return atan2(sine, cosine) - at.radians();
-  };
-  const auto across = [&](std::size_t j) __attribute__((always_inline)) {
-    const Corner<S> down = lean(g, limbs, j);
-    return keep(kReachX + j, limbs.x[j]) && keep(kReachX + j, S(g.l_d - limbs.x[j])) &&  // eq 12
-           keep(kFirstLimit + kBetaMin, above(down, l.sin_beta_min)) &&                  // eq 17
-           keep(kFirstLimit + kBetaMax, below(down, l.sin_beta_max, l.cos_beta_max));    // eq 20
-  };
-  const auto along = [&](std::size_t j) __attribute__((always_inline)) {
-    if constexpr (sides) place_limb(g, x, y, z, theta, mode[j], j, limbs);
-    const Corner<S> up = alpha(g, limbs, j);
-    return keep(kReachZ + j, S(g.l_u + limbs.z_c[j])) && keep(kReachZ + j, S(g.l_u - limbs.z_c[j])) &&  // eq 12
-           keep(kBelowRail + j, S(-limbs.z_c[j])) &&                                                    // eq 12
-           keep(kFirstLimit + kAlphaMin, above(up, l.sin_alpha_min)) &&                                 // eq 17
-           keep(kFirstLimit + kHMin, S(limbs.h[j] - l.h_min)) &&                                        // eq 19
-           keep(kStroke, limbs.q[2 * j]) && keep(kStroke, S(g.L0 - limbs.q[2 * j + 1]));
-  };
-  const auto parallel = [&]() -> S {  // |sin(beta_1 + beta_2)|, eq 15
-    const Corner<S> one = lean(g, limbs, 0), two = lean(g, limbs, 1);
-    if constexpr (sides) {
-      const S p = one.opposite * two.adjacent, q = two.opposite * one.adjacent;
-      return magnitude(mode[0] == mode[1] ? S(p + q) : S(p - q)) - l.sin_par_min * g.l_d * g.l_d;
-    } else {
-      return magnitude(sincos(S(beta(one, mode[0]) + beta(two, mode[1]))).sin) - l.sin_par_min;
-    }
-  };
-  return keep(kFirstLimit + kCosThetaMin, S(theta.cos - l.cos_theta_min)) && across(0) && across(1) && along(0) &&
-         along(1) && keep(kFirstLimit + kSinParMin, parallel());
+  m[kStroke] = std::fmin(std::fmin(limb.q[0], limb.q[2]), g.L0 - std::fmax(limb.q[1], limb.q[3]));
+  double* const limit = &m[kFirstLimit];
+  limit[kAlphaMin] = std::fmin(alpha(limb, 0), alpha(limb, 1)) - asin(l.sin_alpha_min);                        // eq 17
+  limit[kBetaMin] = std::fmin(lean(limb, 0), lean(limb, 1)) - asin(l.sin_beta_min);                            // eq 17
+  limit[kBetaMax] = atan2(l.sin_beta_max, l.cos_beta_max) - std::fmax(lean(limb, 0), lean(limb, 1));           // eq 20
+  limit[kHMin] = std::fmin(limb.h[0], limb.h[1]) - l.h_min;                                                    // eq 19
+  limit[kSinParMin] = std::fabs(sincos(beta(limb, 0, mode[0]) + beta(limb, 1, mode[1])).sin) - l.sin_par_min;  // eq 15
+  limit[kCosThetaMin] = cos_theta - l.cos_theta_min;
+  limit[kClearanceMin] = std::numeric_limits<double>::infinity();
+  return m;
 }
 
 /// What the limits leave of the lower mode's lengths [m].

@@ -1,8 +1,7 @@
 // 4PPa-2PaR as a mechanism of the catalogue.
-#include <stdexcept>
-
 #include "engine/core/options.hpp"
 #include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanism/with_abilities.hpp"
 #include "engine/mechanisms/four_ppa_two_par/dynamics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/links.hpp"
 #include "engine/mechanisms/four_ppa_two_par/survey.hpp"
@@ -12,11 +11,6 @@ namespace pkm {
 namespace {
 
 using namespace four_ppa_two_par;
-
-/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
-constexpr double kNoClearance = -2;
-
-const char* const kModes[4] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
 
 /// The one mass model: every mass is a length times a mass per length.
 const std::vector<std::string> kMassModels = {"geometry"};
@@ -49,7 +43,7 @@ MechanismInfo make_info() {
   for (Parameter& parameter : mass_parameters()) i.parameters.push_back(std::move(parameter));
   i.coordinates = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"theta", "rad"}};
   i.joints = {{"q1", "m"}, {"q2", "m"}, {"q3", "m"}, {"q4", "m"}};
-  i.modes.assign(std::begin(kModes), std::end(kModes));
+  i.modes = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
   i.sweeps = {{.swept = {0, 2, 3}, .held = {1}, .column = 2, .integrates = true}};
   constexpr double quarter = kPi / 2;
   i.limits = {
@@ -98,30 +92,16 @@ void thresholds_of(std::span<const S> p, const LimitSpec& spec, std::span<S> val
   values[kClearanceMin] = S(l.clearance_min.value_or(kNoClearance));
 }
 
-class FourPpaTwoPar final : public Mechanism,
-                            Voxels,
-                            Columns,
-                            Derivatives,
-                            Size,
-                            DesignTests,
-                            Velocities,
-                            ForwardKinematics,
-                            pkm::Links,
-                            DynamicsOf<FourPpaTwoPar> {
+class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTests, Velocities, ForwardKinematics,
+                                                 pkm::Links, DynamicsOf<FourPpaTwoPar>> {
  public:
   const MechanismInfo& info() const override { return info_; }
-  const Voxels* voxels() const override { return this; }
-  const Columns* columns() const override { return this; }
-  const Derivatives* derivatives() const override { return this; }
-  const Size* size() const override { return this; }
-  const DesignTests* design_tests() const override { return this; }
-  const Velocities* velocities() const override { return this; }
-  const ForwardKinematics* forward() const override { return this; }
-  const pkm::Links* links() const override { return this; }
-  const Dynamics* dynamics() const override { return this; }
 
   std::optional<double> middle(std::span<const double> p, int) const override { return middle_plane(geometry(p)); }
   void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
+    thresholds_of(p, spec, values);
+  }
+  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
     thresholds_of(p, spec, values);
   }
   NamedValues facts(std::span<const double> p, const LimitSpec& spec) const override {
@@ -138,30 +118,24 @@ class FourPpaTwoPar final : public Mechanism,
  private:
   friend DynamicsOf<FourPpaTwoPar>;
 
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
-                                          const Demand& demand) const override {
+  std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                               const Demand& demand) const override {
     return make_voxel_surveyor(plan, voxels, demand);
   }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
                                           const Demand& demand) const override {
     return make_column_surveyor(plan, columns, demand);
   }
-  VoxelMap map(std::span<const double> p, const SurveyPlan& plan, const VoxelOptions& voxels) const override {
-    return voxel_map(geometry(p), plan, voxels);
-  }
 
   std::string unit() const override { return "m^2"; }
   std::string meaning() const override { return "pi b (l_u + l_d)"; }
   double of(std::span<const double> p) const override { return size_of(p); }
-  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
-  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
-    thresholds_of(p, spec, values);
-  }
+  Dual4 of(std::span<const Dual4> p) const override { return size_of(p); }
   const std::vector<DesignMarginInfo>& list() const override { return kDesignTests; }
   void test(std::span<const double> p, const LimitSpec& spec, std::span<double> margins) const override {
     margins_of(p, spec, margins);
   }
-  void design_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> margins) const override {
+  void test(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> margins) const override {
     margins_of(p, spec, margins);
   }
 
@@ -182,14 +156,13 @@ class FourPpaTwoPar final : public Mechanism,
     return model == kMassModels.front() ? std::make_shared<FourPpaTwoPar>() : nullptr;
   }
 
-  static WorkingMode mode_called(const std::string& name) {
-    for (int i = 0; i < 4; ++i)
-      if (name == kModes[i]) return {i & 2 ? Branch::upper : Branch::lower, i & 1 ? Branch::upper : Branch::lower};
-    throw std::invalid_argument("unknown working mode " + name);
+  WorkingMode mode_called(const std::string& name) const {
+    const std::size_t i = number_of_mode(info_, name);
+    return {i & 2 ? Branch::upper : Branch::lower, i & 1 ? Branch::upper : Branch::lower};
   }
   template <class S>
-  static void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const pkm::MotionState<S>> states,
-                            std::span<pkm::PoseDynamics<S>> out) {
+  void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const pkm::MotionState<S>> states,
+                     std::span<pkm::PoseDynamics<S>> out) const {
     const WorkingMode branches = mode_called(mode);
     const auto g = geometry(p);
     const auto b = masses(p);

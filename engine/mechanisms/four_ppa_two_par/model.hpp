@@ -77,32 +77,27 @@ Values<To> constant(const Values<From>& from) {
 /// Thresholds given by the study, or derived from the bars' and sliders' sizes (eqs 17 and 19).
 template <class S>
 Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
-  const auto angle = [&](int i, double inactive) {
-    return sincos(S(spec.given[static_cast<std::size_t>(i)].value_or(inactive)));
+  const auto given = [&](int i) { return sincos(S(spec.given[static_cast<std::size_t>(i)].value_or(0))); };
+  const auto of_sine = [](const S& sine) {
+    return SinCosOf<S>{sine, root_or_zero(S((S(1.0) - sine) * (S(1.0) + sine)))};
   };
-  const auto cosine = [](const S& sine) { return root_or_zero(S((S(1.0) - sine) * (S(1.0) + sine))); };
-  Limits<S> l;
-  const auto alpha = angle(kAlphaMin, 0), beta_low = angle(kBetaMin, 0);
-  l.sin_alpha_min = spec.derived[kAlphaMin] ? S(2.0 * g.R_u / g.d_u) : alpha.sin;  // eq 17
-  l.cos_alpha_min = spec.derived[kAlphaMin] ? cosine(l.sin_alpha_min) : alpha.cos;
-  l.sin_beta_min = spec.derived[kBetaMin] ? S(2.0 * g.R_d / g.d_d) : beta_low.sin;  // eq 17
-  l.cos_beta_min = spec.derived[kBetaMin] ? cosine(l.sin_beta_min) : beta_low.cos;
-  if (spec.given[kBetaMax]) {
-    const auto beta = angle(kBetaMax, 0);
-    l.sin_beta_max = beta.sin;
-    l.cos_beta_max = beta.cos;
-  } else {
-    l.sin_beta_max = S(1.0);
-    l.cos_beta_max = S(0.0);
-  }
-  l.h_min = spec.derived[kHMin] ? S(g.d_0 + g.d_u * 0.5) : S(spec.given[kHMin].value_or(0));  // eq 19
+  const auto alpha = spec.derived[kAlphaMin] ? of_sine(S(2.0 * g.R_u / g.d_u)) : given(kAlphaMin);   // eq 17
+  const auto beta_low = spec.derived[kBetaMin] ? of_sine(S(2.0 * g.R_d / g.d_d)) : given(kBetaMin);  // eq 17
+  const auto beta_high = spec.given[kBetaMax] ? given(kBetaMax) : SinCosOf<S>{S(1.0), S(0.0)};
   const double sin_phi = spec.given[kSinParMin].value_or(0), cos_phi = std::sqrt((1 - sin_phi) * (1 + sin_phi));
-  l.sin_par_min = S(sin_phi);
-  l.cos_half = S(std::sqrt(0.5 * (1 + cos_phi)));
-  l.sin_half = S(0.5 * sin_phi / std::sqrt(0.5 * (1 + cos_phi)));
-  l.cos_theta_min = S(spec.given[kCosThetaMin].value_or(0));
-  l.clearance_min = spec.given[kClearanceMin];
-  return l;
+  const double cos_half = std::sqrt(0.5 * (1 + cos_phi));
+  return {.sin_alpha_min = alpha.sin,
+          .cos_alpha_min = alpha.cos,
+          .sin_beta_min = beta_low.sin,
+          .cos_beta_min = beta_low.cos,
+          .sin_beta_max = beta_high.sin,
+          .cos_beta_max = beta_high.cos,
+          .h_min = spec.derived[kHMin] ? S(g.d_0 + g.d_u * 0.5) : S(spec.given[kHMin].value_or(0)),  // eq 19
+          .sin_par_min = S(sin_phi),
+          .sin_half = S(0.5 * sin_phi / cos_half),
+          .cos_half = S(cos_half),
+          .cos_theta_min = S(spec.given[kCosThetaMin].value_or(0)),
+          .clearance_min = spec.given[kClearanceMin]};
 }
 
 /// Branch of a limb: lower when the platform hangs below C_j.
@@ -119,19 +114,12 @@ struct Limbs {
   bool assembles = false;
 };
 
-/// x_j at a pose's x.
-template <class S>
-[[gnu::always_inline]] inline S limb_x(const Geometry<S>& g, const S& x, const S& cos_theta, std::size_t j) {
-  const S half = g.a * cos_theta * 0.5;
-  return j == 0 ? S(x - half) : S(g.b - x - half);
-}
-
-/// Puts limb j where it is at a pose; where it does not reach, roots are 0. S may be lanes.
+/// Puts limb j where it is at a pose; where it does not reach, roots are 0.
 template <class S>
 [[gnu::always_inline]] inline void place_limb(const Geometry<S>& g, const S& x, const S& y, const S& z,
                                               const SinCosOf<S>& theta, Branch branch, std::size_t j, Limbs<S>& limb) {
-  const S shift = g.a * theta.sin * 0.5;
-  limb.x[j] = limb_x(g, x, theta.cos, j);
+  const S shift = g.a * theta.sin * 0.5, half = g.a * theta.cos * 0.5;
+  limb.x[j] = j == 0 ? S(x - half) : S(g.b - x - half);
   limb.y[j] = j == 0 ? S(y - shift) : S(y + shift);
   limb.sigma[j] = root_or_zero(S((g.l_d - limb.x[j]) * (g.l_d + limb.x[j])));
   limb.z_c[j] = branch == Branch::lower ? S(z + g.d + limb.sigma[j]) : S(z + g.d - limb.sigma[j]);

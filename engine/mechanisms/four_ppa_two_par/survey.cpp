@@ -5,6 +5,7 @@
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "engine/survey/share_samples.hpp"
+#include "engine/survey/with_slopes.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {
@@ -26,20 +27,16 @@ constexpr const char* kSurveyedMode = "lower,lower";
 
 template <class S>
 SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) {
-  SampleContents<S> c{.conditioning = demand.conditioning,
+  SampleContents<S> c{.conditioning = demand.has(kConditioning),
                       .poses = demand.poses,
-                      .dci = demand.dci,
-                      .inertia_condition = demand.inertia_condition,
+                      .inertia = demand.needs_inertia(),
                       .gamma = gamma(geometry(parameters), demand),
                       .masses = {}};
-  if (c.inertia()) c.masses = masses(parameters);
+  if (c.inertia) c.masses = masses(parameters);
   return c;
 }
 
-bool needs_inertia(const Demand& demand) { return demand.dci || demand.inertia_condition; }
-bool needs_samples(const Demand& demand) { return demand.conditioning || demand.poses || needs_inertia(demand); }
-
-class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
+class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
  public:
   ColumnSurveyor(const SurveyPlan& plan, const ColumnOptions& columns, const Demand& demand)
       : limits_(plan.limits),
@@ -49,12 +46,6 @@ class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
         inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
         theta_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {}
 
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    run(parameters, scratch.get<ColumnScratch<double>>(), survey);
-  }
-  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
-    run(parameters, scratch.get<ColumnScratch<Dual4>>(), survey);
-  }
   const SlopeSurveyor* slopes() const override { return limits_.given[kClearanceMin] ? nullptr : this; }
   std::string why_no_slopes() const override {
     return "the study limits the clearance of links (clearance_min), which may end columns where no formula says, and "
@@ -62,11 +53,13 @@ class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
   }
 
  private:
+  friend WithSlopes<ColumnSurveyor>;
   static constexpr int kSampleNodes = 12, kInertiaNodesOverY = 8;
 
   template <class S>
-  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
-    survey.clear();
+  void run(std::span<const S> parameters, Scratch& room, Survey<S>& survey) const {
+    survey.clear(demand_.fields);
+    ColumnScratch<S>& scratch = room.get<ColumnScratch<S>>();
     const Geometry<S> g = geometry(parameters);
     Limits<S> l = limits(g, limits_);
     std::optional<ClearanceTest> clearance;
@@ -79,7 +72,7 @@ class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
     survey.volume = volume.value;
     survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
     survey.columns = volume.evaluations;
-    if (!needs_samples(demand_)) return;
+    if (!demand_.needs_samples()) return;
     const SampleContents<S> wanted = contents(parameters, demand_);
     if (!over_y) {
       sample(f, wanted, value_of(y) > value_of(S(g.L0 - y)) ? Planes::far : Planes::near, S(1.0), theta_rule_,
@@ -90,8 +83,8 @@ class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
     if (!(value_of(half.upper) > value_of(half.lower))) return;
     // Over y every node has eight poses: samples that tell them apart make do with a coarser rule.
     static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);
-    const bool told_apart = wanted.inertia() || wanted.poses;
-    const GaussRule &inner = told_apart ? coarse : inner_rule_, &outer = told_apart ? coarse : theta_rule_;
+    const GaussRule &inner = wanted.told_apart() ? coarse : inner_rule_,
+                    &outer = wanted.told_apart() ? coarse : theta_rule_;
     for (std::size_t i = 0; i < inner.node.size(); ++i) {
       const auto [at, jacobian] = map_node(half, inner.node[i]);
       sample(frame(g, l, at), wanted, Planes::both, S(jacobian * inner.weight[i]), outer, inner, test, scratch, survey);
@@ -132,22 +125,17 @@ class ColumnSurveyor final : public Surveyor, public SlopeSurveyor {
   GaussRule inner_rule_, theta_rule_;
 };
 
-class VoxelSurveyor final : public Surveyor {
+class OfVoxels final : public VoxelSurveyor {
  public:
-  VoxelSurveyor(const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
+  OfVoxels(const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
       : limits_(plan.limits),
         held_(how_held(plan, kY)),
         voxels_(voxels),
         demand_(demand),
         counter_(voxels.cells, voxels.box ? (*voxels.box)[2] : kTheta) {}
 
-  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
-
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    run(parameters, scratch.get<VoxelScratch>(), survey);
-  }
-
-  VoxelMap map(const Geometry<double>& g) const {
+  VoxelMap map(std::span<const double> parameters) const override {
+    const Geometry<double> g = geometry(parameters);
     Limits<double> l = limits(g, limits_);
     const auto clearance = take_clearance(g, l);
     const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
@@ -165,8 +153,9 @@ class VoxelSurveyor final : public Surveyor {
  private:
   static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
 
-  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
-    survey.clear();
+  void survey(std::span<const double> parameters, Scratch& room, Survey<double>& survey) const override {
+    survey.clear(demand_.fields);
+    VoxelScratch& scratch = room.get<VoxelScratch>();
     const Geometry<double> g = geometry(parameters);
     Limits<double> l = limits(g, limits_);
     const auto clearance = take_clearance(g, l);
@@ -184,7 +173,7 @@ class VoxelSurveyor final : public Surveyor {
       bool touches = false;
       survey.feasible_cells += counter_.count(at, scratch, touches);
       survey.touches_box = survey.touches_box || touches;
-      if (needs_samples(demand_)) sample(at, wanted, scratch, survey);
+      if (demand_.needs_samples()) sample(at, wanted, scratch, survey);
     }
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
@@ -194,34 +183,33 @@ class VoxelSurveyor final : public Surveyor {
     const Geometry<double>& g = at.g;
     const VoxelGrid& grid = at.grid;
     // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
-    const bool together = !wanted.inertia() && !wanted.poses && !at.test;
+    const bool together = !wanted.told_apart() && !at.test;
     const Halves halves = together ? counter_.halves(at) : counter_.whole();
     share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t worker) {
-      ColumnConditioning<double>& poses = scratch.workers[worker].poses;
-      counter_.visit_block(at, block, halves, scratch.workers[worker].columns,
-                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-                             const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
-                             const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
-                             const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
-                                                                  root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
-                             poses.clear();
-                             for (std::int64_t j = first; j < end; ++j) {
-                               const double z = grid.centre(1, j) + g.d;
-                               poses.add(z + sigma[0], z + sigma[1]);
-                             }
-                             if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
-                             const double weight = survey.cell_volume * halves.images(i, k);
-                             for (std::int64_t j = first; j < end; ++j) {
-                               const auto n = static_cast<std::size_t>(j - first);
-                               Coupling<double> inertia{};
-                               if (wanted.inertia())
-                                 inertia = coupling(joint_inertia(g, wanted.masses, s, c, x_j, sigma,
-                                                                  {poses.z_c[0][n], poses.z_c[1][n]}),
-                                                    wanted.inertia_condition);
-                               add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
-                                          wanted.conditioning ? poses.index[n] : 0, inertia, part);
-                             }
-                           });
+      VoxelWorker& own = scratch.workers[worker];
+      ColumnConditioning<double>& poses = own.poses;
+      counter_.visit_block(
+          at, block, halves, own.columns, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
+            const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
+            const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
+            const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
+                                                 root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
+            poses.clear();
+            for (std::int64_t j = first; j < end; ++j) {
+              const double z = grid.centre(1, j) + g.d;
+              poses.add(z + sigma[0], z + sigma[1]);
+            }
+            if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
+            const double weight = survey.cell_volume * halves.images(i, k);
+            for (std::int64_t j = first; j < end; ++j) {
+              const auto n = static_cast<std::size_t>(j - first);
+              if (wanted.inertia)
+                inertia_values(joint_inertia(g, wanted.masses, s, c, x_j, sigma, {poses.z_c[0][n], poses.z_c[1][n]}),
+                               part, own.inertia);
+              add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
+                         wanted.conditioning ? poses.index[n] : 0, own.inertia, false, part);
+            }
+          });
     });
   }
 
@@ -232,12 +220,8 @@ class VoxelSurveyor final : public Surveyor {
   VoxelCounter counter_;
 };
 
-}  // namespace
-
-namespace {
-
 void refuse_mode(const Demand& demand) {
-  if (needs_inertia(demand) && !demand.mode.empty() && demand.mode != kSurveyedMode)
+  if (demand.needs_inertia() && !demand.mode.empty() && demand.mode != kSurveyedMode)
     throw std::invalid_argument("workspaces of mechanism 4ppa-2par are of the working mode " +
                                 std::string(kSurveyedMode) + ", so inertia is not surveyed in the mode " + demand.mode);
 }
@@ -255,16 +239,12 @@ std::unique_ptr<const Surveyor> make_column_surveyor(const SurveyPlan& plan, con
   return std::make_unique<ColumnSurveyor>(plan, columns, demand);
 }
 
-std::unique_ptr<const Surveyor> make_voxel_surveyor(const SurveyPlan& plan, const VoxelOptions& voxels,
-                                                    const Demand& demand) {
+std::unique_ptr<const VoxelSurveyor> make_voxel_surveyor(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                         const Demand& demand) {
   refuse_mode(demand);
   if (is_over_y(plan) && how_held(plan, kY).cells < 1)
     throw std::invalid_argument("voxels integrated over y need a number of cells for y");
-  return std::make_unique<VoxelSurveyor>(plan, voxels, demand);
-}
-
-VoxelMap voxel_map(const Geometry<double>& g, const SurveyPlan& plan, const VoxelOptions& voxels) {
-  return VoxelSurveyor(plan, voxels, {}).map(g);
+  return std::make_unique<OfVoxels>(plan, voxels, demand);
 }
 
 }  // namespace pkm::four_ppa_two_par

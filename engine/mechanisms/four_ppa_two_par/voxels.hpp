@@ -43,6 +43,7 @@ struct Halves {
 struct VoxelWorker {
   ColumnBlock columns;
   ColumnConditioning<double> poses;
+  std::vector<double> inertia;  ///< values of a pose's fields
 };
 /// Storage that surveys reuse.
 struct VoxelScratch {

@@ -154,13 +154,13 @@ class Search {
     beside_ = 1e-7 * whole_;
     used_ = 2;  // the first two are for the neighbours here
     search(low + beside_, slot(0));
-    begin(low, nullptr, slot(0));
+    begin(low, {}, slot(0));
     for (std::size_t k = 1; k <= kSamples; ++k) {
       const Sample &before = slot((k - 1) % 2), &next = slot(k % 2);
       search(k == kSamples ? high - beside_ : low + whole_ * (static_cast<double>(k) / kSamples), slot(k % 2));
       explore(before, next, kDepth);
     }
-    end(high, nullptr);
+    end(high, {});
   }
 
  private:
@@ -182,32 +182,30 @@ class Search {
   }
 
   /// A stretch begins at a break: the sample is just above.
-  void begin(double at, const Event* event, const Sample& above) {
-    open_ = above.structure.signature != 0;
+  void begin(double at, const std::optional<Event>& event, const Sample& above) {
+    open_ = !above.structure.strips.empty();
     if (!open_) return;
     if (scratch_.count == scratch_.stretches.size()) scratch_.stretches.emplace_back();
     Stretch& s = scratch_.stretches[scratch_.count++];
     s.lower = at;
-    s.lower_known = event;
-    if (event) s.at_lower = *event;
+    s.at_lower = event;
     s.structure = above.structure;
   }
-  void end(double at, const Event* event) {
+  void end(double at, const std::optional<Event>& event) {
     if (!open_) return;
     Stretch& s = scratch_.stretches[scratch_.count - 1];
     s.upper = at;
-    s.upper_known = event;
-    if (event) s.at_upper = *event;
+    s.at_upper = event;
   }
 
   /// Finds the breaks between two samples.
   void explore(const Sample& low, const Sample& high, int depth) {
-    if (low.structure.signature == high.structure.signature) return;
+    if (alike(low.structure, high.structure)) return;
     const double length = high.beta - low.beta;
     if (!(length > 1e-13 * whole_) || depth == 0) {
       const double at = 0.5 * (low.beta + high.beta);
-      end(at, nullptr);
-      begin(at, nullptr, high);
+      end(at, {});
+      begin(at, {}, high);
       return;
     }
     const std::size_t used = used_;
@@ -224,9 +222,9 @@ class Search {
     const Sample& below = at - beside > low.beta ? sample(at - beside) : low;
     const Sample& above = at + beside < high.beta ? sample(at + beside) : high;
     explore(low, below, depth - 1);
-    if (below.structure.signature != above.structure.signature) {
-      end(at, &event);
-      begin(at, &event, above);
+    if (!alike(below.structure, above.structure)) {
+      end(at, event);
+      begin(at, event, above);
     }
     explore(above, high, depth - 1);
     used_ = used;

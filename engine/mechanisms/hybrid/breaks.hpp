@@ -7,6 +7,7 @@
 
 #include <deque>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "engine/mechanisms/hybrid/strips.hpp"
@@ -34,9 +35,8 @@ struct Event {
 /// A range of beta with one structure.
 struct Stretch {
   double lower = 0, upper = 0;
-  Event at_lower, at_upper;                       ///< that change the structure there
-  bool lower_known = false, upper_known = false;  ///< there are such
-  Structure structure;                            ///< near the lower end
+  std::optional<Event> at_lower, at_upper;  ///< that change the structure there, where known
+  Structure structure;                      ///< near the lower end
 };
 
 /// Storage that searches reuse.

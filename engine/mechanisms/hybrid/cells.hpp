@@ -6,20 +6,16 @@
 
 #include "engine/core/instruction_set.hpp"
 #include "engine/math/lanes.hpp"
+#include "engine/mechanisms/hybrid/limbs.hpp"
 
 namespace pkm::hybrid {
-
-/// An end of x without its constant, squared: (a + a_z z) (b + b_z z), or 0 where that is negative.
-struct EndOfX {
-  double a, a_z, b, b_z;
-};
 
 /// The columns at one beta. Nothing but numbers, so that kernels share no code with files that are compiled for
 /// another instruction set.
 struct ColumnsAtBeta {
-  EndOfX C, Q, P, L, H;     ///< as in Section
-  double sign, lo_C, hi_C;  ///< of limb C
-  double z_high, hole_end;  ///< no columns above the first, no hole above the second
+  Product<double> C, Q, P, L, H;  ///< as in Section: the ends of x squared
+  double sign, lo_C, hi_C;        ///< of limb C
+  double z_high, hole_end;        ///< no columns above the first, no hole above the second
   double x_lower, x_step, cells;
   const double *z, *left, *right;  ///< heights, and what limbs A and B leave of x there; whole lanes
   std::size_t first_z, end_z;      ///< indices of the heights

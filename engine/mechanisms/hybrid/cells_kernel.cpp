@@ -4,7 +4,7 @@ namespace pkm::hybrid {
 namespace {
 
 template <class L>
-[[gnu::always_inline]] inline L square(const EndOfX& e, const L& z) {
+[[gnu::always_inline]] inline L square(const Product<double>& e, const L& z) {
   return (e.a + e.a_z * z) * (e.b + e.b_z * z);
 }
 

@@ -19,7 +19,7 @@ struct Shaft {
 
 /// @param g  of the same scalar, or of numbers
 template <class G, class S>
-Shaft<S> shaft(const Geometry<G>& g, const Pose<S>& pose) {
+[[gnu::always_inline]] inline Shaft<S> shaft(const Geometry<G>& g, const Pose<S>& pose) {
   const auto [sin_b, cos_b] = sincos(pose.angle);
   const S &x = pose.x, &z = pose.z, zero(0.0);
   Shaft<S> s;
@@ -35,7 +35,6 @@ Shaft<S> shaft(const Geometry<G>& g, const Pose<S>& pose) {
   s.cos_phi2 = point ? zero : S(s.P / s.length);
   return s;
 }
-
 /// The matrix that takes (sin t, cos t) to (S, C), its sign such that its determinant's root is positive.
 template <class S>
 struct Forks {

@@ -60,13 +60,13 @@ void find_outer_pieces(const Frame<S>& f, const Frame<double>& plain, const Fram
     const Stretch& s = scratch.breaks.stretches[i];
     const bool first = s.lower == plain.l.beta_min, last = s.upper == plain.l.beta_max;
     const bool joins = i > 0 && scratch.breaks.stretches[i - 1].upper == s.lower;
-    const S lower = first           ? f.l.beta_min
-                    : joins         ? scratch.pieces.back().upper
-                    : s.lower_known ? moving_break(f, still, s.lower, s.at_lower)
-                                    : S(s.lower);
-    const S upper = last ? f.l.beta_max : s.upper_known ? moving_break(f, still, s.upper, s.at_upper) : S(s.upper);
-    const bool root_lower = !first && (!s.lower_known || has_root(s.at_lower)),
-               root_upper = !last && (!s.upper_known || has_root(s.at_upper));
+    const S lower = first        ? f.l.beta_min
+                    : joins      ? scratch.pieces.back().upper
+                    : s.at_lower ? moving_break(f, still, s.lower, *s.at_lower)
+                                 : S(s.lower);
+    const S upper = last ? f.l.beta_max : s.at_upper ? moving_break(f, still, s.upper, *s.at_upper) : S(s.upper);
+    const bool root_lower = !first && (!s.at_lower || has_root(*s.at_lower)),
+               root_upper = !last && (!s.at_upper || has_root(*s.at_upper));
     scratch.pieces.push_back({lower, upper, root_lower, root_upper});
   }
 }

@@ -67,7 +67,7 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
                    const WorkingMode& mode, int branch) {
   PoseReport report;
   const Joints<double> j = inverse(g, pose, mode);
-  const Margins<double> m = margins(g, l, pose, j, branch);
+  const Margins<double> m = margins(g, l, pose, mode, branch);
   report.assembles = j.assembles();
   report.joints = {j.s[0], j.s[1], j.s[2], j.s[3]};
   for (std::size_t limb = 0; limb < 3; ++limb)

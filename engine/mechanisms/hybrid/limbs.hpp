@@ -7,6 +7,12 @@
 
 namespace pkm::hybrid {
 
+/// (a + a_z z) (b + b_z z)
+template <class S>
+struct Product {
+  S a, a_z, b, b_z;
+};
+
 template <class S>
 struct Limbs {
   S n1, n2, n3;  ///< components of the links along the rails [m]
@@ -18,13 +24,14 @@ struct Limbs {
 template <class S, class Lengths, class Root>
 [[gnu::always_inline]] inline Limbs<S> limbs(const Lengths& g, const S& z, const S& sin_b, const S& cos_b,
                                              const Root& root) {
-  const S k = g.e * cos_b - g.d, N1 = z + g.e * sin_b;
-  return {.n1 = root(S((g.L1 - z) * (g.L1 + z)), g.L1, 0),
-          .n2 = root(S((g.L2 - z) * (g.L2 + z)), g.L2, 1),
-          .n3 = root(S(g.L3 * g.L3 - k * k - N1 * N1), g.L3, 2),
-          .k = k,
-          .N1 = N1,
-          .N2 = g.e * (z * cos_b + g.d * sin_b)};
+  Limbs<S> j;
+  j.n1 = root(S((g.L1 - z) * (g.L1 + z)), g.L1, 0);
+  j.n2 = root(S((g.L2 - z) * (g.L2 + z)), g.L2, 1);
+  j.k = g.e * cos_b - g.d;
+  j.N1 = z + g.e * sin_b;
+  j.n3 = root(S(g.L3 * g.L3 - j.k * j.k - j.N1 * j.N1), g.L3, 2);
+  j.N2 = g.e * (z * cos_b + g.d * sin_b);
+  return j;
 }
 
 /// J of (s1, s3, s4) over (x, z, beta length): y stands alone with the gain 1 and is left out.

@@ -16,19 +16,16 @@ namespace pkm::hybrid {
 /// Order of the pose-level limits that a study may set.
 enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
 
-/// Links overlap by the sum of their radii at most, and no radius is greater than 1 m.
-inline constexpr double kNoClearance = -2;
-
 /// Thresholds in the form in which the tests use them.
 template <class S>
 struct Limits {
   std::array<S, 4> s_min, s_max;  ///< [m]
   S z_clear, beta_min, beta_max;  ///< [m], [rad]
   S tau_s, tau_p, tau_c;
-  SinCosOf<S> psiA, psiC, phi;  ///< of the greatest angles
-  S lam_max, mu_max;            ///< [rad]
-  S gap, lw_min, lw_max;        ///< [m]
-  double clearance_min;         ///< of the links as capsules [m]
+  SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< of the greatest angles
+  S lam_max, mu_max;                     ///< [rad]
+  S gap, lw_min, lw_max;                 ///< [m]
+  double clearance_min;                  ///< of the links as capsules [m]
 };
 
 template <class S>
@@ -47,6 +44,8 @@ Limits<S> limits(std::span<const S> p, const LimitSpec& spec) {
           .tau_c = given(kTauCLimit, p[kTauC]),
           .psiA = sincos(p[kPsiAMax]),
           .psiC = sincos(p[kPsiCMax]),
+          .lam = sincos(p[kLamMax]),
+          .mu = sincos(p[kMuMax]),
           .phi = sincos(p[kPhiMax]),
           .lam_max = p[kLamMax],
           .mu_max = p[kMuMax],
@@ -114,76 +113,64 @@ double home_side(const Geometry<S>& g) {
   return value_of(g.d) < value_of(g.e) ? -1 : 1;
 }
 
+/// p / q, or 0 where q is 0: the sine or cosine of an angle of a triangle.
+template <class S>
+S share(const S& p, const S& q) {
+  return value_of(q) > 0 ? S(p / q) : S(0.0);
+}
+
 /// Singularity measures, in [0, 1] (t_beta and sin_lambda signed).
 template <class S>
 struct Transmission {
-  std::array<S, 3> t;  ///< |n_i| / L_i, cosines of the links' pressure angles
-  S t_xz, t_beta;      ///< t_beta > 0 on the branch N2 > 0
-  S sin_lambda, lambda;
+  std::array<S, 3> t;    ///< |n| / L, the cosines of the links' pressure angles
+  S t_xz;                ///< the sine of the angle of links A and B
+  S t_beta;              ///< > 0 on the branch N2 > 0
+  S sin_lambda, lambda;  ///< of limb C across its rail
 };
 
 template <class S>
 Transmission<S> transmission(const Geometry<S>& g, const S& z, const Joints<S>& j) {
-  const S width = root_or_zero(S(j.k * j.k + j.N1 * j.N1));  // of limb C across its rail
-  return {.t = {magnitude(j.n1) / g.L1, magnitude(j.n2) / g.L2, magnitude(j.n3) / g.L3},
-          .t_xz = magnitude(S(z * (j.n1 - j.n2))) / (g.L1 * g.L2),
-          .t_beta = j.N2 / (g.e * g.L3),
-          .sin_lambda = value_of(width) > 0 ? S(-j.k / width) : S(0.0),
+  return {.t = {share(magnitude(j.n1), g.L1), share(magnitude(j.n2), g.L2), share(magnitude(j.n3), g.L3)},
+          .t_xz = share(magnitude(S(z * (j.n1 - j.n2))), S(g.L1 * g.L2)),
+          .t_beta = share(j.N2, S(g.e * g.L3)),
+          .sin_lambda = share(S(-j.k), root_or_zero(S(j.k * j.k + j.N1 * j.N1))),
           .lambda = atan2(S(-j.k), j.N1)};
 }
 
-/// Calls visit(index, margin) for the margins of a pose, cheap ones first, until it answers false. Reports, pose tests,
-/// constraints and derivatives come from this statement alone; the closed forms of section.hpp are compared with it.
-/// The margins are finite everywhere.
-/// @param branch      required sign of N2, +1 or -1
-/// @param with_links  with the links' clearance, else the first kCapsules margins only
-/// @return            it has always answered true
-template <class S, class Visit>
-bool visit_margins(const Geometry<S>& g, const Limits<S>& l, const Pose<S>& pose, const Joints<S>& j, int branch,
-                   bool with_links, const Visit& visit) {
-  const S &z = pose.z, &beta = pose.angle, one(1.0);
-  const auto inside = [](const S& value, const S& lower, const S& upper) {
-    return min(S(value - lower), S(upper - value));
-  };
-  bool goes_on = true;
-  const auto add = [&](std::size_t i, const S& margin) { goes_on = goes_on && visit(i, margin); };
-  add(kReach1, one - z / g.L1 * (z / g.L1));
-  add(kReach2, one - z / g.L2 * (z / g.L2));
-  add(kReach3, one - (j.k * j.k + j.N1 * j.N1) / (g.L3 * g.L3));
-  for (std::size_t i = 0; i < 4; ++i) add(kStroke1 + i, inside(j.s[i], l.s_min[i], l.s_max[i]));
-  add(kZClearance, min(z, j.N1) - l.z_clear);
-  add(kBeta, inside(beta, l.beta_min, l.beta_max));
-  if (!goes_on) return false;
-  const Transmission<S> t = transmission(g, z, j);
-  for (std::size_t i = 0; i < 3; ++i) add(kSerial1 + i, t.t[i] - l.tau_s);
-  add(kParallelXz, t.t_xz - l.tau_p);
-  add(kParallelBeta, t.t_beta * static_cast<double>(branch) - l.tau_p);
-  add(kConstraint, t.sin_lambda * home_side(g) - l.tau_c);
-  add(kPassiveA, l.psiA.sin - t.t[0]);
-  add(kPassiveB, l.psiA.sin - t.t[1]);
-  add(kPassiveCIn, l.psiC.sin - t.t[2]);
-  add(kPassiveCOut, l.lam_max - magnitude(t.lambda));
-  add(kPassiveCpOut, l.mu_max - magnitude(wrapped(S(t.lambda - beta))));
-  add(kCarriageGap, g.a * 2.0 + j.n1 - j.n2 - l.gap);
-  if (!goes_on) return false;
-  const Shaft<S> w = shaft(g, pose);
-  add(kAuxBend1, w.cos_phi1 - l.phi.cos);
-  add(kAuxBend2, w.cos_phi2 - l.phi.cos);
-  add(kAuxLength, inside(w.length, l.lw_min, l.lw_max));
-  if (!goes_on || !with_links) return goes_on;
-  const Links<S> link = links(g, pose, j, w);
-  for (std::size_t i = 0; i < kLinkPairs; ++i) add(kCapsules + i, link_distance(link, kPairs[i]) - l.clearance_min);
-  return goes_on;
-}
-
-/// All margins of a pose.
+/// All margins of a pose, finite everywhere. Reports, constraints and derivatives come from this statement alone; the
+/// closed forms of section.hpp are compared with it.
+/// @param branch  required sign of N2, +1 or -1
 template <class S>
-Margins<S> margins(const Geometry<S>& g, const Limits<S>& l, const Pose<S>& pose, const Joints<S>& j, int branch) {
+Margins<S> margins(const Geometry<S>& g, const Limits<S>& l, const Pose<S>& pose, const WorkingMode& mode, int branch) {
+  const S& z = pose.z;
+  const Joints<S> j = inverse(g, pose, mode);
+  const Transmission<S> t = transmission(g, z, j);
+  const Shaft<S> w = shaft(g, pose);
+  const Links<S> link = links(g, pose, j, w);
+  const auto inside = [](const S& value, const S& lower, const S& upper) {
+    return S(min(S(value - lower), S(upper - value)));
+  };
   Margins<S> m;
-  visit_margins(g, l, pose, j, branch, true, [&](std::size_t i, const S& margin) {
-    m[i] = margin;
-    return true;
-  });
+  m[kReach1] = S(1.0) - z / g.L1 * (z / g.L1);
+  m[kReach2] = S(1.0) - z / g.L2 * (z / g.L2);
+  m[kReach3] = S(1.0) - (j.k * j.k + j.N1 * j.N1) / (g.L3 * g.L3);
+  for (std::size_t i = 0; i < 4; ++i) m[kStroke1 + i] = inside(j.s[i], l.s_min[i], l.s_max[i]);
+  m[kZClearance] = min(z, j.N1) - l.z_clear;
+  m[kBeta] = inside(pose.angle, l.beta_min, l.beta_max);
+  for (std::size_t limb = 0; limb < 3; ++limb) {
+    m[kSerial1 + limb] = t.t[limb] - l.tau_s;
+    m[kPassiveA + limb] = (limb < 2 ? l.psiA : l.psiC).sin - t.t[limb];
+  }
+  m[kParallelXz] = t.t_xz - l.tau_p;
+  m[kParallelBeta] = t.t_beta * static_cast<double>(branch) - l.tau_p;
+  m[kConstraint] = t.sin_lambda * home_side(g) - l.tau_c;
+  m[kPassiveCOut] = l.lam_max - magnitude(t.lambda);
+  m[kPassiveCpOut] = l.mu_max - magnitude(wrapped(S(t.lambda - pose.angle)));
+  m[kCarriageGap] = g.a * 2.0 + j.n1 - j.n2 - l.gap;
+  m[kAuxBend1] = w.cos_phi1 - l.phi.cos;
+  m[kAuxBend2] = w.cos_phi2 - l.phi.cos;
+  m[kAuxLength] = inside(w.length, l.lw_min, l.lw_max);
+  for (std::size_t i = 0; i < kLinkPairs; ++i) m[kCapsules + i] = link_distance(link, kPairs[i]) - l.clearance_min;
   return m;
 }
 

@@ -1,9 +1,9 @@
 // The hybrid robot as a mechanism of the catalogue.
 #include <algorithm>
-#include <stdexcept>
 
 #include "engine/core/options.hpp"
 #include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanism/with_abilities.hpp"
 #include "engine/mechanisms/hybrid/forward.hpp"
 #include "engine/mechanisms/hybrid/influence.hpp"
 #include "engine/mechanisms/hybrid/inspect.hpp"
@@ -69,32 +69,18 @@ S size_of(std::span<const S> p) {
   return (p[kA] * 2.0 + p[kL1] + p[kL2]) * p[kL3];
 }
 
-class Hybrid final : public Mechanism,
-                     Voxels,
-                     Columns,
-                     Derivatives,
-                     Size,
-                     PoseMarginsOf<Hybrid>,
-                     Velocities,
-                     ForwardKinematics,
-                     pkm::Links,
-                     AuxiliaryChain {
+class Hybrid final : public MechanismWith<Voxels, Columns, Size, PoseMarginsOf<Hybrid>, Velocities, ForwardKinematics,
+                                          pkm::Links, AuxiliaryChain> {
  public:
   const MechanismInfo& info() const override { return info_; }
-  const Voxels* voxels() const override { return this; }
-  const Columns* columns() const override { return this; }
-  const Derivatives* derivatives() const override { return this; }
-  const Size* size() const override { return this; }
-  const PoseMargins* pose_margins() const override { return this; }
-  const Velocities* velocities() const override { return this; }
-  const ForwardKinematics* forward() const override { return this; }
-  const pkm::Links* links() const override { return this; }
-  const AuxiliaryChain* chain() const override { return this; }
 
   std::optional<double> middle(std::span<const double> p, int) const override {
     return (p[kSMin + 1] + p[kSMax + 1]) / 2;
   }
   void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
+    find_thresholds(p, spec, values);
+  }
+  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
     find_thresholds(p, spec, values);
   }
   Refusal refuse(std::span<const double> p) const override {
@@ -119,31 +105,19 @@ class Hybrid final : public Mechanism,
  private:
   friend PoseMarginsOf<Hybrid>;
 
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
-                                          const Demand& demand) const override {
-    const Mode& mode = surveyed_mode(demand);
-    return make_voxel_surveyor(mode.signs, mode.branch, plan, voxels, demand);
+  std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                               const Demand& demand) const override {
+    return make_surveyor(planned(plan, demand), voxels);
   }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
                                           const Demand& demand) const override {
-    const Mode& mode = surveyed_mode(demand);
-    return make_column_surveyor(mode.signs, mode.branch, plan, columns, demand);
-  }
-  VoxelMap map(std::span<const double> p, const SurveyPlan& plan, const VoxelOptions& voxels) const override {
-    return voxel_map(modes_.front().signs, modes_.front().branch, p, plan, voxels);
+    return make_surveyor(planned(plan, demand), columns);
   }
 
   std::string unit() const override { return "m^2"; }
   std::string meaning() const override { return "(2 a + L1 + L2) L3"; }
   double of(std::span<const double> p) const override { return size_of(p); }
-  Dual4 size(std::span<const Dual4> p) const override { return size_of(p); }
-  void thresholds(std::span<const Dual4> p, const LimitSpec& spec, std::span<Dual4> values) const override {
-    find_thresholds(p, spec, values);
-  }
-  void pose_margins(std::span<const Dual4> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
-                    std::vector<Dual4>& margins) const override {
-    find_margins(p, spec, poses, margins);
-  }
+  Dual4 of(std::span<const Dual4> p) const override { return size_of(p); }
 
   std::optional<pkm::Influence<double>> influence(std::span<const double> p, const pkm::Pose<double>& pose,
                                                   const std::string& mode) const override {
@@ -189,14 +163,11 @@ class Hybrid final : public Mechanism,
     return meanings[static_cast<std::size_t>(hybrid::forward(geometry(p), s).status)];
   }
 
-  const Mode& mode_called(const std::string& name) const {
-    for (const Mode& known : modes_)
-      if (name == name_of(known)) return known;
-    throw std::invalid_argument("unknown working mode " + name);
+  Planned planned(const SurveyPlan& plan, const Demand& demand) const {
+    const auto& [signs, branch] = mode_called(demand.mode);
+    return {signs, branch, plan, demand};
   }
-  const Mode& surveyed_mode(const Demand& demand) const {
-    return demand.mode.empty() ? modes_.front() : mode_called(demand.mode);
-  }
+  const Mode& mode_called(const std::string& name) const { return modes_[number_of_mode(info_, name)]; }
   template <class S>
   void find_thresholds(std::span<const S> p, const LimitSpec& spec, std::span<S> values) const {
     const Limits<S> l = limits(p, spec);
@@ -213,7 +184,7 @@ class Hybrid final : public Mechanism,
     const Mode& mode = modes_.front();
     for (const pkm::Pose<double>& at : poses) {
       const SchoenfliesPose<S> pose{S(at[0]), S(at[1]), S(at[2]), S(at[3])};
-      const Margins<S> found = hybrid::margins(g, l, pose, inverse(g, pose, mode.signs), mode.branch);
+      const Margins<S> found = hybrid::margins(g, l, pose, mode.signs, mode.branch);
       for (std::size_t i = 0; i < kMargins; ++i)  // in one unit: lengths as they are, angles and ratios at the length e
         margins.push_back(kMarginNames[i].kind == MarginKind::length ? found[i] : S(found[i] * g.e));
     }

@@ -62,31 +62,25 @@ enum ParameterIndex {
 /// The table of the parameters with the nominal design: up to f' the source's, the rest assumed.
 std::vector<Parameter> parameters();
 
-/// Lengths [m] and the phase of the fork arms [rad], names as in the source (f' is fp).
+/// Lengths [m] and the phase of the fork arms [rad], names as in the source (f' is fp); kAll has them in the order of
+/// the parameters.
 template <class S>
 struct Geometry {
   S a, b1, b2, c, d, e, L1, L2, L3;
   S f, fp, h1, h2, theta0;
   std::array<S, 5> radius;  ///< of links A, B, C, the auxiliary shaft F, the platform's edge P
+
+  using G = Geometry;
+  static constexpr std::array<S G::*, kSMin> kAll = {&G::a,  &G::b1, &G::b2, &G::c,  &G::d,  &G::e,  &G::L1,
+                                                     &G::L2, &G::L3, &G::f,  &G::fp, &G::h1, &G::h2, &G::theta0};
 };
 
 template <class S>
 Geometry<S> geometry(std::span<const S> p) {
-  return {.a = p[kA],
-          .b1 = p[kB1],
-          .b2 = p[kB2],
-          .c = p[kC],
-          .d = p[kD],
-          .e = p[kE],
-          .L1 = p[kL1],
-          .L2 = p[kL2],
-          .L3 = p[kL3],
-          .f = p[kF],
-          .fp = p[kFp],
-          .h1 = p[kH1],
-          .h2 = p[kH2],
-          .theta0 = p[kTheta0],
-          .radius = {p[kRadiusA], p[kRadiusB], p[kRadiusC], p[kRadiusF], p[kRadiusP]}};
+  Geometry<S> g;
+  for (std::size_t i = 0; i < g.kAll.size(); ++i) g.*g.kAll[i] = p[i];
+  for (std::size_t i = 0; i < g.radius.size(); ++i) g.radius[i] = p[kRadiusA + i];
+  return g;
 }
 
 /// Signs of n1, n2, n3, +1 or -1.
@@ -111,16 +105,16 @@ struct Joints : Limbs<S> {
 template <class S>
 Joints<S> inverse(const Geometry<S>& g, const Pose<S>& pose, const WorkingMode& mode) {
   const auto [sin_b, cos_b] = sincos(pose.angle);
-  const S& x = pose.x;
   Joints<S> j;
-  const auto along_rail = [&](const S& square, const S& L, std::size_t limb) {
+  const auto root = [&](const S& square, const S& L, std::size_t limb) {
     const double tolerance = kRoundoff * value_of(L) * value_of(L);
     const unsigned bit = 1u << limb;
     if (value_of(square) < -tolerance) j.unreached |= bit;
     if (std::fabs(value_of(square)) <= tolerance) j.serial |= bit;
     return value_of(square) > tolerance ? S(sqrt(square) * static_cast<double>(mode[limb])) : S(0.0);
   };
-  static_cast<Limbs<S>&>(j) = limbs(g, pose.z, sin_b, cos_b, along_rail);
+  static_cast<Limbs<S>&>(j) = limbs(g, pose.z, sin_b, cos_b, root);
+  const S& x = pose.x;
   j.s = {x - g.a + g.b1 - j.n1, pose.y, x + g.a - g.b2 - j.n2, x - g.c - j.n3};
   return j;
 }

@@ -21,7 +21,6 @@ struct Frame {
   int branch;               ///< required sign of N2, +1 or -1
   std::array<S, 3> lo, hi;  ///< s_min and s_max of limbs A, B, C with their offsets [m]
   S sine_s, cot_c;          ///< sqrt(1 - tau_s^2), sqrt(1 - tau_c^2) / tau_c
-  SinCosOf<S> lam, mu;      ///< of the greatest angles
   S tan_phi, cot_phi;
   S z_low, z_high;    ///< what limits on z alone leave [m]
   bool empty = true;  ///< which is nothing, or the branch is N2 < 0
@@ -78,8 +77,6 @@ Frame<S> frame(const Geometry<S>& g, const Limits<S>& l, const WorkingMode& sign
              .branch = branch,
              .sine_s = cosine_of(l.tau_s),
              .cot_c = cosine_of(l.tau_c) / l.tau_c,
-             .lam = sincos(l.lam_max),
-             .mu = sincos(l.mu_max),
              .tan_phi = l.phi.sin / l.phi.cos,
              .cot_phi = l.phi.cos / l.phi.sin};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -93,10 +90,10 @@ Frame<S> frame(const Geometry<S>& g, const Limits<S>& l, const WorkingMode& sign
 /// Ends of x, in the order of Section::curve.
 enum CurveIndex { kCurveA, kCurveB, kCurveC, kCurveQ, kCurveP, kCurveL, kCurveH, kCurves };
 
-/// sqrt((a + a_z z) (b + b_z z)).
+/// The root of a product.
 template <class S>
-struct Curve {
-  S a, a_z, b, b_z;
+struct Curve : Product<S> {
+  using Product<S>::a, Product<S>::a_z, Product<S>::b, Product<S>::b_z;
 
   S root(const S& z) const { return root_or_zero(S((a + a_z * z) * (b + b_z * z))); }
   S curvature() const { return a_z * b_z; }  ///< coefficient of z^2 under the root
@@ -155,8 +152,8 @@ Section<S> section(const Frame<S>& f, const S& beta) {
     s.lower[i] = sign > 0 ? S(right / factor) : value_of(right) > 0 && sign == 0 ? all : none;
     s.upper[i] = sign < 0 ? S(right / factor) : all;
   };
-  const S mu_sin = f.mu.sin * cos_b, mu_cos = f.mu.cos * sin_b, middle = (g.d * cos_b - g.e) * f.mu.cos;
-  const S d_sin = g.d * sin_b * f.mu.sin;
+  const S mu_sin = l.mu.sin * cos_b, mu_cos = l.mu.cos * sin_b, middle = (g.d * cos_b - g.e) * l.mu.cos;
+  const S d_sin = g.d * sin_b * l.mu.sin;
   set(0, S(mu_sin + mu_cos), S(middle - d_sin));
   set(1, S(mu_sin - mu_cos), S(-middle - d_sin));
   set(kEndP1, S(t * cos_b - sin_b), S(v_0 - t * P0));
@@ -168,7 +165,7 @@ Section<S> section(const Frame<S>& f, const S& beta) {
   s.upper[5] = value_of(far2) > 0 ? S(sqrt(far2) - lift) : none;
   s.lower[6] = (l.tau_p * g.L3 - g.d * sin_b) / cos_b;
   s.upper[6] = beyond ? none : S(width * f.cot_c - lift);
-  s.lower[7] = max(l.z_clear, S(width * f.lam.cos / f.lam.sin)) - lift;
+  s.lower[7] = max(l.z_clear, S(width * l.lam.cos / l.lam.sin)) - lift;
   const S shaft2 = (l.lw_max - w_y) * (l.lw_max + w_y);  // Q^2 + x^2 at the greatest length
   s.upper[kEndL] = value_of(shaft2) > 0 ? S(sqrt(shaft2) - Q0) : none;
   s.lower[kEndQ] = magnitude(w_y) * f.cot_phi - Q0;
@@ -178,13 +175,13 @@ Section<S> section(const Frame<S>& f, const S& beta) {
 
   // x
   const auto circle = [&](const S& radius, const S& foot) {  // of the radius about z = foot
-    return Curve<S>{radius + foot, S(-1.0), radius - foot, one};
+    return Curve<S>{{radius + foot, S(-1.0), radius - foot, one}};
   };
   s.curve = {circle(g.L1, zero),
              circle(g.L2, zero),
              circle(root_or_zero(reach2), S(-lift)),
-             Curve<S>{t * Q0 + w_y, t, t * Q0 - w_y, t},
-             Curve<S>{t * P0 + v_0, t * cos_b + sin_b, t * P0 - v_0, t * cos_b - sin_b},
+             Curve<S>{{t * Q0 + w_y, t, t * Q0 - w_y, t}},
+             Curve<S>{{t * P0 + v_0, t * cos_b + sin_b, t * P0 - v_0, t * cos_b - sin_b}},
              circle(root_or_zero(shaft2), S(-Q0)),
              circle(root_or_zero(hole2), S(-Q0))};
   for (std::size_t i = 0; i < kCurves; ++i) {
@@ -205,7 +202,7 @@ Section<double> values(const Section<S>& s) {
   Section<double> v{.signs = s.signs, .hole_end = value_of(s.hole_end), .m = s.m, .m_z = s.m_z};
   for (std::size_t i = 0; i < kCurves; ++i) {
     const Curve<S>& c = s.curve[i];
-    v.curve[i] = {value_of(c.a), value_of(c.a_z), value_of(c.b), value_of(c.b_z)};
+    v.curve[i] = {{value_of(c.a), value_of(c.a_z), value_of(c.b), value_of(c.b_z)}};
     for (const Side side : {kLeft, kRight}) v.constants[side][i] = value_of(s.constants[side][i]);
   }
   for (std::size_t i = 0; i < kLowerEnds; ++i) v.lower[i] = value_of(s.lower[i]);

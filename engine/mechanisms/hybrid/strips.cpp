@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/math/hash.hpp"
 #include "engine/mechanisms/hybrid/meetings.hpp"
 
 namespace pkm::hybrid {
@@ -20,13 +19,8 @@ struct Node {
 };
 
 Node node_at(const Section<double>& s, double z) {
-  Node n;
-  n.z = z;
-  for (std::size_t k = 0; k < kCurves; ++k) {
-    const Curve<double>& c = s.curve[k];
-    const double square = (c.a + c.a_z * z) * (c.b + c.b_z * z);
-    n.root[k] = std::sqrt(square > 0 ? square : 0);
-  }
+  Node n{.z = z, .root = {}};
+  for (std::size_t k = 0; k < kCurves; ++k) n.root[k] = s.curve[k].root(z);
   return n;
 }
 
@@ -225,21 +219,6 @@ void take_out(const std::vector<Strip>& outer, const std::vector<Strip>& inner, 
   }
 }
 
-std::uint64_t signature_of(const Structure& structure) {
-  if (structure.strips.empty()) return 0;
-  Fnv1a hash;
-  const auto mix_end = [&](const StripEnd& e) {
-    hash.add(static_cast<std::uint64_t>(e.kind));
-    hash.add(e.index + 16u * (e.first.curve + 16u * (e.first.side + 2u * (e.second.curve + 16u * e.second.side))));
-  };
-  for (const Strip& strip : structure.strips) {
-    mix_end(strip.from);
-    mix_end(strip.to);
-    hash.add(strip.left.curve + 16u * strip.right.curve + 256u * (strip.left.side + 2u * strip.right.side));
-  }
-  return hash.value() | 1;
-}
-
 /// The ends of z in force, as numbers of the lower and the upper one.
 std::array<std::size_t, 2> ends_in_force(const Section<double>& s) {
   const auto low = std::max_element(s.lower.begin(), s.lower.end()),
@@ -256,36 +235,32 @@ bool follow_strips(const Section<double>& s, Structure& structure) {
   const auto [lower, upper] = ends_in_force(s);
   const double low = s.lower[lower], high = s.upper[upper];
   if (lower != structure.lower || upper != structure.upper || hole_of(s, low, high) != structure.hole) return false;
-  const auto follow = [&](StripEnd& end) {
-    const bool meet = end.kind == StripEnd::Kind::meeting;
-    end.z = meet ? meeting_near(s, end.first, end.second, end.z) : height(s, end);
-  };
   StripEnd from, to;  // of the strip before, where it was
-  for (std::size_t i = 0; i < structure.strips.size(); ++i) {
-    Strip& strip = structure.strips[i];
+  const Strip* before = nullptr;
+  const auto follow = [&](StripEnd& end) {
+    const auto was = [&end](const StripEnd& other) { return alike(end, other) && end.z == other.z; };
+    if (before && was(to))
+      end.z = before->to.z;
+    else if (before && was(from))
+      end.z = before->from.z;
+    else
+      end.z = end.kind == StripEnd::Kind::meeting ? meeting_near(s, end.first, end.second, end.z) : height(s, end);
+  };
+  for (Strip& strip : structure.strips) {
     const Strip was = strip;
-    const auto same = [](const StripEnd& p, const StripEnd& q) { return alike(p, q) && p.z == q.z; };
-    if (i > 0 && same(was.from, to))
-      strip.from = structure.strips[i - 1].to;
-    else if (i > 0 && same(was.from, from))
-      strip.from = structure.strips[i - 1].from;
-    else
-      follow(strip.from);
-    if (i > 0 && same(was.to, to))
-      strip.to = structure.strips[i - 1].to;
-    else
-      follow(strip.to);
-    const bool above = i == 0 || strip.from.z >= structure.strips[i - 1].from.z - kSearches;
+    follow(strip.from);
+    follow(strip.to);
+    const bool above = !before || strip.from.z >= before->from.z - kSearches;
     if (!(strip.from.z < strip.to.z && strip.from.z >= low && strip.to.z <= high && above)) return false;
     from = was.from;
     to = was.to;
+    before = &strip;
   }
   return true;
 }
 
 void find_strips(const Section<double>& s, StripScratch& scratch, Structure& structure) {
   structure.strips.clear();
-  structure.signature = 0;
   const auto [lower, upper] = ends_in_force(s);
   structure.lower = lower;
   structure.upper = upper;
@@ -298,7 +273,6 @@ void find_strips(const Section<double>& s, StripScratch& scratch, Structure& str
     find_plain_strips(s, kCurves, low, end, scratch, scratch.inner);
     take_out(scratch.outer, scratch.inner, structure.strips);
   }
-  structure.signature = signature_of(structure);
 }
 
 }  // namespace pkm::hybrid

@@ -8,6 +8,7 @@
 // Columns without (-H, H) are columns less those of a section that has H among its curves.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -43,8 +44,10 @@ struct Structure {
   std::vector<Strip> strips;         ///< from below, not empty; where there is a hole, two over the same heights
   std::size_t lower = 0, upper = 0;  ///< the ends of z in force
   enum class Hole { none, below, all } hole = Hole::none;  ///< at which of the heights between them there is one
-  std::uint64_t signature = 0;                             ///< of everything but the numbers; 0: no strip
 };
+inline bool alike(const Structure& p, const Structure& q) {
+  return std::ranges::equal(p.strips, q.strips, [](const Strip& a, const Strip& b) { return alike(a, b); });
+}
 
 /// What finding strips reuses.
 struct StripScratch {

@@ -6,17 +6,14 @@
 #include "engine/mechanisms/hybrid/conditioning.hpp"
 #include "engine/mechanisms/hybrid/influence.hpp"
 #include "engine/mechanisms/hybrid/voxels.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/share_samples.hpp"
+#include "engine/survey/with_slopes.hpp"
 
 namespace pkm::hybrid {
 namespace {
 
 constexpr int kY = 1;  ///< the coordinate that surveys hold
-
-/// Whether a plan asks for a clearance.
-bool with_links(const SurveyPlan& plan) {
-  return plan.limits.given[kClearanceMin].value_or(kNoClearance) > kNoClearance;
-}
 
 /// What the carriage's stroke makes of a volume of (x, z, beta): its length where y is integrated over [m], else 1, or
 /// 0 beyond its ends.
@@ -38,12 +35,13 @@ class Conditioning {
       : frame_(f),
         length_(demand.characteristic_length ? S(*demand.characteristic_length) : f.g.e),
         poses_(poses),
-        survey_(survey) {
+        survey_(survey),
+        index_(survey.find(kConditioning)) {
     poses_.clear();
   }
 
   void add(const S& z, const S& beta, const S& weight) {
-    if (!(value_of(weight) > 0)) return;
+    if (!index_ || !(value_of(weight) > 0)) return;
     survey_.weight.push_back(weight);
     if constexpr (std::is_same_v<S, double>) {
       if (beta != beta_) sincos_ = sincos(beta_ = beta);
@@ -53,17 +51,18 @@ class Conditioning {
     } else {
       const Joints<S> j = inverse(frame_.g, Pose<S>{S(0.0), S(0.0), z, beta}, frame_.signs);
       const bool regular = j.assembles() && !j.serial;
-      survey_.conditioning.push_back(regular ? inverse_condition(homogeneous_jacobian(z, j, length_)) : S(0.0));
+      index_->push_back(regular ? inverse_condition(homogeneous_jacobian(z, j, length_)) : S(0.0));
     }
   }
 
   /// Call it after the last one.
   void finish() {
     if constexpr (std::is_same_v<S, double>) {
+      if (!index_) return;
       const std::size_t count = poses_.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
-      const std::size_t before = survey_.conditioning.size();
+      const std::size_t before = index_->size();
       for (auto* list : {&poses_.z, &poses_.sine, &poses_.cosine}) list->resize(whole);
-      survey_.conditioning.resize(before + whole);
+      index_->resize(before + whole);
       const Geometry<double>& g = frame_.g;
       const ConditioningDesign design{.L1 = g.L1,
                                       .L2 = g.L2,
@@ -75,9 +74,9 @@ class Conditioning {
                                       .length = length_};
       with_instruction_set([&]<InstructionSet set>() {
         inverse_conditions<set>(design, poses_.z.data(), poses_.sine.data(), poses_.cosine.data(), whole,
-                                survey_.conditioning.data() + before);
+                                index_->data() + before);
       });
-      survey_.conditioning.resize(before + count);
+      index_->resize(before + count);
     }
   }
 
@@ -86,50 +85,30 @@ class Conditioning {
   S length_;
   PoseList& poses_;
   Survey<S>& survey_;
-  double beta_ = 0;  ///< the last one
+  std::vector<S>* index_;  ///< null: not demanded
+  double beta_ = 0;        ///< the last one
   SinCosOf<double> sincos_{0, 1};
 };
 
-/// What surveys of either method know.
-class PlannedSurveyor : public Surveyor {
+template <class S>
+Frame<S> frame_of(const Planned& planned, std::span<const S> parameters) {
+  return frame(geometry(parameters), limits(parameters, planned.plan.limits), planned.signs, planned.branch);
+}
+
+class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
  public:
-  PlannedSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const Demand& demand)
-      : signs_(signs), branch_(branch), plan_(plan), demand_(demand) {}
-
- protected:
-  template <class S>
-  Frame<S> frame_of(std::span<const S> parameters) const {
-    return frame(geometry(parameters), limits(parameters, plan_.limits), signs_, branch_);
-  }
-
-  WorkingMode signs_;
-  int branch_;
-  SurveyPlan plan_;
-  Demand demand_;
-};
-
-class ColumnSurveyor final : public PlannedSurveyor, public SlopeSurveyor {
- public:
-  ColumnSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const ColumnOptions& columns,
-                 const Demand& demand)
-      : PlannedSurveyor(signs, branch, plan, demand), columns_(columns) {}
-
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    run(parameters, scratch.get<ColumnScratch<double>>(), survey);
-  }
-  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const override {
-    run(parameters, scratch.get<ColumnScratch<Dual4>>(), survey);
-  }
-  const SlopeSurveyor* slopes() const override { return this; }
+  ColumnSurveyor(const Planned& planned, const ColumnOptions& columns) : planned_(planned), columns_(columns) {}
 
  private:
+  friend WithSlopes<ColumnSurveyor>;
   static constexpr int kSampleNodes = 8;  // per strip of z and piece of beta
 
   template <class S>
-  void run(std::span<const S> parameters, ColumnScratch<S>& scratch, Survey<S>& survey) const {
-    survey.clear();
-    const Frame<S> f = frame_of(parameters);
-    const S stroke = carriage(f.l, how_held(plan_, kY));
+  void run(std::span<const S> parameters, Scratch& room, Survey<S>& survey) const {
+    survey.clear(planned_.demand.fields);
+    ColumnScratch<S>& scratch = room.get<ColumnScratch<S>>();
+    const Frame<S> f = frame_of(planned_, parameters);
+    const S stroke = carriage(f.l, how_held(planned_.plan, kY));
     if (!(value_of(stroke) > 0)) return;
     find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     if (!fixed_) {
@@ -137,16 +116,16 @@ class ColumnSurveyor final : public PlannedSurveyor, public SlopeSurveyor {
       survey.volume = volume.value * stroke;
       survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
       survey.columns = volume.evaluations;
-      if (!demand_.conditioning) return;
+      if (!planned_.demand.has(kConditioning)) return;
     }
-    Conditioning<S> conditioning(f, demand_, scratch.poses, survey);
+    Conditioning<S> conditioning(f, planned_.demand, scratch.poses, survey);
     for (const Piece<S>& piece : scratch.pieces)
       for (std::size_t i = 0; i < beta_rule_.node.size(); ++i) {
         const MappedNode<S> at = map_node(piece, beta_rule_.node[i]);
         const S &beta = at.point, outer = at.jacobian * beta_rule_.weight[i] * stroke;
         visit_columns(f, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
           const S weight = outer * inner * length;
-          if (demand_.conditioning) conditioning.add(z, beta, weight);
+          conditioning.add(z, beta, weight);
           if (!fixed_) return;
           survey.volume += weight;
           ++survey.columns;
@@ -158,34 +137,25 @@ class ColumnSurveyor final : public PlannedSurveyor, public SlopeSurveyor {
   /// The design as constants of another scalar.
   template <class To, class From>
   Frame<To> still(std::span<const From> parameters) const {
-    std::array<To, kParameters> constants;
-    for (std::size_t i = 0; i < kParameters; ++i) constants[i] = To(value_of(parameters[i]));
-    return frame_of(std::span<const To>(constants));
+    return frame_of(planned_, std::span<const To>(constants<To, kParameters>(parameters)));
   }
 
+  Planned planned_;
   ColumnOptions columns_;
   bool fixed_ = columns_.nodes[0] > 0;  ///< numbers of nodes are given
   GaussRule z_rule_ = gauss_legendre(fixed_ ? columns_.nodes[0] : kSampleNodes),
             beta_rule_ = gauss_legendre(fixed_ ? columns_.nodes[1] : kSampleNodes);
 };
 
-class VoxelSurveyor final : public PlannedSurveyor {
+class OfVoxels final : public VoxelSurveyor {
  public:
-  VoxelSurveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan, const VoxelOptions& voxels,
-                const Demand& demand)
-      : PlannedSurveyor(signs, branch, plan, demand), voxels_(voxels) {}
+  OfVoxels(const Planned& planned, const VoxelOptions& voxels) : planned_(planned), voxels_(voxels) {}
 
-  std::string why_no_slopes() const override { return voxels_have_no_derivatives(); }
-
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    run(parameters, scratch.get<VoxelScratch>(), survey);
-  }
-
-  VoxelMap map(std::span<const double> parameters) const {
+  VoxelMap map(std::span<const double> parameters) const override {
     const VoxelDesign d = design_of(parameters);
     const VoxelGrid grid = grid_of(d);
     VoxelMap m = grid.map();
-    if (!(carriage(d.frame.l, how_held(plan_, kY)) > 0)) return m;
+    if (!(carriage(d.frame.l, how_held(planned_.plan, kY)) > 0)) return m;
     VoxelHeights heights;
     CellRuns runs;
     const VoxelColumns columns(d, grid, heights);
@@ -199,23 +169,24 @@ class VoxelSurveyor final : public PlannedSurveyor {
  private:
   static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
 
-  void run(std::span<const double> parameters, VoxelScratch& scratch, Survey<double>& survey) const {
-    survey.clear();
+  void survey(std::span<const double> parameters, Scratch& room, Survey<double>& survey) const override {
+    survey.clear(planned_.demand.fields);
+    VoxelScratch& scratch = room.get<VoxelScratch>();
     const VoxelDesign d = design_of(parameters);
     const VoxelGrid grid = grid_of(d);
-    const double stroke = carriage(d.frame.l, how_held(plan_, kY));
+    const double stroke = carriage(d.frame.l, how_held(planned_.plan, kY));
     survey.cells = grid.count();
     survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
     if (!(stroke > 0)) return;
     if (scratch.workers.size() < workers()) scratch.workers.resize(workers());
     const VoxelColumns columns(d, grid, scratch.heights);
     const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
-    const bool counts = !d.with_links && !demand_.conditioning;
+    const bool counts = !d.with_links && !planned_.demand.has(kConditioning);
     share_samples(
         static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
         [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t worker) {
           auto& [poses, runs] = scratch.workers[worker];
-          Conditioning<double> conditioning(d.frame, demand_, poses, part);
+          Conditioning<double> conditioning(d.frame, planned_.demand, poses, part);
           const auto first = static_cast<std::int64_t>(piece) * kBetas;
           for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) {
             if (counts) {
@@ -226,8 +197,7 @@ class VoxelSurveyor final : public PlannedSurveyor {
               part.feasible_cells += end - i;
               part.touches_box =
                   part.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
-              if (demand_.conditioning)
-                conditioning.add(grid.centre(1, j), grid.centre(2, k), static_cast<double>(end - i) * cell_volume);
+              conditioning.add(grid.centre(1, j), grid.centre(2, k), static_cast<double>(end - i) * cell_volume);
             });
           }
           conditioning.finish();
@@ -235,31 +205,27 @@ class VoxelSurveyor final : public PlannedSurveyor {
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
 
-  VoxelDesign design_of(std::span<const double> parameters) const { return {frame_of(parameters), with_links(plan_)}; }
+  VoxelDesign design_of(std::span<const double> parameters) const {
+    return {frame_of(planned_, parameters), asks_clearance(planned_.plan, kClearanceMin)};
+  }
   VoxelGrid grid_of(const VoxelDesign& d) const { return {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d)}; }
 
+  Planned planned_;
   VoxelOptions voxels_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Surveyor> make_column_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
-                                                     const ColumnOptions& columns, const Demand& demand) {
-  if (with_links(plan))
+std::unique_ptr<const Surveyor> make_surveyor(const Planned& planned, const ColumnOptions& columns) {
+  if (asks_clearance(planned.plan, kClearanceMin))
     throw std::invalid_argument(
         "mechanism 2t1r-p-hybrid has no column surveys under a clearance (clearance_min), because links that meet end "
         "columns where no formula says; take voxels, or require the clearance of a task-workspace");
-  return std::make_unique<ColumnSurveyor>(signs, branch, plan, columns, demand);
+  return std::make_unique<ColumnSurveyor>(planned, columns);
 }
 
-std::unique_ptr<const Surveyor> make_voxel_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
-                                                    const VoxelOptions& voxels, const Demand& demand) {
-  return std::make_unique<VoxelSurveyor>(signs, branch, plan, voxels, demand);
-}
-
-VoxelMap voxel_map(const WorkingMode& signs, int branch, std::span<const double> parameters, const SurveyPlan& plan,
-                   const VoxelOptions& voxels) {
-  return VoxelSurveyor(signs, branch, plan, voxels, {}).map(parameters);
+std::unique_ptr<const VoxelSurveyor> make_surveyor(const Planned& planned, const VoxelOptions& voxels) {
+  return std::make_unique<OfVoxels>(planned, voxels);
 }
 
 }  // namespace pkm::hybrid

@@ -11,14 +11,15 @@
 
 namespace pkm::hybrid {
 
-/// @param branch  required sign of N2, +1 or -1
-/// Throws std::invalid_argument with a sentence when the plan cannot be served.
-std::unique_ptr<const Surveyor> make_column_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
-                                                     const ColumnOptions& columns, const Demand& demand);
-std::unique_ptr<const Surveyor> make_voxel_surveyor(const WorkingMode& signs, int branch, const SurveyPlan& plan,
-                                                    const VoxelOptions& voxels, const Demand& demand);
+struct Planned {
+  WorkingMode signs;
+  int branch;  ///< required sign of N2, +1 or -1
+  SurveyPlan plan;
+  Demand demand;
+};
 
-VoxelMap voxel_map(const WorkingMode& signs, int branch, std::span<const double> parameters, const SurveyPlan& plan,
-                   const VoxelOptions& voxels);
+/// Throws std::invalid_argument with a sentence when the plan cannot be served.
+std::unique_ptr<const Surveyor> make_surveyor(const Planned& planned, const ColumnOptions& columns);
+std::unique_ptr<const VoxelSurveyor> make_surveyor(const Planned& planned, const VoxelOptions& voxels);
 
 }  // namespace pkm::hybrid

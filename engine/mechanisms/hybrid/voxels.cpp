@@ -5,13 +5,6 @@
 
 namespace pkm::hybrid {
 
-bool feasible(const VoxelDesign& design, double x, double z, double beta) {
-  const Frame<double>& f = design.frame;
-  const Pose<double> pose{x, f.l.s_min[1], z, beta};
-  return z > 0 && visit_margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), f.branch, design.with_links,
-                                [](std::size_t, double margin) { return margin >= 0; });
-}
-
 Box default_box(const VoxelDesign& design) {
   const Frame<double>& f = design.frame;
   const Geometry<double>& g = f.g;
@@ -69,16 +62,12 @@ VoxelColumns::Columns VoxelColumns::find_runs(std::int64_t k, CellRuns& runs) co
   const auto begin = heights_.z.begin(), end = begin + grid_.cells[1];
   const auto first_z = static_cast<std::size_t>(std::lower_bound(begin, end, low) - begin);
   const auto end_z = std::max(first_z, static_cast<std::size_t>(std::upper_bound(begin, end, high) - begin));
-  const auto end_of_x = [&](CurveIndex index) {
-    const Curve<double>& c = s.curve[index];
-    return EndOfX{c.a, c.a_z, c.b, c.b_z};
-  };
   const Edge left_C{kCurveC, kLeft}, right_C{kCurveC, kRight};
-  const ColumnsAtBeta columns{.C = end_of_x(kCurveC),
-                              .Q = end_of_x(kCurveQ),
-                              .P = end_of_x(kCurveP),
-                              .L = end_of_x(kCurveL),
-                              .H = end_of_x(kCurveH),
+  const ColumnsAtBeta columns{.C = s.curve[kCurveC],
+                              .Q = s.curve[kCurveQ],
+                              .P = s.curve[kCurveP],
+                              .L = s.curve[kCurveL],
+                              .H = s.curve[kCurveH],
                               .sign = s.sign(right_C),
                               .lo_C = s.constant(left_C),
                               .hi_C = s.constant(right_C),

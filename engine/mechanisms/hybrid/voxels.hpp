@@ -18,9 +18,6 @@ struct VoxelDesign {
   bool with_links = false;  ///< they keep their clearance as capsules; else they are left out
 };
 
-/// Whether a pose is feasible, the carriage within its stroke.
-bool feasible(const VoxelDesign& design, double x, double z, double beta);
-
 /// A box that contains every feasible pose, as x, z, beta; where there is none, a box of some size.
 Box default_box(const VoxelDesign& design);
 

@@ -6,9 +6,7 @@
 
 #include "engine/core/options.hpp"
 #include "engine/core/parameter.hpp"
-#include "engine/optimisers/evolutionary/crossover.hpp"
-#include "engine/optimisers/evolutionary/mutation.hpp"
-#include "engine/optimisers/evolutionary/selection.hpp"
+#include "engine/optimisers/evolutionary/operators.hpp"
 #include "engine/optimisers/start.hpp"
 
 namespace pkm {

@@ -1,5 +1,9 @@
-#include "engine/optimisers/evolutionary/genetic_algorithm.hpp"
-
+// The genetic algorithm for one objective with constraints.
+//
+// Each generation: parents are selected by rank, children are bred (breeding.hpp), the new ones are evaluated as one
+// batch, and the survivors form the next population: either the best of parents and children together (`best`), or
+// the children and the `elite` best parents (`generational`). Designs are ranked by the feasibility rules (order.hpp).
+// Nothing depends on the number of generations, so a finished run can be extended.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -7,6 +11,7 @@
 #include <stdexcept>
 
 #include "engine/optimisers/evolutionary/evolution.hpp"
+#include "engine/optimisers/list.hpp"
 #include "engine/optimisers/option_specs.hpp"
 #include "engine/problem/order.hpp"
 

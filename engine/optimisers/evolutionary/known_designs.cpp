@@ -2,8 +2,7 @@
 
 #include <bit>
 #include <cstring>
-
-#include "engine/core/error.hpp"
+#include <utility>
 
 namespace pkm {
 namespace {
@@ -19,37 +18,28 @@ std::uint32_t hash_of(std::span<const double> design) {
 
 }  // namespace
 
-std::int64_t KnownDesigns::find(const EvaluationTable& table, std::span<const double> design) const {
-  if (slots_.empty()) return -1;
-  const std::uint32_t hash = hash_of(design);
+std::size_t KnownDesigns::slot_of(const EvaluationTable& table, std::span<const double> design) const {
   const std::size_t mask = slots_.size() - 1;
-  for (std::size_t i = hash & mask; slots_[i].row != kEmpty; i = (i + 1) & mask) {
-    if (slots_[i].hash != hash) continue;
-    const auto known = table.design(slots_[i].row);
-    if (std::memcmp(known.data(), design.data(), design.size_bytes()) == 0) return slots_[i].row;
-  }
-  return -1;
+  std::size_t i = hash_of(design) & mask;
+  const auto is_other = [&](std::int64_t row) {
+    const auto known = table.design(static_cast<std::size_t>(row));
+    return std::memcmp(known.data(), design.data(), design.size_bytes()) != 0;
+  };
+  while (slots_[i] != kEmpty && is_other(slots_[i])) i = (i + 1) & mask;
+  return i;
+}
+
+std::int64_t KnownDesigns::find(const EvaluationTable& table, std::span<const double> design) const {
+  return slots_[slot_of(table, design)];
 }
 
 void KnownDesigns::insert(const EvaluationTable& table, std::size_t row) {
-  PKM_EXPECTS(row < kEmpty);
-  if (2 * (count_ + 1) > slots_.size()) grow();
-  place({hash_of(table.design(row)), static_cast<std::uint32_t>(row)});
-  ++count_;
-}
-
-void KnownDesigns::place(Slot slot) {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t i = slot.hash & mask;
-  while (slots_[i].row != kEmpty) i = (i + 1) & mask;
-  slots_[i] = slot;
-}
-
-void KnownDesigns::grow() {
-  std::vector<Slot> old(slots_.empty() ? 64 : 2 * slots_.size());
-  old.swap(slots_);
-  for (const Slot& slot : old)
-    if (slot.row != kEmpty) place(slot);
+  if (2 * ++count_ > slots_.size()) {
+    const auto old = std::exchange(slots_, std::vector(2 * slots_.size(), kEmpty));
+    for (const std::int64_t known : old)
+      if (known != kEmpty) slots_[slot_of(table, table.design(static_cast<std::size_t>(known)))] = known;
+  }
+  slots_[slot_of(table, table.design(row))] = static_cast<std::int64_t>(row);
 }
 
 }  // namespace pkm

@@ -17,15 +17,11 @@ class KnownDesigns {
   void insert(const EvaluationTable& table, std::size_t row);
 
  private:
-  static constexpr std::uint32_t kEmpty = 0xffffffff;
-  struct Slot {
-    std::uint32_t hash = 0;
-    std::uint32_t row = kEmpty;
-  };
-  void grow();
-  void place(Slot slot);
+  /// Where the design's row is, or will be.
+  std::size_t slot_of(const EvaluationTable& table, std::span<const double> design) const;
 
-  std::vector<Slot> slots_;  // open addressing, a power of two, at most half full
+  static constexpr std::int64_t kEmpty = -1;
+  std::vector<std::int64_t> slots_ = std::vector(64, kEmpty);  // open addressing, a power of two, at most half full
   std::size_t count_ = 0;
 };
 

@@ -1,5 +1,3 @@
-#include "engine/optimisers/evolutionary/nsga2.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -8,6 +6,7 @@
 #include "engine/optimisers/diversity.hpp"
 #include "engine/optimisers/evolutionary/evolution.hpp"
 #include "engine/optimisers/front_keeper.hpp"
+#include "engine/optimisers/list.hpp"
 #include "engine/optimisers/option_specs.hpp"
 #include "engine/problem/order.hpp"
 

@@ -1,7 +1,6 @@
 #include "engine/optimisers/solvers/goal.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace pkm {

@@ -3,27 +3,25 @@
 // Debian's MUMPS is not thread-safe and Ipopt 3.11 does not guard it, so one lock is held from the construction of an
 // application to its destruction. Its file ipopt.opt in the working folder is never read. An exception in a callback
 // ends the solver with a status of its own; that is also how a stop gets out at once.
-#include "engine/optimisers/solvers/ipopt.hpp"
-
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include <IpIpoptApplication.hpp>
 #include <IpRegOptions.hpp>
 #include <IpTNLP.hpp>
 
-#include "engine/core/error.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/optimisers/list.hpp"
 #include "engine/optimisers/option_specs.hpp"
 #include "engine/optimisers/solvers/solver_stage.hpp"
 
 namespace pkm {
 namespace {
 
-std::mutex& ipopt_lock() {
-  static std::mutex lock;
-  return lock;
-}
+std::mutex ipopt_lock;
 
 struct StopNow {};
 
@@ -108,20 +106,20 @@ std::string set_option(Ipopt::IpoptApplication& application, const std::string& 
   if (!IsValid(option)) {
     std::vector<std::string> known;
     for (const auto& [each, ignored] : application.RegOptions()->RegisteredOptionsList()) known.push_back(each);
-    const std::string nearest = nearest_name(name, known);
-    return "Ipopt has no option '" + name + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
+    return "Ipopt has no option '" + name + "'" + did_you_mean(name, known);
   }
   const auto options = application.Options();
   const auto* text = std::get_if<std::string>(&value);
   const auto* whole = std::get_if<std::int64_t>(&value);
   const double number = text ? 0 : whole ? static_cast<double>(*whole) : std::get<double>(value);
-  const std::string shown = text ? '"' + *text + '"' : shortest(number);
+  const std::string shown = text ? '"' + *text + '"' : whole ? std::to_string(*whole) : shortest(number);
   switch (option->Type()) {
     case OT_Number:
       if (!text && option->IsValidNumberSetting(number) && options->SetNumericValue(name, number)) return "";
       return "Ipopt's option " + name + " = " + shown + ", which must be a number in Ipopt's range for it";
     case OT_Integer:
-      if (whole && option->IsValidIntegerSetting(static_cast<Index>(*whole)) &&
+      // Ipopt's integers are shorter than ours.
+      if (whole && std::in_range<Index>(*whole) && option->IsValidIntegerSetting(static_cast<Index>(*whole)) &&
           options->SetIntegerValue(name, static_cast<Index>(*whole)))
         return "";
       return "Ipopt's option " + name + " = " + shown + ", which must be an integer in Ipopt's range for it";
@@ -138,9 +136,27 @@ std::string set_option(Ipopt::IpoptApplication& application, const std::string& 
 const char* const kReserved[] = {"hessian_approximation", "max_iter",        "output_file", "print_level", "sb",
                                  "bound_relax_factor",    "option_file_name"};
 
+/// How Ipopt ended, in words.
+std::string text(Ipopt::ApplicationReturnStatus status) {
+  static const std::map<Ipopt::ApplicationReturnStatus, std::string> words = {
+      {Ipopt::Solve_Succeeded, "optimal solution found"},
+      {Ipopt::Solved_To_Acceptable_Level, "solved to acceptable level"},
+      {Ipopt::Infeasible_Problem_Detected, "converged to a point of local infeasibility"},
+      {Ipopt::Search_Direction_Becomes_Too_Small, "search direction becomes too small"},
+      {Ipopt::Diverging_Iterates, "iterates diverge"},
+      {Ipopt::Restoration_Failed, "restoration failed"},
+      {Ipopt::Error_In_Step_Computation, "error in step computation"},
+      {Ipopt::Invalid_Number_Detected, "a value or derivative is not a finite number"},
+      {Ipopt::Not_Enough_Degrees_Of_Freedom, "not enough degrees of freedom"},
+      {Ipopt::NonIpopt_Exception_Thrown, "stopped"},
+  };
+  const auto known = words.find(status);
+  return known != words.end() ? known->second : "status " + std::to_string(static_cast<int>(status));
+}
+
 class IpoptSolver final : public Solver {
  public:
-  IpoptSolver(NamedSettings options, double tighten) : options_(std::move(options)), tighten_(tighten) {}
+  explicit IpoptSolver(const Options& options) : options_(options) {}
 
   /// Throws std::invalid_argument for an option that Ipopt does not take. The lock must be held.
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application() const {
@@ -153,73 +169,38 @@ class IpoptSolver final : public Solver {
     options->SetNumericValue("bound_relax_factor", 0);
     options->SetNumericValue("tol", 1e-9);
     options->SetStringValue("mu_strategy", "adaptive");
-    for (const auto& [name, value] : options_) {
-      std::string wrong = set_option(*made, name, value);
-      if (std::ranges::find(kReserved, name) != std::end(kReserved))
-        wrong = "Ipopt's option " + name + " is set by the stage and cannot be changed";
-      if (!wrong.empty()) throw std::invalid_argument(wrong);
-    }
+    if (options_.has("options"))
+      for (const auto& [name, value] : options_.settings("options")) {
+        std::string wrong = set_option(*made, name, value);
+        if (std::ranges::find(kReserved, name) != std::end(kReserved))
+          wrong = "Ipopt's option " + name + " is set by the stage and cannot be changed";
+        if (!wrong.empty()) throw std::invalid_argument(wrong);
+      }
     if (made->Initialize("") != Ipopt::Solve_Succeeded)
       throw std::runtime_error("Ipopt does not start with these options");
     return made;
   }
 
   SolverEnd solve(Trials& trials, const std::vector<double>& from, std::uint64_t) const override {
-    const std::lock_guard guard(ipopt_lock());
+    const std::lock_guard guard(ipopt_lock);
     const auto app = application();
-    const Ipopt::SmartPtr<Program> program = new Program(trials, from, tighten_);
+    const Ipopt::SmartPtr<Program> program = new Program(trials, from, options_.number("tighten"));
     const Ipopt::ApplicationReturnStatus status = app->OptimizeTNLP(program);
     return {status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level, text(status),
             program->solution()};
   }
 
  private:
-  static std::string text(Ipopt::ApplicationReturnStatus status) {
-    switch (status) {
-      case Ipopt::Solve_Succeeded:
-        return "optimal solution found";
-      case Ipopt::Solved_To_Acceptable_Level:
-        return "solved to acceptable level";
-      case Ipopt::Infeasible_Problem_Detected:
-        return "converged to a point of local infeasibility";
-      case Ipopt::Search_Direction_Becomes_Too_Small:
-        return "search direction becomes too small";
-      case Ipopt::Diverging_Iterates:
-        return "iterates diverge";
-      case Ipopt::Restoration_Failed:
-        return "restoration failed";
-      case Ipopt::Error_In_Step_Computation:
-        return "error in step computation";
-      case Ipopt::Invalid_Number_Detected:
-        return "a value or derivative is not a finite number";
-      case Ipopt::Not_Enough_Degrees_Of_Freedom:
-        return "not enough degrees of freedom";
-      case Ipopt::NonIpopt_Exception_Thrown:
-        return "stopped";
-      default:
-        return "status " + std::to_string(static_cast<int>(status));
-    }
-  }
-
-  NamedSettings options_;
-  double tighten_;
+  Options options_;
 };
 
-Capabilities capabilities(const Options& options) {
-  Capabilities can;
-  can.discrete = false;
-  can.needs_gradient = true;
-  can.starts = true;
-  allow_fronts(options, can);
-  return can;
-}
+Capabilities capabilities(const Options& options) { return solver_capabilities(options, true, true); }
 
 std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
   SolverPlan plan = solver_plan(options);
-  const auto solver = std::make_shared<IpoptSolver>(
-      options.has("options") ? options.settings("options") : NamedSettings{}, options.number("tighten"));
+  const auto solver = std::make_shared<IpoptSolver>(options);
   {
-    const std::lock_guard guard(ipopt_lock());
+    const std::lock_guard guard(ipopt_lock);
     solver->application();  // refuses what Ipopt does not take
   }
   plan.solver = solver;
@@ -229,8 +210,7 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
 
 std::vector<OptionSpec> options() {
   std::vector<OptionSpec> specs = solver_options();
-  specs.push_back(number_option("tighten", 1e-10, 0, 1e-3,
-                                "what margins must keep, in their unit, so that a solution's rounding stays feasible"));
+  specs.push_back(tighten_option());
   specs.push_back({.name = "options",
                    .kind = OptionKind::named_settings,
                    .meaning = "Ipopt's own options, such as { tol = 1e-10, mu_strategy = \"monotone\" }"});

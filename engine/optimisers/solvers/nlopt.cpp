@@ -1,8 +1,6 @@
 // NLopt is C: no exception may pass through it, so callbacks answer with a number and a forced stop. What it returns is
 // a hint at most: SLSQP can end "successfully" with x = NaN or at an infeasible point, and report a round-off failure
 // at the true optimum. COBYLA is left out: its inner loop can hang with every limit ignored.
-#include "engine/optimisers/solvers/nlopt.hpp"
-
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
@@ -10,6 +8,7 @@
 #include <nlopt.h>
 
 #include "engine/core/error.hpp"
+#include "engine/optimisers/list.hpp"
 #include "engine/optimisers/option_specs.hpp"
 #include "engine/optimisers/solvers/solver_stage.hpp"
 
@@ -52,16 +51,7 @@ bool uses_gradient(const Options& options) {
   return outer.gradient || (outer.inner && algorithm_called(options.word("inner")).gradient);
 }
 
-struct Destroy {
-  void operator()(nlopt_opt opt) const { nlopt_destroy(opt); }
-};
-using Handle = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, Destroy>;
-
-struct Settings {
-  Algorithm outer, inner;
-  double ftol, xtol, tighten, initial_step;
-  std::int64_t population;  ///< 0: NLopt's own
-};
+using Handle = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)>;
 
 /// What a callback is given.
 struct Callback {
@@ -98,25 +88,29 @@ double constraint(unsigned n, const double* u, double* gradient, void* data) {
 
 class NloptSolver final : public Solver {
  public:
-  explicit NloptSolver(const Settings& settings) : s_(settings) {}
+  explicit NloptSolver(const Options& options) : options_(options) {}
 
   SolverEnd solve(Trials& trials, const std::vector<double>& from, std::uint64_t seed) const override {
     // NLopt's generator belongs to the thread and would be seeded from the clock.
     nlopt_srand(static_cast<unsigned long>(seed & 0xffffffff) | 1u);
     const auto n = static_cast<unsigned>(trials.dimension());
-    const Handle opt(nlopt_create(s_.outer.id, n));
+    const Algorithm& outer = algorithm_called(options_.word("algorithm"));
+    const Algorithm& local = algorithm_called(options_.word("inner"));
+    const auto population = static_cast<unsigned>(options_.integer("population"));  // 0: NLopt's own
+    const double first_step = options_.number("initial_step"), tighten = options_.number("tighten");
+    const Handle opt(nlopt_create(outer.id, n), nlopt_destroy);
     if (!opt) throw std::bad_alloc();
     std::vector<double> u = from;
     nlopt_set_lower_bounds1(opt.get(), 0);
     nlopt_set_upper_bounds1(opt.get(), 1);
     set_stops(opt.get());
-    if (s_.outer.population && s_.population > 0) nlopt_set_population(opt.get(), static_cast<unsigned>(s_.population));
-    if (!s_.outer.gradient && !s_.outer.inner) nlopt_set_initial_step1(opt.get(), s_.initial_step);
-    if (s_.outer.inner) {
-      const Handle inner(nlopt_create(s_.inner.id, n));
+    if (outer.population && population > 0) nlopt_set_population(opt.get(), population);
+    if (!outer.gradient && !outer.inner) nlopt_set_initial_step1(opt.get(), first_step);
+    if (outer.inner) {
+      const Handle inner(nlopt_create(local.id, n), nlopt_destroy);
       if (!inner) throw std::bad_alloc();
       set_stops(inner.get());  // the inner one knows no others
-      if (!s_.inner.gradient) nlopt_set_initial_step1(inner.get(), s_.initial_step);
+      if (!local.gradient) nlopt_set_initial_step1(inner.get(), first_step);
       nlopt_set_local_optimizer(opt.get(), inner.get());  // copies it
     }
     Callback goal{trials, opt.get(), 0, 0};
@@ -124,7 +118,7 @@ class NloptSolver final : public Solver {
     std::vector<Callback> callbacks;
     callbacks.reserve(trials.margins());
     for (std::size_t m = 0; m < trials.margins(); ++m) {
-      callbacks.push_back({trials, opt.get(), m, s_.tighten});
+      callbacks.push_back({trials, opt.get(), m, tighten});
       nlopt_add_inequality_constraint(opt.get(), constraint, &callbacks.back(), 0);
     }
     double value = 0;
@@ -137,26 +131,19 @@ class NloptSolver final : public Solver {
 
  private:
   void set_stops(nlopt_opt opt) const {
-    nlopt_set_ftol_rel(opt, s_.ftol);
-    nlopt_set_xtol_abs1(opt, s_.xtol);
+    nlopt_set_ftol_rel(opt, options_.number("ftol"));
+    nlopt_set_xtol_abs1(opt, options_.number("xtol"));
   }
 
-  Settings s_;
+  Options options_;
 };
 
 Capabilities capabilities(const Options& options) {
-  Capabilities can;
-  can.constraints = algorithm_called(options.word("algorithm")).constraints;
-  can.discrete = false;
-  can.needs_gradient = uses_gradient(options);
-  can.starts = true;
-  allow_fronts(options, can);
-  return can;
+  return solver_capabilities(options, algorithm_called(options.word("algorithm")).constraints, uses_gradient(options));
 }
 
 std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
   const Algorithm& outer = algorithm_called(options.word("algorithm"));
-  const Algorithm& inner = algorithm_called(options.word("inner"));
   if (options.integer("population") > 0 && !outer.population) {
     std::vector<std::string> with;
     for (const Algorithm& a : kAlgorithms)
@@ -169,13 +156,7 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
   if (plan.scalarisation.kind != Scalarisation::Kind::none && !outer.constraints)
     throw std::invalid_argument("start = \"pareto\" for the algorithm " + std::string(outer.name) +
                                 ", which handles no constraints, as it would have to");
-  plan.solver = std::make_shared<NloptSolver>(Settings{.outer = outer,
-                                                       .inner = inner,
-                                                       .ftol = options.number("ftol"),
-                                                       .xtol = options.number("xtol"),
-                                                       .tighten = options.number("tighten"),
-                                                       .initial_step = options.number("initial_step"),
-                                                       .population = options.integer("population")});
+  plan.solver = std::make_shared<NloptSolver>(options);
   plan.detail = uses_gradient(options) ? Detail::derivatives : Detail::complete;
   return make_solver_stage(std::move(plan));
 }
@@ -197,8 +178,7 @@ std::vector<OptionSpec> options() {
   for (auto& spec : solver_options()) specs.push_back(std::move(spec));
   specs.push_back(number_option("ftol", 1e-13, 0, 1, "stop when a step changes the objective relatively less"));
   specs.push_back(number_option("xtol", 1e-10, 0, 1, "stop when a step is shorter, in units of the ranges"));
-  specs.push_back(number_option("tighten", 1e-10, 0, 1e-3,
-                                "what margins must keep, in their unit, so that a solution's rounding stays feasible"));
+  specs.push_back(tighten_option());
   specs.push_back(
       number_option("initial_step", 0.1, 1e-9, 1, "first step without derivatives, in units of the ranges"));
   specs.push_back(

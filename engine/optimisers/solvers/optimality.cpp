@@ -12,6 +12,12 @@ namespace {
 
 constexpr double kNearBound = 1e-7;  // of the variable's range
 
+double largest(std::span<const double> components) {
+  double most = 0;
+  for (const double component : components) most = std::max(most, std::fabs(component));
+  return most;
+}
+
 Eigen::MatrixXd matrix(const std::vector<std::vector<double>>& columns, const std::vector<std::size_t>& which,
                        std::size_t rows) {
   Eigen::MatrixXd m(rows, which.size());
@@ -75,42 +81,61 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
   throw std::runtime_error("the multipliers do not settle");
 }
 
-FirstOrder first_order(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
+Optimality first_order(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
                        std::span<const double> margin_gradient) {
   const std::size_t n = u.size();
-  constexpr double kNotActive = std::numeric_limits<double>::quiet_NaN();
-  FirstOrder result{0, std::vector<double>(margins.size(), kNotActive), std::vector<double>(n, kNotActive),
-                    std::vector<double>(n, kNotActive)};
+  Optimality result;
   std::vector<std::vector<double>> columns;
-  std::vector<double*> multipliers;
   for (std::size_t m = 0; m < margins.size(); ++m) {
     const auto slope = margin_gradient.subspan(m * n, n);
-    double steepest = 0;
-    for (const double component : slope) steepest = std::max(steepest, std::fabs(component));
-    if (!(margins[m] <= kNearBound * steepest)) continue;
+    if (!(margins[m] <= kNearBound * largest(slope))) continue;
     columns.emplace_back(slope.begin(), slope.end());
-    multipliers.push_back(&result.margins[m]);
+    result.margins.push_back({.margin = m});
   }
   for (std::size_t i = 0; i < n; ++i)
     for (const bool upper : {false, true}) {
       if (!((upper ? 1 - u[i] : u[i]) <= kNearBound)) continue;
       columns.emplace_back(n, 0.0);
       columns.back()[i] = upper ? -1 : 1;
-      multipliers.push_back(upper ? &result.upper[i] : &result.lower[i]);
+      result.bounds.push_back({.variable = i, .upper = upper});
     }
   std::vector<double> left(gradient.begin(), gradient.end()), found;
   try {
     found = non_negative_least_squares(columns, left);
   } catch (const std::runtime_error&) {  // nothing is known then
-    result.left = kNotActive;
-    return result;
+    return {.optimality = std::numeric_limits<double>::quiet_NaN(), .bounds = {}, .margins = {}};
   }
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    *multipliers[k] = found[k];
+  for (std::size_t k = 0; k < columns.size(); ++k)
     for (std::size_t i = 0; i < n; ++i) left[i] -= found[k] * columns[k][i];
-  }
-  for (const double component : left) result.left = std::max(result.left, std::fabs(component));
+  auto multiplier = found.begin();
+  for (ActiveMargin& margin : result.margins) margin.multiplier = *multiplier++;
+  for (ActiveBound& bound : result.bounds) bound.multiplier = *multiplier++;
+  result.optimality = largest(left);
   return result;
+}
+
+std::optional<std::vector<double>> onto_margins(const std::vector<double>& point, std::span<const double> margins,
+                                                std::span<const double> margin_gradient, double near) {
+  constexpr double kHair = 1e-14;  // what a margin keeps for the rounding of its own formula
+  const std::size_t n = point.size();
+  std::vector<std::size_t> free, active;
+  for (std::size_t i = 0; i < n; ++i)
+    if (point[i] > 0 && point[i] < 1) free.push_back(i);
+  for (std::size_t m = 0; m < margins.size(); ++m)
+    if (std::fabs(margins[m]) <= near * largest(margin_gradient.subspan(m * n, n))) active.push_back(m);
+  if (active.empty() || free.empty()) return std::nullopt;
+  Eigen::MatrixXd jacobian(active.size(), free.size());
+  Eigen::VectorXd missing(active.size());
+  for (Eigen::Index r = 0; r < jacobian.rows(); ++r) {
+    const std::size_t m = active[static_cast<std::size_t>(r)];
+    missing(r) = kHair - margins[m];
+    for (Eigen::Index c = 0; c < jacobian.cols(); ++c)
+      jacobian(r, c) = margin_gradient[m * n + free[static_cast<std::size_t>(c)]];
+  }
+  const Eigen::VectorXd step = jacobian.completeOrthogonalDecomposition().solve(missing);
+  std::vector<double> moved = point;
+  for (Eigen::Index c = 0; c < step.size(); ++c) moved[free[static_cast<std::size_t>(c)]] += step(c);
+  return moved;
 }
 
 Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> slopes,
@@ -129,15 +154,8 @@ Optimality optimality(const Problem& problem, std::span<const double> design, st
     margins.push_back(slope[0]);
     for (std::size_t i = 0; i < n; ++i) margin_gradient.push_back(slope[1 + i] * range(i));
   }
-  const FirstOrder found = first_order(u, gradient, margins, margin_gradient);
-
-  Optimality result{found.left, {}, {}};
-  for (std::size_t m = 0; m < margins.size(); ++m)
-    if (!std::isnan(found.margins[m])) result.margins.push_back({m, found.margins[m]});
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!std::isnan(found.lower[i])) result.bounds.push_back({i, false, found.lower[i] / range(i)});
-    if (!std::isnan(found.upper[i])) result.bounds.push_back({i, true, found.upper[i] / range(i)});
-  }
+  Optimality result = first_order(u, gradient, margins, margin_gradient);
+  for (ActiveBound& bound : result.bounds) bound.multiplier /= range(bound.variable);
   size = std::max(size, std::fabs(slopes[0]));
   if (size > 0) result.optimality /= size;
   return result;

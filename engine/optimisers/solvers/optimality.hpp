@@ -10,25 +10,13 @@
 // still to be had to first order.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/problem/problem.hpp"
 
 namespace pkm {
-
-/// Stationarity of a point of the unit cube: multipliers and what they leave of the gradient.
-struct FirstOrder {
-  double left = 0;                   ///< largest component of what is left; NaN: the multipliers do not settle
-  std::vector<double> margins;       ///< multiplier of each margin; NaN: not active
-  std::vector<double> lower, upper;  ///< of each variable's bounds
-};
-
-/// @param u                in the unit cube
-/// @param gradient         of the objective, to be minimised
-/// @param margins          >= 0 holds; active within what a step of 1e-7 changes it by
-/// @param margin_gradient  margins x variables
-FirstOrder first_order(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
-                       std::span<const double> margin_gradient);
 
 struct ActiveBound {
   std::size_t variable = 0;
@@ -47,12 +35,26 @@ struct Optimality {
   std::vector<ActiveMargin> margins;
 };
 
+/// That of a point of the unit cube, not relative to anything; NaN where the multipliers do not settle.
+/// @param u                in the unit cube
+/// @param gradient         of the objective, to be minimised
+/// @param margins          >= 0 holds; active within what a step of 1e-7 changes it by
+/// @param margin_gradient  margins x variables
+Optimality first_order(std::span<const double> u, std::span<const double> gradient, std::span<const double> margins,
+                       std::span<const double> margin_gradient);
+
 /// @param design  the variables
 /// @param slopes  as in EvaluationShape::slopes
 /// @param size    of the objective, for an objective that is 0 at the optimum; |f| counts where it is larger
 /// A bound is active within 1e-7 of the variable's range, a margin within what such a step changes it by.
 Optimality optimality(const Problem& problem, std::span<const double> design, std::span<const double> slopes,
                       double size = 0);
+
+/// The nearest point of the unit cube at which the margins that are nearly 0 are 0 to first order; coordinates that lie
+/// on a bound stay there. None: nothing to move.
+/// @param near  of a margin: what a step of this length changes it by
+std::optional<std::vector<double>> onto_margins(const std::vector<double>& point, std::span<const double> margins,
+                                                std::span<const double> margin_gradient, double near);
 
 /// min |A x - b| over x >= 0. A is given by columns, each as long as b. Throws std::runtime_error when it does not
 /// settle.

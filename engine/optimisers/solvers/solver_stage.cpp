@@ -4,13 +4,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "engine/optimisers/front_keeper.hpp"
-#include "engine/optimisers/option_specs.hpp"
+#include "engine/optimisers/solvers/optimality.hpp"
 #include "engine/optimisers/start.hpp"
 #include "engine/problem/replay.hpp"
 
@@ -19,8 +16,7 @@ namespace {
 
 constexpr double kSnap = 1e-6;  // in the unit cube: what lies so near to a bound or margin is tried on it as well
 constexpr double kOptimal = 1e-6;
-constexpr int kRounds = 4;       // of a solver from one start
-constexpr double kHair = 1e-14;  // what a margin keeps for the rounding of its own formula
+constexpr int kRounds = 4;  // of a solver from one start
 
 // One run of a stage.
 class Run {
@@ -162,6 +158,11 @@ class Run {
         trials.stop() == Trials::Stop::not_a_point ? "asked for a design that is not a number" : end.message;
     outcome.optimality = trials.optimality(static_cast<std::size_t>(outcome.end_row));
     outcome.stop = words(stop_reason(trials.stop(), end, outcome.optimality));
+    // The numbers that stand for failed evaluations are flat: a solver may well take them for an optimum.
+    if (measurable && outcome.stop == words(StopReason::tolerance) && trials.best().status == Status::failed) {
+      outcome.message = "none of its designs could be evaluated";
+      outcome.stop = words(StopReason::failed);
+    }
     stage_.finished.push_back(std::move(outcome));
     return true;
   }
@@ -191,7 +192,7 @@ class Run {
     for (double& u : point) u = u < kSnap ? 0 : u > 1 - kSnap ? 1 : u;
     const Trials::Point* at = trials.at(point.data());
     if (!at || !at->usable || at->gradient.empty()) return at_best;
-    if (const auto moved = onto_margins(point, *at)) trials.at(moved->data());
+    if (const auto moved = onto_margins(point, at->margins, at->margin_gradient, kSnap)) trials.at(moved->data());
     return at_best;
   }
 
@@ -213,33 +214,6 @@ class Run {
       }
     }
     return chosen;
-  }
-
-  // The nearest point at which the margins that are nearly 0 are 0 to first order, bounds kept; none: nothing to move.
-  static std::optional<std::vector<double>> onto_margins(const std::vector<double>& point, const Trials::Point& at) {
-    const std::size_t n = point.size();
-    std::vector<std::size_t> free, active;
-    for (std::size_t i = 0; i < n; ++i)
-      if (point[i] > 0 && point[i] < 1) free.push_back(i);
-    for (std::size_t m = 0; m < at.margins.size(); ++m) {
-      double steepest = 0;
-      for (std::size_t i = 0; i < n; ++i) steepest = std::max(steepest, std::fabs(at.margin_gradient[m * n + i]));
-      if (std::fabs(at.margins[m]) <= kSnap * steepest) active.push_back(m);
-    }
-    if (active.empty() || free.empty()) return std::nullopt;
-    const auto rows = static_cast<Eigen::Index>(active.size()), columns = static_cast<Eigen::Index>(free.size());
-    Eigen::MatrixXd jacobian(rows, columns);
-    Eigen::VectorXd missing(rows);
-    for (Eigen::Index r = 0; r < rows; ++r) {
-      const std::size_t m = active[static_cast<std::size_t>(r)];
-      missing(r) = kHair - at.margins[m];
-      for (Eigen::Index c = 0; c < columns; ++c)
-        jacobian(r, c) = at.margin_gradient[m * n + free[static_cast<std::size_t>(c)]];
-    }
-    const Eigen::VectorXd step = jacobian.completeOrthogonalDecomposition().solve(missing);
-    std::vector<double> moved = point;
-    for (Eigen::Index c = 0; c < columns; ++c) moved[free[static_cast<std::size_t>(c)]] += step(c);
-    return moved;
   }
 
   StopReason reason() const {
@@ -275,61 +249,5 @@ class SolverStage final : public Optimiser {
 }  // namespace
 
 std::unique_ptr<Optimiser> make_solver_stage(SolverPlan plan) { return std::make_unique<SolverStage>(std::move(plan)); }
-
-void allow_fronts(const Options& options, Capabilities& can) {
-  can.objectives_hint = "start = \"pareto\" works on several";
-  if (options.word("start") != "pareto") return;
-  can.min_objectives = 2;
-  can.max_objectives = kManyObjectives;
-  can.needs_front = true;
-}
-
-std::vector<OptionSpec> solver_options() {
-  OptionSpec time = number_option("time", {}, 0, 1e9, "most wall time of one start (default: no limit)");
-  time.unit = "s";
-  return {
-      word_option("start", {"best", "best-of-basins", "pareto", "none"},
-                  "best design so far (else the baseline), best designs of distinct basins, points of the front found "
-                  "so far (several objectives), or only those below"),
-      integer_option("starts", std::int64_t{5}, 1, 1e4, "best-of-basins and pareto: most starts"),
-      word_option("scalarisation", {"achievement", "epsilon-constraint"},
-                  "pareto: gain in all objectives alike, or in one while the others keep what they have"),
-      {.name = "objective",
-       .kind = OptionKind::word,
-       .meaning = "epsilon-constraint: the one that is to gain (default: the first)",
-       .field_names = FieldNames::objectives},
-      number_option("basin_radius", 0.1, 1e-6, 1,
-                    "best-of-basins: a start is a design with no better one nearer than this, in units of the ranges"),
-      {.name = "designs",
-       .kind = OptionKind::list_of_numbers,
-       .meaning =
-           "designs to start from besides, such as [{ a = 0.3, b = 1.0 }]; variables left out are the baseline's",
-       .field_names = FieldNames::variables},
-      integer_option("multistart", std::int64_t{0}, 0, 1e6, "starts at scrambled Sobol points besides"),
-      integer_option("evaluations", std::int64_t{1000}, 1, 1e9, "most evaluations of one start"),
-      time,
-  };
-}
-
-SolverPlan solver_plan(const Options& options) {
-  SolverPlan plan;
-  plan.limits.evaluations = options.integer("evaluations");
-  if (options.has("time")) plan.limits.seconds = options.number("time");
-  plan.multistart = options.integer("multistart");
-  const std::string& start = options.word("start");
-  plan.starts = start == "best" ? 1 : start == "none" ? 0 : options.integer("starts");
-  if (start == "pareto")
-    plan.scalarisation.kind = options.word("scalarisation") == "achievement" ? Scalarisation::Kind::achievement
-                                                                             : Scalarisation::Kind::epsilon;
-  if (options.has("objective")) plan.objective = options.word("objective");
-  if (options.has("objective") && plan.scalarisation.kind != Scalarisation::Kind::epsilon)
-    throw std::invalid_argument(
-        "objective = \"" + plan.objective +
-        "\" is for start = \"pareto\" with scalarisation = \"epsilon-constraint\", which this stage does not have");
-  if (options.has("designs")) plan.starts += static_cast<std::int64_t>(options.list("designs").size());
-  if (plan.starts + plan.multistart == 0)
-    throw std::invalid_argument("no start: start = \"none\" needs designs or multistart");
-  return plan;
-}
 
 }  // namespace pkm

@@ -41,11 +41,12 @@ struct SolverPlan {
 std::unique_ptr<Optimiser> make_solver_stage(SolverPlan plan);
 
 /// Stages that start from points of a front handle several objectives, and need a front.
-void allow_fronts(const Options& options, Capabilities& can);
+Capabilities solver_capabilities(const Options& options, bool constraints, bool gradient);
 
 /// The options that every solver stage has, and the plan that they describe (its solver is left to the caller). Throws
 /// std::invalid_argument with a sentence when they leave no start.
 std::vector<OptionSpec> solver_options();
 SolverPlan solver_plan(const Options& options);
+OptionSpec tighten_option();
 
 }  // namespace pkm

@@ -117,7 +117,7 @@ double Trials::optimality(std::size_t row) const {
   const auto design = std::as_const(table_).design(row);
   for (std::size_t i = 0; i < design.size(); ++i) u.push_back(space.to_unit(i, design[i]));
   if (goal_->has_slack()) u.push_back(goal_->slack(row));
-  const double left = first_order(u, here.gradient, here.margins, here.margin_gradient).left;
+  const double left = first_order(u, here.gradient, here.margins, here.margin_gradient).optimality;
   const double size = goal_->has_slack() ? 1 : std::max(std::fabs(here.objective), start_size_);
   return size > 0 ? left / size : left;
 }

@@ -72,29 +72,29 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
   const std::string product = info.parameters[0].name + " * " + info.parameters[1].name;
   for (const ObjectiveEntry& entry : all_objectives()) {
     // Those that look at the design alone have nothing of the survey, and designs may fail them: their own tests.
-    if (!entry.reads_survey || !entry.refusal(*mechanism).empty()) continue;
+    if (!entry.reads_survey || entry.refusal(*mechanism)) continue;
     for (const Options& options : every_choice(entry.options, info, "volume * " + product)) {
       const EntryContext context{*mechanism, plan, options};
       Demand demand = parts.demand;
       entry.demand(context, demand);
-      if (of == Of::volume && demand.conditioning) continue;
-      if (of != Of::inertia && (demand.dci || demand.inertia_condition)) continue;
+      if (of == Of::volume && demand.needs_jacobian()) continue;
+      if (of != Of::inertia && demand.needs_inertia()) continue;
       auto quantity = entry.make(context);
-      if (!quantity->no_derivatives().empty()) continue;
+      if (quantity->no_derivatives()) continue;
       parts.demand = demand;
       parts.objectives.push_back(
           {entry.name, entry.unit(context), entry.meaning, entry.direction, std::move(quantity)});
     }
   }
   for (const ConstraintEntry& entry : all_constraints()) {
-    if (entry.pose_level || !entry.refusal(*mechanism).empty()) continue;
+    if (entry.pose_level() || entry.refusal(*mechanism)) continue;
     const Options options = some_options(entry.options(info), info, "1 - " + product);
     const std::vector<Region> regions = {task(info, centre)};
     const EntryContext context{*mechanism, plan, options, regions};
     NamedQuantity margin;
     margin.name = entry.name;
     margin.quantity = entry.make(context);
-    if (!margin.quantity->no_derivatives().empty()) continue;
+    if (margin.quantity->no_derivatives()) continue;
     parts.design_margins.push_back(margin);
   }
   return DesignProblem(parts);

@@ -7,7 +7,6 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/problem/expression.hpp"
-#include "engine/problem/survey_results.hpp"
 #include "engine/report/workspace_fields.hpp"
 #include "engine/survey/plain_voxels.hpp"
 #include "tests/unit/contracts/nominal.hpp"
@@ -151,7 +150,7 @@ TEST_P(MechanismContract, SurveysOfVoxelsAreThoseOfEveryCell) {
     VoxelOptions voxels = *plan.voxels();
     voxels.box.emplace();
     for (std::size_t i = 0; i < 3; ++i) (*voxels.box)[i] = {map.lower[i], map.upper[i]};
-    EXPECT_EQ(plain_voxel_map(mechanism(), parameters(), plan, voxels).feasible, map.feasible);
+    EXPECT_EQ(prepare_plain_voxels(mechanism(), plan, voxels, {})->map(parameters()).feasible, map.feasible);
     const Demand demand = test::all_fields(mechanism());
     const Survey<double> fast = survey(mechanism(), parameters(), plan, demand);
     Survey<double> plain;
@@ -162,11 +161,12 @@ TEST_P(MechanismContract, SurveysOfVoxelsAreThoseOfEveryCell) {
     const auto expect_same_mean = [&](const std::vector<double>& a, const std::vector<double>& b) {
       EXPECT_NEAR(weighted_mean(plain.weight, a), weighted_mean(fast.weight, b), 1e-9);
     };
-    if (demand.conditioning) expect_same_mean(plain.conditioning, fast.conditioning);
-    if (!demand.dci) continue;
-    for (std::size_t joint = 0; joint < info().joints.size(); ++joint)
-      expect_same_mean(plain.dci[joint], fast.dci[joint]);
-    expect_same_mean(plain.inertia_condition, fast.inertia_condition);
+    for (const PoseQuantity* const quantity : demand.fields)
+      for (std::size_t i = 0; i < (quantity->per_joint ? info().joints.size() : 1); ++i) {
+        SCOPED_TRACE(quantity->name);
+        EXPECT_GT(fast.of(*quantity, i).size(), 0u);
+        expect_same_mean(plain.of(*quantity, i), fast.of(*quantity, i));
+      }
   }
 }
 
@@ -258,7 +258,7 @@ TEST_P(MechanismContract, AbsurdLimitsLeaveAnEmptyWorkspace) {
   for (const Sweep& sweep : test::sweeps(mechanism()))
     for (SurveyPlan& p : test::plans(mechanism(), sweep, 10)) {
       p.limits = test::absurd_limits(mechanism(), p);
-      const auto empty = survey(mechanism(), parameters(), p, {.conditioning = !info().characteristic_length.empty()});
+      const auto empty = survey(mechanism(), parameters(), p, test::no_inertia(mechanism()));
       EXPECT_EQ(empty.volume, 0);
       EXPECT_EQ(empty.feasible_cells, 0);
       EXPECT_FALSE(empty.touches_box);
@@ -283,12 +283,12 @@ TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeAsItsUnitSays) {
   for (const Sweep& sweep : test::sweeps(mechanism())) {
     SCOPED_TRACE(test::words(info(), sweep));
     const SurveyPlan p = test::best_plan(mechanism(), sweep);
-    const Demand demand = {.conditioning = !info().characteristic_length.empty()};
+    const Demand demand = test::no_inertia(mechanism());
     const auto small = survey(mechanism(), parameters(), p, demand), large = survey(mechanism(), larger, p, demand);
     EXPECT_NEAR(large.volume / small.volume, std::pow(kScale, metres(volume_unit(info(), p))), 1e-7);
-    ASSERT_EQ(large.conditioning.size(), small.conditioning.size());
-    for (std::size_t i = 0; i < small.conditioning.size(); ++i)
-      EXPECT_NEAR(large.conditioning[i], small.conditioning[i], 1e-7) << i;
+    ASSERT_EQ(large.of(kConditioning).size(), small.of(kConditioning).size());
+    for (std::size_t i = 0; i < small.of(kConditioning).size(); ++i)
+      EXPECT_NEAR(large.of(kConditioning)[i], small.of(kConditioning)[i], 1e-7) << i;
   }
 }
 
@@ -316,7 +316,7 @@ TEST_P(MechanismContract, ExpressionsKnowItsNumbersByDistinctNames) {
     const double expected = known.origin == Origin::parameter   ? design[known.index]
                             : known.origin == Origin::threshold ? thresholds[known.index]
                             : known.origin == Origin::size      ? mechanism().size()->of(design)
-                                                                : survey_results()[known.index].value(found, scratch);
+                                                           : survey_results()[known.index].value(found, 1, scratch);
     EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found, scratch}), expected);
   }
 }

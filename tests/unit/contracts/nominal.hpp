@@ -12,7 +12,7 @@
 
 #include "engine/mechanisms/all.hpp"
 #include "engine/motion/motions.hpp"
-#include "engine/problem/quantity.hpp"
+#include "engine/problem/pose_statistic.hpp"
 #include "engine/survey/survey_set.hpp"
 #include "engine/survey/voxel_grid.hpp"
 #include "tests/own_mechanisms/all.hpp"
@@ -102,9 +102,15 @@ inline Survey<double> survey(const Mechanism& mechanism, const std::vector<doubl
 
 /// All that its surveys can give.
 inline Demand all_fields(const Mechanism& mechanism) {
-  const bool inertia = mechanism.dynamics() != nullptr;
-  return {
-      .conditioning = !mechanism.info().characteristic_length.empty(), .dci = inertia, .inertia_condition = inertia};
+  Demand demand;
+  for (const PoseQuantity* const quantity : pose_quantities())
+    if (gives(mechanism, *quantity)) demand.add(*quantity);
+  return demand;
+}
+inline Demand no_inertia(const Mechanism& mechanism) {
+  Demand demand = all_fields(mechanism);
+  std::erase_if(demand.fields, [](const PoseQuantity* quantity) { return quantity->needs_inertia(); });
+  return demand;
 }
 
 /// The centres of a map's cells, in their order.

@@ -32,9 +32,8 @@ class SameBitsContract : public testing::TestWithParam<std::shared_ptr<const Mec
     bits.push_back(static_cast<std::uint64_t>(survey.feasible_cells) * 2 + survey.touches_box);
     add(bits, std::vector<double>{survey.volume, survey.error});
     add(bits, survey.weight);
-    add(bits, survey.conditioning);
-    for (const auto& joint : survey.dci) add(bits, joint);
-    add(bits, survey.inertia_condition);
+    for (const PoseQuantity* const quantity : pose_quantities())
+      for (std::size_t i = 0; i < kMostJoints; ++i) add(bits, survey.of(*quantity, i));
   }
 
   /// Surveys of random designs under random limits, voxels and columns of every sweep.
@@ -47,8 +46,7 @@ class SameBitsContract : public testing::TestWithParam<std::shared_ptr<const Mec
       for (const Sweep& sweep : test::sweeps(mechanism()))
         for (SurveyPlan& plan : test::plans(mechanism(), sweep, mechanism().voxels() ? 13 : 6)) {
           plan.limits = limits;
-          Demand demand = test::all_fields(mechanism());
-          if (plan.columns()) demand.dci = demand.inertia_condition = false;
+          const Demand demand = plan.columns() ? test::no_inertia(mechanism()) : test::all_fields(mechanism());
           add(bits, test::survey(mechanism(), design, plan, demand));
           if (plan.columns()) continue;
           for (const std::uint8_t cell : voxel_map(mechanism(), design, plan).feasible) bits.push_back(cell);

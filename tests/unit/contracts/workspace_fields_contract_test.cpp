@@ -5,9 +5,10 @@
 
 #include "engine/core/team.hpp"
 #include "engine/math/statistics.hpp"
-#include "engine/problem/inertia_options.hpp"
+#include "engine/problem/pose_options.hpp"
 #include "engine/report/isosurface.hpp"
 #include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/report/enclosed_volume.hpp"
 
 namespace pkm {
 namespace {
@@ -116,23 +117,24 @@ TEST_P(WorkspaceFieldsContract, ConditioningAndCouplingHaveTheStatisticsOfSurvey
   for (const Sweep& sweep : sweeps()) {
     SCOPED_TRACE(test::words(info(), sweep));
     Demand demand;
-    demand.conditioning = true;
+    demand.add(kConditioning);
     const WorkspaceFields found = fields(plan(sweep));
     const Survey<double> survey = test::survey(mechanism(), parameters(), plan(sweep), demand);
-    EXPECT_NEAR(mean(found.field("conditioning").values), weighted_mean(survey.weight, survey.conditioning), 1e-9);
+    EXPECT_NEAR(mean(found.field("conditioning").values), weighted_mean(survey.weight, survey.of(kConditioning)), 1e-9);
     EXPECT_EQ(found.find("dci_1") != nullptr, mechanism().dynamics() != nullptr);
     if (!mechanism().dynamics()) continue;
     Demand inertia;
-    inertia.dci = inertia.inertia_condition = true;
+    inertia.fields = {&kCouplingIndex, &kInertiaCondition};
     const Survey<double> coupled = test::survey(mechanism(), parameters(), plan(sweep), inertia);
+    Scratch scratch;
     std::vector<std::string> limbs = {"worst"};
     for (std::size_t i = 1; i <= info().joints.size(); ++i) limbs.push_back(std::to_string(i));
     for (const std::string& limb : limbs)
-      EXPECT_NEAR(mean(found.field("dci_" + limb).values), weighted_mean(coupled.weight, coupling_of(coupled, limb)),
-                  1e-9)
+      EXPECT_NEAR(mean(found.field("dci_" + limb).values),
+                  weighted_mean(coupled.weight, field_of(coupled, kCouplingIndex, limb, scratch)), 1e-9)
           << limb;
-    EXPECT_NEAR(mean(found.field("inertia_condition").values), weighted_mean(coupled.weight, coupled.inertia_condition),
-                1e-9);
+    EXPECT_NEAR(mean(found.field("inertia_condition").values),
+                weighted_mean(coupled.weight, coupled.of(kInertiaCondition)), 1e-9);
   }
 }
 
@@ -192,13 +194,13 @@ TEST_P(WorkspaceFieldsContract, SurfaceIsClosedFacesOutwardsAndEnclosesWhatCells
       EXPECT_EQ(found.touches_box, is_cut);
       const PoseMargin margin(mechanism(), parameters(), fine.limits);
       const Isosurface coarse = isosurface(found), surface = isosurface(found, &margin);
-      EXPECT_NEAR(coarse.volume() / surface.volume(), 1, 0.06);
+      EXPECT_NEAR(test::enclosed_volume(coarse) / test::enclosed_volume(surface), 1, 0.06);
       EXPECT_EQ(coarse.triangles, surface.triangles);
       ASSERT_GT(surface.triangles.size(), 100u);
       ASSERT_EQ(surface.cell.size(), surface.vertices.size());
       expect_closed(surface);
       // Cells along the surface count whole or not at all.
-      EXPECT_NEAR(surface.volume() / found.volume, 1, 0.06);
+      EXPECT_NEAR(test::enclosed_volume(surface) / found.volume, 1, 0.06);
       const VoxelGrid grid = found.grid();
       for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
         ASSERT_GT(found.field("feasible").values[surface.cell[v]], 0) << v;

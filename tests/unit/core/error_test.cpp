@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace pkm {
 namespace {
 
@@ -19,6 +21,27 @@ TEST(ConfigErrorText, MayBeASentenceOfItsOwn) {
   EXPECT_STREQ(error.what(), "s.toml:4: stage[1]: the optimiser is tired");
   EXPECT_EQ(error.place().line, 4);
   EXPECT_EQ(error.place().key, "stage[1]");
+}
+
+TEST(ConfigErrorText, IsShortAndPrintableWhateverTheInput) {
+  const std::string much(1 << 20, '\x1b');
+  for (const ConfigError& error :
+       {ConfigError({much, 3, much}, much, much, much), ConfigError({much, 3, much}, much)}) {
+    const std::string message = error.what();
+    EXPECT_LT(message.size(), 2000u);
+    EXPECT_EQ(message.find('\x1b'), std::string::npos);
+  }
+  EXPECT_STREQ(ConfigError({"", 0, "--at"}, "'x\x1b'", "a number").what(), "--at: found 'x\\x1b'; expected a number");
+  EXPECT_LT(std::string(StorageError(much).what()).size(), 2000u);
+  EXPECT_STREQ(StorageError("a\nb.h5: gone").what(), "a\\x0ab.h5: gone");
+  EXPECT_EQ(message_of(std::runtime_error("a\rb")), "a\\x0db");
+  EXPECT_LT(message_of(std::runtime_error(much)).size(), 2000u);
+}
+
+TEST(NearestName, TakesNoTimeForNamesThatAreNoNames) {
+  const std::string much(1 << 20, 'a');
+  EXPECT_EQ(nearest_name(much, {much, "a"}), "");
+  EXPECT_EQ(nearest_name("a", {much, "b"}), "b");
 }
 
 TEST(NearestName, FindsSlipsOfThePenAndNothingElse) {

@@ -30,11 +30,5 @@ TEST(DesignSpace, KeepsDiscreteVariablesOnTheLattice) {
   }
 }
 
-TEST(DesignSpace, KnowsItsBounds) {
-  EXPECT_TRUE(space.contains(std::vector{0.15, 0.3, 0.0}));
-  EXPECT_FALSE(space.contains(std::vector{0.1499, 0.3, 0.0}));
-  EXPECT_FALSE(space.contains(std::vector{0.15, std::nan(""), 0.0}));
-}
-
 }  // namespace
 }  // namespace pkm

@@ -1,5 +1,5 @@
 // Coriolis matrices of a mechanism whose Christoffel symbols are known.
-#include "engine/dynamics/coriolis.hpp"
+#include "tests/unit/dynamics/coriolis.hpp"
 
 #include <gtest/gtest.h>
 

@@ -67,6 +67,10 @@ TEST(Portable, EdgesOfTheirRanges) {
   EXPECT_TRUE(std::isnan(portable::log(-1)));
   EXPECT_EQ(portable::pow(0, 0.5), 0);
   EXPECT_NEAR(portable::pow(2, 0.5), std::sqrt(2.0), 1e-15);
+  for (const double none : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
+    EXPECT_TRUE(std::isnan(portable::sin(none))) << none;
+    EXPECT_TRUE(std::isnan(portable::cos(none))) << none;
+  }
 }
 
 // A change of these bits changes what a seed leads to: then kAlgorithms has to be raised.

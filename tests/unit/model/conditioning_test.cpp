@@ -36,11 +36,16 @@ Rows3<double> rows_of(const Eigen::Matrix3d& m) {
   return rows;
 }
 
-double by_jacobi(const Rows3<double>& rows, double extra = -1) {
-  double columns[3][3];
+/// @param extra  square of a fourth singular value, or < 0
+template <class S>
+S by_jacobi(const Rows3<S>& rows, const S& extra = S(-1.0)) {
+  const bool has_extra = value_of(extra) >= 0;
+  S three[3][3], four[4][4] = {};
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) columns[j][i] = rows[i][j];
-  return inverse_condition(columns, extra);
+    for (std::size_t j = 0; j < 3; ++j) three[j][i] = four[j][i] = rows[i][j];
+  if (!has_extra) return inverse_condition(three);
+  four[3][3] = sqrt(extra);
+  return inverse_condition(four);
 }
 
 TEST(Conditioning, FindsKnownSingularValues) {
@@ -130,15 +135,13 @@ TEST(Conditioning, DerivativesOfBothWaysAgreeAndKeepTheValuesBits) {
   for (int i = 0; i < 3000; ++i) {
     Rows3<double> plain;
     Rows3<Scalar> rows;
-    Scalar columns[3][3];
     for (std::size_t r = 0; r < 3; ++r)
       for (std::size_t c = 0; c < 3; ++c) {
         plain[r][c] = uniform(-1, 1);
         rows[r][c] = Scalar(plain[r][c], {{uniform(-1, 1), uniform(-1, 1)}});
-        columns[c][r] = rows[r][c];
       }
     const Scalar extra = i % 3 == 0 ? Scalar(-1.0) : Scalar(std::pow(10.0, uniform(-3, 1)), {{1, uniform(-1, 1)}});
-    const Scalar closed = inverse_condition(rows, extra), turned = inverse_condition(columns, extra);
+    const Scalar closed = inverse_condition(rows, extra), turned = by_jacobi(rows, extra);
     EXPECT_EQ(closed.a, inverse_condition(plain, extra.a));
     const double without = inverse_condition(plain);
     ++extreme[closed.a == without ? 0 : extra.a < 1 ? 1 : 2];

@@ -9,6 +9,8 @@
 #include <random>
 #include <set>
 
+#include "tests/unit/optimisers/dominates.hpp"
+
 namespace pkm {
 namespace {
 

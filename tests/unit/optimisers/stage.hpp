@@ -64,7 +64,7 @@ inline std::unique_ptr<Optimiser> make(const OptimiserEntry& e, const Problem& p
 inline Outcome run(const Optimiser& optimiser, const Problem& problem, std::uint64_t seed = 1,
                    std::int64_t last = std::numeric_limits<std::int64_t>::max(), Evaluator* evaluator = nullptr,
                    const std::vector<std::vector<double>>& starts = {}) {
-  SerialEvaluator serial;
+  ParallelEvaluator serial(1);
   Outcome outcome{EvaluationTable(problem.shape(optimiser.detail())), Recorder(last), {}};
   StageInput input{problem, evaluator ? *evaluator : serial, outcome.recorder, seed};
   for (const auto& design : starts) input.starts.push_back({design, "given"});
@@ -76,7 +76,7 @@ inline Outcome run(const Optimiser& optimiser, const Problem& problem, std::uint
 inline Outcome resume(const Optimiser& optimiser, const Problem& problem, std::uint64_t seed, const Outcome& stopped,
                       std::int64_t last = std::numeric_limits<std::int64_t>::max(),
                       const std::vector<std::vector<double>>& starts = {}) {
-  SerialEvaluator serial;
+  ParallelEvaluator serial(1);
   ReplayEvaluator replay(serial, stopped.table);
   Outcome outcome{EvaluationTable(problem.shape(optimiser.detail())), Recorder(last), {}};
   StageInput input{problem, replay, outcome.recorder, seed};

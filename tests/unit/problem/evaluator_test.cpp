@@ -19,7 +19,7 @@ TEST(Evaluator, ParallelEqualsSerialWhateverTheThreads) {
   const auto problem = welded_beam();
   for (const std::size_t rows : {0, 1, 2, 19, 1000}) {
     EvaluationTable expected = numbered(problem, rows);
-    SerialEvaluator().evaluate(problem, expected, 0);
+    ParallelEvaluator(1).evaluate(problem, expected, 0);
     for (const int threads : {0, 1, 2, 7}) {
       EvaluationTable table = numbered(problem, rows);
       ParallelEvaluator(threads).evaluate(problem, table, 0);
@@ -67,7 +67,7 @@ TEST(Evaluator, AStatusThatItsNumbersContradictIsFailed) {
       return objective;
     });
     EvaluationTable table = numbered(problem, 1);
-    SerialEvaluator().evaluate(problem, table, 0);
+    ParallelEvaluator(1).evaluate(problem, table, 0);
     return table.status[0];
   };
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
@@ -85,7 +85,7 @@ TEST(Evaluator, RecordsTheTimeOfEachDesign) {
     return sum;
   });
   EvaluationTable table = numbered(problem, 3);
-  SerialEvaluator().evaluate(problem, table, 0);
+  ParallelEvaluator(1).evaluate(problem, table, 0);
   EXPECT_GT(table.seconds[0], 0.0005f);
   EXPECT_LT(table.seconds[1], table.seconds[0]);
 }
@@ -93,7 +93,7 @@ TEST(Evaluator, RecordsTheTimeOfEachDesign) {
 TEST(Replay, ServesTheRecordAndComputesTheRest) {
   const auto problem = welded_beam();
   EvaluationTable whole = numbered(problem, 30), record = numbered(problem, 20);
-  SerialEvaluator serial;
+  ParallelEvaluator serial(1);
   serial.evaluate(problem, whole, 0);
   serial.evaluate(problem, record, 0);
   record.seconds.assign(20, 42);
@@ -114,7 +114,7 @@ TEST(Replay, ServesTheRecordAndComputesTheRest) {
 TEST(Replay, NamesTheEvaluationThatDiffers) {
   const auto problem = sphere(2);
   EvaluationTable record = numbered(problem, 5);
-  SerialEvaluator serial;
+  ParallelEvaluator serial(1);
   serial.evaluate(problem, record, 0);
   EvaluationTable table = numbered(problem, 8);
   table.designs[9] = std::nextafter(table.designs[9], 1);
@@ -131,7 +131,7 @@ TEST(Replay, NamesTheEvaluationThatDiffers) {
 TEST(Replay, RefusesARecordOfAnotherShape) {
   const auto problem = sphere(2);
   EvaluationTable record = numbered(sphere(3), 5);
-  SerialEvaluator serial;
+  ParallelEvaluator serial(1);
   EvaluationTable table = numbered(problem, 5);
   EXPECT_THROW(ReplayEvaluator(serial, record).evaluate(problem, table, 0), ReplayMismatch);
 }

@@ -11,6 +11,7 @@
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/setup/study.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm {
@@ -192,10 +193,10 @@ TEST(Expression, DemandsWhatItNames) {
   };
   const std::string report = "[[report]]\ntype = \"expression\"\n",
                     constraint = "[[constraint]]\ntype = \"expression\"\n";
-  EXPECT_FALSE(demand(report + "expression = \"volume\"\n").conditioning);
-  EXPECT_TRUE(demand(report + "expression = \"conditioning_mean\"\n").conditioning);
+  EXPECT_FALSE(demand(report + "expression = \"volume\"\n").has(kConditioning));
+  EXPECT_TRUE(demand(report + "expression = \"conditioning_mean\"\n").has(kConditioning));
   EXPECT_EQ(demand(report + "expression = \"conditioning_mean\"\n").characteristic_length, std::nullopt);
-  EXPECT_TRUE(demand(constraint + "expression = \"conditioning_min\"\n").conditioning);
+  EXPECT_TRUE(demand(constraint + "expression = \"conditioning_min\"\n").has(kConditioning));
   EXPECT_EQ(demand(constraint + "expression = \"conditioning_min\"\ncharacteristic_length = \"50 mm\"\n")
                 .characteristic_length,
             0.05);

@@ -18,6 +18,15 @@ TEST(CsvTable, QuotesWhatWouldBreakARow) {
   EXPECT_EQ(table.text(), "plain,\"with, comma\",a [m],ratio\n\"say \"\"no\"\"\",\"two\nlines\",0.1,-7\n");
 }
 
+TEST(CsvTable, TextIsNoFormulaInASpreadsheet) {
+  CsvTable table({"=1+1", "-7"});
+  table.row(std::string("@SUM(A1)"), std::string("-cmd|' /C calc'!A0"));
+  table.row(std::string("+1.5e3"), std::string("+x"));
+  table.row(std::string("\t=1"), std::string("=a,\"b\""));
+  table.row(-7.5, -3);
+  EXPECT_EQ(table.text(), "'=1+1,-7\n'@SUM(A1),'-cmd|' /C calc'!A0\n+1.5e3,'+x\n'\t=1,\"'=a,\"\"b\"\"\"\n-7.5,-3\n");
+}
+
 TEST(CsvTable, NumbersReadBackWithTheirBits) {
   for (const double value : {1.0 / 3, 5e-324, 1.7976931348623157e308, -2.5e-7}) {
     CsvTable table({"x"});

@@ -68,7 +68,6 @@ TEST(JsonText, CannotEndTheElementThatHoldsIt) {
   EXPECT_THAT(text, Not(HasSubstr("<")));
   EXPECT_TRUE(std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; }));
   EXPECT_EQ(json::parse(text), "</script><!-- \xe2\x80\xa8 \xef\xbf\xbd");
-  EXPECT_EQ(json_object({{"a", "1"}, {"left_out", ""}, {"b", "[2]"}}), "{\"a\":1,\"b\":[2]}");
 }
 
 TEST(Thinning, KeepsFirstAndLast) {
@@ -95,7 +94,7 @@ TEST(Standing, GainsAreOfTheBaselinesSizeInTheObjectivesDirection) {
 
 TEST(PageData, SummaryHasTheFilesNumbers) {
   const PageStudy page = sample_page();
-  const json summary = json::parse(summary_data(page));
+  const json summary = json::parse(json_text(summary_data(page)));
   const FinalRecord& final = *page.contents.final;
   EXPECT_EQ(summary["unreadable"], "why");
   EXPECT_EQ(summary["state"], "interrupted");
@@ -121,7 +120,7 @@ TEST(PageData, ConvergenceIsBestSoFarAndThePopulationsQuartiles) {
   std::fill(stage.table.status.begin(), stage.table.status.end(), Status::feasible);
   for (std::size_t row = 0; row < stage.table.size(); ++row) stage.table.objectives[row] = static_cast<double>(row % 5);
   stage.table.status[4] = Status::infeasible;  // with the largest value
-  const json found = json::parse(convergence_data(contents))[0]["generations"];
+  const json found = json::parse(json_text(convergence_data(contents)))[0]["generations"];
   EXPECT_EQ(found["evaluations"], json({4, 8, 12}));
   const json& objective = found["objectives"][0];  // 0 1 2 3 | (4) 0 1 2 | 3 4 0 1
   EXPECT_EQ(objective["best"], json({3.0, 3.0, 4.0}));
@@ -183,7 +182,7 @@ TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
                  formula("t"));
   const Views views = views_of(*mechanism, test::voxels(info, 6), info.modes.front(), {{"turns", motion}},
                                {"nominal", test::nominal(info)});
-  const json page = json::parse(motions_data(views)), &chain = page["motions"][0]["designs"][0]["chain"];
+  const json page = json::parse(json_text(motions_data(views))), &chain = page["motions"][0]["designs"][0]["chain"];
   EXPECT_EQ(page["chain"], json({mechanism->chain()->input(), mechanism->chain()->output()}));
 
   const Trajectory found =
@@ -199,9 +198,9 @@ TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
 
   const auto without = mechanism_called("3crr-r-cru");
   const auto rest = formulas_of_time({formula("0.15"), formula("0.2"), formula("0.21"), formula("0.1*sin(t)")}, 5);
-  const json none =
-      json::parse(motions_data(views_of(*without, test::voxels(without->info(), 6), without->info().modes.front(),
-                                        {{"turns", rest}}, {"nominal", test::nominal(without->info())})));
+  const json none = json::parse(
+      json_text(motions_data(views_of(*without, test::voxels(without->info(), 6), without->info().modes.front(),
+                                      {{"turns", rest}}, {"nominal", test::nominal(without->info())}))));
   EXPECT_TRUE(none["motions"][0]["designs"][0]["chain"].is_null());
 }
 
@@ -209,10 +208,10 @@ TEST(PageData, ADesignThatIsNoneIsSaidSo) {
   const auto mechanism = mechanism_called("4ppa-2par");
   std::vector<double> parameters(mechanism->info().parameters.size(), 0.0);
   const Views views = views_of(*mechanism, test::columns(mechanism->info()), "", {}, {"nothing", parameters});
-  const json workspace = json::parse(workspace_data(views));
+  const json workspace = json::parse(json_text(workspace_data(views)));
   EXPECT_THAT(workspace["designs"], IsEmpty());
   EXPECT_THAT(workspace["problems"][0].get<std::string>(), HasSubstr("“nothing” is not shown: "));
-  EXPECT_EQ(mechanism_data(views), "");
+  EXPECT_TRUE(mechanism_data(views).is_null());
 }
 
 }  // namespace

@@ -15,16 +15,17 @@ using ::testing::ElementsAre;
 const MechanismInfo& slider() { return testing::fake_catalogues().mechanisms.front()->info(); }
 
 TEST(Assignments, ReadNamesInAnyOrderWithUnits) {
-  EXPECT_THAT(parse_all_assignments({"theta=30deg, z = -0.5", "x=200mm,y=1"}, "--at", assignable_coordinates(slider())),
-              ElementsAre(0.2, 1, -0.5, kPi / 6));
-  EXPECT_THAT(parse_all_assignments({"q1=1,q2=2,q3=3 cm,q4=4"}, "--joints", assignable_joints(slider())),
+  EXPECT_THAT(
+      parse_all_assignments({"theta=30deg, z = -0.5", "x=200mm,y=1"}, "--at", assignable_axes(slider().coordinates)),
+      ElementsAre(0.2, 1, -0.5, kPi / 6));
+  EXPECT_THAT(parse_all_assignments({"q1=1,q2=2,q3=3 cm,q4=4"}, "--joints", assignable_axes(slider().joints)),
               ElementsAre(1, 2, 0.03, 4));
 }
 
 TEST(Assignments, MayNameSomeOnly) {
   EXPECT_THAT(parse_assignments({"b=800mm", "mass=2 kg"}, "--set", assignable_parameters(slider())),
               ElementsAre(std::nullopt, 0.8, std::nullopt, 2));
-  EXPECT_THAT(parse_assignments({}, "--set", assignable_joints(slider())),
+  EXPECT_THAT(parse_assignments({}, "--set", assignable_axes(slider().joints)),
               ElementsAre(std::nullopt, std::nullopt, std::nullopt, std::nullopt));
 }
 
@@ -52,9 +53,22 @@ TEST(Assignments, MessagesNameOptionAndNearestName) {
   EXPECT_EQ(message({"a=3"}), "--set: found a=3; expected a number in [0, 2] m");
 }
 
+TEST(Assignments, AnglesOfManyTurnsAreRefused) {
+  for (const std::string angle : {"1e16", "100001", "-6e6deg"}) try {
+      parse_assignments({"theta=" + angle}, "--at", assignable_axes(slider().coordinates));
+      ADD_FAILURE() << angle;
+    } catch (const ConfigError& error) {
+      EXPECT_EQ(error.what(),
+                "--at: found theta=" + angle +
+                    "; expected an angle within 1e+05 rad, beyond which digits would be lost; leave whole "
+                    "turns out");
+    }
+  EXPECT_THROW(parse_values("0:1:010", "--phi", {"phi", "rad"}), ConfigError);
+}
+
 TEST(Assignments, MissingNamesAreListed) {
   try {
-    parse_all_assignments({"x=1,theta=0"}, "--at", assignable_coordinates(slider()));
+    parse_all_assignments({"x=1,theta=0"}, "--at", assignable_axes(slider().coordinates));
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(), "--at: found no value for y, z; expected values for x, y, z, theta");

@@ -2,12 +2,14 @@
 
 #include <stdexcept>
 
+#include "engine/survey/pose_quantities.hpp"
+
 namespace pkm::testing {
 namespace {
 
 int surveyors = 0;
 
-class IdleSurveyor final : public Surveyor {
+class IdleSurveyor final : public VoxelSurveyor {
  public:
   explicit IdleSurveyor(double plane) : plane_(plane) {}
   void survey(std::span<const double>, Scratch&, Survey<double>& survey) const override {
@@ -15,6 +17,7 @@ class IdleSurveyor final : public Surveyor {
     // The made-up rail ends at y = 2 m.
     survey.volume = plane_ <= 2 ? 1 : 0;
   }
+  VoxelMap map(std::span<const double>) const override { return {}; }
 
  private:
   double plane_;
@@ -49,31 +52,28 @@ class Slider final : public Mechanism, Voxels, Columns {
   }
 
  private:
-  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const VoxelOptions&, const Demand&) const override {
+  std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions&,
+                                               const Demand&) const override {
     return prepare(plan);
   }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions&, const Demand&) const override {
     return prepare(plan);
   }
-  static std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan) {
+  static std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan) {
     const HeldCoordinate held = how_held(plan, 1);
     if (held.kind == HeldCoordinate::Kind::integrated && plan.box())
       throw std::invalid_argument("the slider cannot integrate inside a given box");
     ++surveyors;
     return std::make_unique<IdleSurveyor>(held.value);
   }
-  VoxelMap map(std::span<const double>, const SurveyPlan&, const VoxelOptions&) const override { return {}; }
 
   MechanismInfo info_;
 };
 
 std::string volume_unit(const EntryContext&) { return "m^2 rad"; }
-std::string no_unit(const EntryContext&) { return "1"; }
 std::string metre(const EntryContext&) { return "m"; }
-std::string serves_all(const Mechanism&) { return ""; }
-void needs_nothing(const EntryContext&, Demand&) {}
 void needs_conditioning(const EntryContext& context, Demand& demand) {
-  demand.conditioning = true;
+  demand.add(kConditioning);
   if (context.options.has("length")) demand.characteristic_length = context.options.number("length");
 }
 std::unique_ptr<const Quantity> make_zero(const EntryContext&) {
@@ -88,7 +88,7 @@ std::vector<ObjectiveEntry> make_objectives() {
   options[3] = {"statistic", OptionKind::word, "1", "mean", false, 0, 0, {"mean", "min"}, "which"};
   options[4] = {"weights", OptionKind::named_numbers, "1", {}, false, 0, 1, {}, "weights"};
   options[5] = {"note", OptionKind::word, "1", {}, false, 0, 0, {}, "any text"};
-  const auto lacks_force = [](const Mechanism& mechanism) {
+  const auto lacks_force = [](const Mechanism& mechanism) -> Refusal {
     return "force needs bodies, which the mechanism " + mechanism.info().name + " does not describe";
   };
   return {
@@ -98,7 +98,6 @@ std::vector<ObjectiveEntry> make_objectives() {
       {"force", "peak force", Direction::minimise, {}, no_unit, lacks_force, needs_nothing, make_zero}};
 }
 
-std::vector<OptionSpec> no_options(const MechanismInfo&) { return {}; }
 std::vector<OptionSpec> gap_options(const MechanismInfo&) {
   return {{"angle_max", OptionKind::number, "rad", {}, false, 0, 1.5, {}, "greatest angle"}};
 }
@@ -131,9 +130,9 @@ std::string linear_unit(const EntryContext& context) {
 }
 
 std::vector<ConstraintEntry> make_constraints() {
-  return {{"gap", "parts stay apart", true, gap_options, nullptr, serves_all, gap_limits, nullptr},
-          {"reach", "long enough", false, no_options, metre, serves_all, nullptr, make_zero},
-          {"linear", "sum <= bound", false, linear_options, linear_unit, serves_all, nullptr, make_linear}};
+  return {{"gap", "parts stay apart", gap_options, nullptr, serves_all, gap_limits, nullptr},
+          {"reach", "long enough", no_options, metre, serves_all, nullptr, make_zero},
+          {"linear", "sum <= bound", linear_options, linear_unit, serves_all, nullptr, make_linear}};
 }
 
 class Idle final : public Optimiser {

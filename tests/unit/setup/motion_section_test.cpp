@@ -171,6 +171,11 @@ TEST(MotionSection, InputOfAnAuxiliaryChain) {
             "m.toml:8: theta: found [1]; expected a number in rad, or text with a unit made of mrad, rad, deg");
 }
 
+TEST(MotionSection, AMotionEnds) {
+  EXPECT_EQ(complaint("type = \"oscillation\"\n" + kPose + "amplitude = 0.01\nperiod = 1e300\ncycles = 1e300\n"),
+            "m.toml:1: the motion takes inf s; expected at most 1e+09 s");
+}
+
 TEST(MotionSection, FilesThatCannotBeRead) {
   try {
     load_motion_toml("/no/such/motion.toml", kNames);

@@ -1,5 +1,6 @@
 // Documents, sections, parameters and files that are wrong.
 
+#include <chrono>
 #include <fstream>
 
 #include "tests/unit/setup/wrong_studies.hpp"
@@ -37,6 +38,52 @@ TEST(StudyErrors, Document) {
               {"[study]\nname = \"x\"\n",
                "s.toml:1: mechanism: found nothing; expected a table [mechanism] with type = one of slider"},
           });
+}
+
+/// "one.one.one"
+std::string parts(std::size_t count, const std::string& one) {
+  std::string text = one;
+  for (std::size_t k = 1; k < count; ++k) text += "." + one;
+  return text;
+}
+
+TEST(StudyErrors, TablesNestedTooDeeply) {
+  const std::string deep = "found tables nested too deeply; expected keys of at most 16 parts, in at most 32 brackets";
+  for (const std::string one : {"a", "\"a\"", "'a.b'", " a "})
+    for (const std::size_t count : {std::size_t{17}, std::size_t{50000}}) {
+      const std::string key = parts(count, one);
+      EXPECT_EQ(message_of("[" + key + "]\n"), "s.toml:1: " + deep) << one;
+      EXPECT_EQ(message_of("x = 1\n" + key + " = 1\n"), "s.toml:2: " + deep) << one;
+      EXPECT_EQ(message_of("x = [\n'\\', \"\\\"\", {" + key + " = 1}]\n"), "s.toml:2: " + deep) << one;
+    }
+  EXPECT_EQ(message_of("x = " + std::string(33, '[')), "s.toml:1: " + deep);
+  EXPECT_EQ(message_of("x = \"\"\"\n\\\"\"\"\"\"\"\n\n[" + parts(17, "a") + "]\n"), "s.toml:4: " + deep);
+  // Dots and brackets within text and comments are none.
+  const std::string dots(100, '.'), brackets(100, '[');
+  for (const std::string quote : {"\"", "'", "\"\"\"", "\'\'\'"})
+    EXPECT_EQ(message_of("study = " + quote + dots + brackets + quote + " # " + dots + brackets + "\n").substr(0, 24),
+              "s.toml:1: study: found " + quote.substr(0, 1));
+  EXPECT_EQ(message_of("[" + parts(16, "a") + "]\n").substr(0, 37), "s.toml:1: a: found an unknown section");
+}
+
+TEST(StudyErrors, LongLinesTakeNoTime) {
+  const std::string point = "{x=1, y=\"ü\"}, ";  // of 14 characters
+  std::string points = "[";
+  for (int k = 0; k < 20000; ++k) points += point;
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(message_of("study = " + points + "]\n"),
+            "s.toml:1: study: found [" + point + point + point + point + "{x=...; expected a table [study]");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));  // one of 4000 points took 7 s
+}
+
+TEST(StudyErrors, MessagesAreShortWhateverTheKeys) {
+  const std::string much(1 << 20, 'k');
+  for (const std::string& text : {much + " = 1\n" + much + " = 2\n", "[" + much + "]\n", "[study]\n" + much + " = 1\n",
+                                  "[study]\nseed = \"" + much + "\"\n"}) {
+    const std::string message = message_of(text);
+    EXPECT_NE(message, "accepted");
+    EXPECT_LT(message.size(), 2000u);
+  }
 }
 
 TEST(StudyErrors, StudyCheckpointFinal) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "engine/math/portable.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "tests/unit/setup/right_studies.hpp"
 
 namespace pkm {
@@ -164,7 +165,7 @@ TEST(Study, ReadsObjectivesConstraintsReports) {
   EXPECT_EQ(parts.survey_margins[0].least, 0.5);
   EXPECT_FALSE(parts.survey_margins[0].greatest);
   ASSERT_EQ(parts.reports.size(), 1U);
-  EXPECT_TRUE(parts.demand.conditioning);
+  EXPECT_TRUE(parts.demand.has(kConditioning));
   EXPECT_EQ(parts.demand.characteristic_length, 0.12);
   const Options& options = study.reports[0].options;
   EXPECT_EQ(options.word("statistic"), "min");

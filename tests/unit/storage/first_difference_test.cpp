@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/unit/storage/first_difference.hpp"
 #include "tests/unit/storage/sample_study.hpp"
 
 namespace pkm {

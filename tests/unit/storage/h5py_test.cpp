@@ -7,6 +7,7 @@
 
 #include "engine/storage/file_seal.hpp"
 #include "engine/storage/study_file.hpp"
+#include "tests/unit/storage/first_difference.hpp"
 #include "tests/unit/storage/python_output.hpp"
 #include "tests/unit/storage/sample_study.hpp"
 
@@ -47,7 +48,7 @@ generation [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]
 population [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]
 columns ['workspace-shape', 'rail-length']
 format pkmopt-study
-schema 3
+schema 4
 seed 18364758544493064720
 name Größe, 4PPa-2PaR <b>
 lower [0.1, 0.35]
@@ -84,21 +85,21 @@ TEST_F(H5py, AMissingPartIsNamed) {
   ASSERT_EQ(python("remove", "/stages/1/evaluations/margin"), "");
   seal_again();
   EXPECT_THAT(test::storage_error([&] { read_study(path_); }),
-              testing::StartsWith(path_ + ": not laid out as schema 3 says (/stages/1/evaluations/margin: "));
+              testing::StartsWith(path_ + ": not laid out as schema 4 says (/stages/1/evaluations/margin: "));
 }
 
 TEST_F(H5py, AnIndexThatPointsNowhereIsNamed) {
   ASSERT_EQ(python("put", "/stages/1/generations/population 5 12"), "");
   seal_again();
   EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-            path_ + ": not laid out as schema 3 says (/stages/1: population holds what is no row of evaluations)");
+            path_ + ": not laid out as schema 4 says (/stages/1: population holds what is no row of evaluations)");
 }
 
 TEST_F(H5py, AFrontThatPointsNowhereIsNamed) {
   ASSERT_EQ(python("put", "/stages/1/front/row 1 12"), "");
   seal_again();
   EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-            path_ + ": not laid out as schema 3 says (/stages/1: the front holds what is no row of evaluations)");
+            path_ + ": not laid out as schema 4 says (/stages/1: the front holds what is no row of evaluations)");
 }
 
 TEST_F(H5py, APartOfAnotherSizeIsNamed) {
@@ -106,7 +107,28 @@ TEST_F(H5py, APartOfAnotherSizeIsNamed) {
   seal_again();
   EXPECT_EQ(
       test::storage_error([&] { read_study(path_); }),
-      path_ + ": not laid out as schema 3 says (/stages/1/evaluations/seconds: has 11 values, but 12 are expected)");
+      path_ + ": not laid out as schema 4 says (/stages/1/evaluations/seconds: has 11 values, but 12 are expected)");
+}
+
+TEST_F(H5py, WhatPkmoptNeverWritesIsRefused) {
+  const std::string rows = "/stages/1/evaluations/objective: ";
+  for (const auto& [kind, reason] : {std::pair<std::string, std::string>{"soft", rows + "is a link to another place"},
+                                     {"link", rows + "is a link to another place"},
+                                     {"external", rows + "has its values in another file"},
+                                     {"virtual", rows + "is a view of other datasets"},
+                                     {"filter", rows + "is packed by a filter that pkmopt does not use"},
+                                     {"type", rows + "has values of another type"},
+                                     {"huge", rows + "is larger than the values that the file holds"},
+                                     {"count", "/stages@count: is 4294967296, but it has 3 stages"},
+                                     {"variable", "/problem/parameters: two parameters have one variable"},
+                                     {"cells", "/final/best: has more feasible cells than cells, or fewer than 0"}}) {
+    write_study(path_, test::sample_study());
+    ASSERT_EQ(python("forge", kind), "") << kind;
+    seal_again();
+    EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
+              path_ + ": not laid out as schema 4 says (" + reason + ")")
+        << kind;
+  }
 }
 
 }  // namespace

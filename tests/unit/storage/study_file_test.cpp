@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
 
 #include "engine/storage/file_seal.hpp"
+#include "tests/unit/storage/first_difference.hpp"
 #include "tests/unit/storage/sample_study.hpp"
 
 namespace pkm {
@@ -259,11 +261,39 @@ TEST(StudyFileRefuses, NewerSchema) {
   const std::string path = folder / "s.h5";
   write_study(path, StudyContents{});
   std::string bytes = slurp(path);
-  bytes.replace(bytes.find("schema=3"), 8, "schema=4");
+  seal(bytes, 5);
   spill(path, bytes);
   EXPECT_EQ(storage_error([&] { read_study(path); }),
-            path + ": written with study schema 4, but this program reads schemas up to 3; use a newer pkmopt");
+            path + ": written with study schema 5, but this program reads schemas up to 4; use a newer pkmopt");
   EXPECT_EQ(slurp(path), bytes);
+}
+
+TEST(StudyFileRefuses, AnotherSchemasDigit) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  write_study(path, StudyContents{});
+  for (const char digit : {'0', '1', '2', '3', '5', '6'}) {
+    std::string bytes = slurp(path);
+    bytes[bytes.find("schema=4") + 7] = digit;
+    spill(folder / "other.h5", bytes);
+    EXPECT_THAT(storage_error([&] { read_study(folder / "other.h5"); }), HasSubstr(": the file is damaged")) << digit;
+  }
+}
+
+TEST(StudyFileRefuses, WhatIsNoFileWithoutWaitingForIt) {
+  const Folder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(storage_error([&] { read_study(path); }), path + ": is a pipe or a device; a study is read from a file");
+}
+
+TEST(StudyFileRefuses, AForeignFileByItsBeginning) {
+  const Folder folder;
+  const std::string path = folder / "huge.h5";
+  spill(path, "");
+  ASSERT_EQ(::truncate(path.c_str(), off_t{1} << 40), 0);  // 1 TiB of nothing
+  EXPECT_EQ(storage_error([&] { read_study(path); }),
+            path + ": not a pkmopt study (neither pkmopt mark nor HDF5 data)");
 }
 
 TEST(StudyFileRefuses, EveryTruncation) {

@@ -61,7 +61,7 @@ TEST(StudyLock, OfAKilledProcessBlocksNobody) {
   kill_hard(child);
   ASSERT_TRUE(std::filesystem::exists(path + ".lock"));
   const StudyLock lock(path);
-  EXPECT_THAT(test::slurp(path + ".lock"), testing::StartsWith(std::to_string(::getpid())));
+  EXPECT_THAT(test::slurp(path + ".lock"), testing::StartsWith("pkmopt-lock " + std::to_string(::getpid())));
 }
 
 TEST(StudyLock, IsHeldOnceAndRemovedAtItsEnd) {
@@ -133,6 +133,56 @@ TEST(StudyLock, IsNotSwitchedOffByHdf5sVariable) {
     EXPECT_NE(storage_error([&] { const StudyLock b(folder / "s.h5"); }), "");
   }
   ::unsetenv("HDF5_USE_FILE_LOCKING");
+}
+
+TEST(StudyLock, TouchesNoFileOfAnotherProgram) {
+  const Folder folder;
+  const std::string path = folder / "poetry", lock_file = folder / "poetry.lock", victim = folder / "victim";
+  const std::string refusal = path + ": cannot be locked: " + lock_file +
+                              " is no lock of pkmopt and is left alone; give the study another name";
+  const auto expect_refused = [&](const char* what) {
+    EXPECT_EQ(storage_error([&] { const StudyLock lock(path); }), refusal) << what;
+  };
+  test::spill(lock_file, "[[package]]\nname = \"numpy\"\n");
+  expect_refused("a file of another program");
+  EXPECT_EQ(test::slurp(lock_file), "[[package]]\nname = \"numpy\"\n");
+
+  test::spill(victim, "");
+  std::filesystem::remove(lock_file);
+  std::filesystem::create_hard_link(victim, lock_file);
+  expect_refused("another name of a file");
+  std::filesystem::remove(lock_file);
+  std::filesystem::create_symlink("victim", lock_file);
+  expect_refused("a link");
+  EXPECT_EQ(std::filesystem::file_size(victim), 0u);
+  std::filesystem::remove(lock_file);
+  std::filesystem::create_symlink("nothing", lock_file);
+  expect_refused("a link to nothing");
+  EXPECT_FALSE(std::filesystem::exists(folder / "nothing"));
+  std::filesystem::remove(lock_file);
+  ASSERT_EQ(::mkfifo(lock_file.c_str(), 0666), 0);
+  expect_refused("a pipe");
+}
+
+TEST(StudyLock, OfAFullDiskIsEmptyAndOurs) {
+  const Folder folder;
+  for (const char* left : {"", "pkmo"}) {
+    test::spill(folder / "s.h5.lock", left);
+    EXPECT_EQ(storage_error([&] { const StudyLock lock(folder / "s.h5"); }), "");
+  }
+}
+
+TEST(StudyLock, KnowsThatItWasTakenAway) {
+  const Folder folder;
+  const std::string path = folder / "s.h5";
+  std::optional<StudyLock> first(std::in_place, path);
+  EXPECT_TRUE(first->held());
+  std::filesystem::remove(path + ".lock");
+  EXPECT_FALSE(first->held());
+  const StudyLock second(path);
+  EXPECT_FALSE(first->held());
+  first.reset();  // and leaves the second's lock where it is
+  EXPECT_TRUE(second.held());
 }
 
 TEST(StudyLock, IsSharedByAllNamesOfAStudy) {

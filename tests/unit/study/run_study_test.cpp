@@ -3,16 +3,20 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "constraints/all.hpp"
 #include "engine/core/instruction_set.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/storage/study_file.hpp"
 #include "objectives/all.hpp"
+#include "tests/unit/storage/first_difference.hpp"
 
 namespace pkm::testing {
 namespace {
@@ -64,6 +68,7 @@ class RunStudy : public ::testing::Test {
     std::string name = (std::filesystem::temp_directory_path() / "pkmopt-run-XXXXXX").string();
     ASSERT_NE(mkdtemp(name.data()), nullptr);
     folder_ = name;
+    std::signal(SIGINT, SIG_DFL);  // a script's background process ignores it
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string path(const std::string& name) const { return folder_ + "/" + name; }
@@ -82,6 +87,78 @@ class StopAt final : public Progress {
  private:
   int left_;
 };
+
+TEST_F(RunStudy, GoesOnUnderASignalThatTheProcessIgnores) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  StopAt at(2);
+  std::signal(SIGINT, SIG_IGN);
+  EXPECT_EQ(run_study(study, path("s.h5"), false, {}, at).stopped, "");
+  EXPECT_EQ(std::signal(SIGINT, SIG_DFL), SIG_IGN);
+}
+
+/// Lets a second writer in: removes the study's lock and replaces the study.
+class Intruder final : public Progress {
+ public:
+  explicit Intruder(std::string study) : study_(std::move(study)) {}
+  void generation(const ProgressReport& report) override {
+    if (report.generation != 3) return;
+    std::filesystem::remove(study_ + ".lock");
+    std::ofstream(study_) << "the second writer's";
+  }
+
+ private:
+  std::string study_;
+};
+
+TEST_F(RunStudy, WhoseLockIsTakenAwayLeavesTheFileToOthersAndKeepsItsOwn) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  Progress silent;
+  const auto straight = run_study(study, path("straight.h5"), false, {}, silent);
+  const std::string kept = path("s-kept-" + std::to_string(::getpid()) + ".h5");
+  Intruder intruder(path("s.h5"));
+  try {
+    run_study(study, path("s.h5"), false, {}, intruder);
+    FAIL() << "nothing was noticed";
+  } catch (const StorageError& error) {
+    EXPECT_EQ(error.what(), path("s.h5") +
+                                ": its lock was removed while the study ran, so another process may write "
+                                "it; what this run has found is in " +
+                                kept + ", and can be resumed there");
+  }
+  std::ifstream file(path("s.h5"));
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "the second writer's");
+  EXPECT_EQ(first_difference(straight.contents, resume_study(kept, catalogues(), {}, {}, silent).contents), "");
+}
+
+TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
+  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  Progress silent;
+  const StudyContents sound = run_study(study, path("s.h5"), false, {}, silent).contents;
+  EXPECT_EQ(study_of(sound, catalogues()).name, "two stages");
+  const auto refusal = [&](const auto& forge) -> std::string {
+    StudyContents forged = sound;
+    forge(forged);
+    try {
+      study_of(forged, catalogues());
+    } catch (const StorageError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  const std::string begin = "the study's text and what is recorded of it disagree: ";
+  EXPECT_EQ(refusal([](StudyContents& c) { c.problem.mechanism = "quadrupteron"; }),
+            begin + "4ppa-2par as mechanism, and quadrupteron");
+  EXPECT_EQ(refusal([](StudyContents& c) {
+              c.problem.variables.push_back({"l_d", "m", 0.5, 0.7, 0});
+            }),
+            begin + "the variables a, b, l_u, and a, b, l_u, l_d");
+  EXPECT_EQ(refusal([](StudyContents& c) { c.stages.push_back(c.stages.back()); }), begin + "2 stages, and 3");
+  EXPECT_EQ(refusal([](StudyContents& c) { c.stages[1].optimiser = "nlopt"; }), begin + "stage 2 by ga, and by nlopt");
+  EXPECT_EQ(refusal([](StudyContents& c) {
+              c.extensions.push_back({-1, "generations", 9});
+            }),
+            begin + "2 stages, and a new limit of stage 0");
+}
 
 TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
   const Study study = read_study_toml(kStudy, "two.toml", catalogues());

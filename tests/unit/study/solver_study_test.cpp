@@ -12,6 +12,7 @@
 #include "engine/study/run_study.hpp"
 #include "engine/study/starts.hpp"
 #include "objectives/all.hpp"
+#include "tests/unit/storage/first_difference.hpp"
 
 namespace pkm::testing {
 namespace {
@@ -63,6 +64,7 @@ class SolverStudy : public ::testing::Test {
     std::string name = (std::filesystem::temp_directory_path() / "pkmopt-solver-XXXXXX").string();
     ASSERT_NE(mkdtemp(name.data()), nullptr);
     folder_ = name;
+    std::signal(SIGINT, SIG_DFL);  // a script's background process ignores it
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string path(const std::string& name) const { return folder_ + "/" + name; }

@@ -201,9 +201,9 @@ TEST(CrrCruClearance, VoxelsAreThePosesThatAreClear) {
         count += map.feasible[i];
         ++(map.feasible[i] ? left : cut);
       }
-      const auto found = survey(name, p, with, {.conditioning = true, .dci = true});
+      const auto found = survey(name, p, with, {.fields = {&kConditioning, &kCouplingIndex}});
       EXPECT_EQ(found.feasible_cells, count);
-      EXPECT_EQ(static_cast<std::int64_t>(found.dci[0].size()), count);
+      EXPECT_EQ(static_cast<std::int64_t>(found.of(kCouplingIndex, 0).size()), count);
       EXPECT_NEAR(found.volume, static_cast<double>(count) * found.cell_volume, kRoundoff);
     }
   EXPECT_GT(cut, 200);
@@ -226,8 +226,8 @@ TEST(CrrCruClearance, ColumnsAndOtherModesAreRefused) {
             "mechanism quadrupteron has no column surveys under a clearance (clearance_min), because rods that meet "
             "end columns where no formula says; take workspace.method = \"voxels\"");
   EXPECT_EQ(message(under(columns, -2), {}), "accepted") << "it cuts nothing";
-  EXPECT_EQ(message(under(grid, 0), {.dci = true, .mode = "-,-,+,-"}), "accepted");
-  EXPECT_EQ(message(under(grid, 0), {.dci = true, .mode = "+,+,+,+"}),
+  EXPECT_EQ(message(under(grid, 0), {.fields = {&kCouplingIndex}, .mode = "-,-,+,-"}), "accepted");
+  EXPECT_EQ(message(under(grid, 0), {.fields = {&kCouplingIndex}, .mode = "+,+,+,+"}),
             "mechanism quadrupteron surveys a clearance (clearance_min) in the mode -,-,+,- only, so inertia is not "
             "surveyed in the mode +,+,+,+ beside it");
 }
@@ -237,7 +237,7 @@ TEST(CrrCruClearance, IsAMarginOfPosesWithDerivatives) {
   const auto margin = [](const std::string& name, const auto& p, const pkm::Pose<double>& pose) {
     using S = typename std::remove_cvref_t<decltype(p)>::value_type;
     std::vector<S> margins;
-    append_pose_margins<S>(mechanism(name), p, limit_spec(0, 0, 0.003), {&pose, 1}, margins);
+    mechanism(name).pose_margins()->append(p, limit_spec(0, 0, 0.003), {&pose, 1}, margins);
     EXPECT_EQ(margins.size(), 18u);
     return margins.back();
   };

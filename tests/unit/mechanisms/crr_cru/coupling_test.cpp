@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/statistics.hpp"
-#include "engine/problem/inertia_options.hpp"
+#include "engine/problem/pose_statistic.hpp"
 #include "engine/survey/survey_set.hpp"
 #include "tests/unit/mechanisms/crr_cru/golden.hpp"
 
@@ -13,8 +13,7 @@ namespace {
 
 Demand coupling(const std::string& mode = "") {
   Demand demand;
-  demand.dci = true;
-  demand.inertia_condition = true;
+  demand.fields = {&kCouplingIndex, &kInertiaCondition};
   demand.poses = true;
   demand.mode = mode;
   return demand;
@@ -43,10 +42,10 @@ TEST(CrrCruCoupling, GoldenStatistics) {
     const auto s = survey(entry["mechanism"], nominal(), p, coupling(mode_name(mode_of(entry["sigma"]))));
     ASSERT_EQ(s.feasible_cells, entry["feasible"].get<std::int64_t>());
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(greatest(s.dci[i]), entry["max"][i].get<double>(), 1e-10);
-      EXPECT_NEAR(weighted_mean(s.weight, s.dci[i]), entry["mean"][i].get<double>(), 1e-10);
-      EXPECT_NEAR(weighted_deviation(s.weight, s.dci[i]), entry["std"][i].get<double>(), 1e-8);
-      EXPECT_NEAR(weighted_quantile(s.weight, s.dci[i], 0.95), entry["p95"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(greatest(s.of(kCouplingIndex, i)), entry["max"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(weighted_mean(s.weight, s.of(kCouplingIndex, i)), entry["mean"][i].get<double>(), 1e-10);
+      EXPECT_NEAR(weighted_deviation(s.weight, s.of(kCouplingIndex, i)), entry["std"][i].get<double>(), 1e-8);
+      EXPECT_NEAR(weighted_quantile(s.weight, s.of(kCouplingIndex, i), 0.95), entry["p95"][i].get<double>(), 1e-10);
     }
   }
 }
@@ -65,8 +64,9 @@ TEST(CrrCruCoupling, SamplesEqualTheEquationsOfMotion) {
         for (std::size_t k = 0; k < s.weight.size(); k += 7) {
           const Matrix<double, 4, 4> M = reference(name, p, s.pose[k], mode);
           const Vector<double, 4> index = coupling_indices(M);
-          for (std::size_t i = 0; i < 4; ++i) ASSERT_NEAR(s.dci[i][k], index[i], 1e-10) << name << " held " << held;
-          ASSERT_NEAR(s.inertia_condition[k], inertia_condition(M), 1e-10);
+          for (std::size_t i = 0; i < 4; ++i)
+            ASSERT_NEAR(s.of(kCouplingIndex, i)[k], index[i], 1e-10) << name << " held " << held;
+          ASSERT_NEAR(s.of(kInertiaCondition)[k], inertia_condition(M), 1e-10);
         }
       }
 }
@@ -82,7 +82,8 @@ TEST(CrrCruCoupling, ColumnsAgreeWithFineVoxelsInABox) {
     for (const double weight : columns.weight) sum += weight;
     EXPECT_NEAR(sum / columns.volume, 1, 1e-3);  // a fixed rule
     for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_NEAR(weighted_mean(columns.weight, columns.dci[i]), weighted_mean(coarse.weight, coarse.dci[i]), 2e-3);
+      EXPECT_NEAR(weighted_mean(columns.weight, columns.of(kCouplingIndex, i)),
+                  weighted_mean(coarse.weight, coarse.of(kCouplingIndex, i)), 2e-3);
   }
 }
 
@@ -98,9 +99,10 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
       const auto surveyor = prepare_survey(mechanism(name), region, coupling());
       const std::array<std::size_t, 4> by = {kL11, kL42, kL, kRodMass + 3};
       const auto statistics = [](const auto& s) {
-        const auto worst = coupling_of(s, "worst");
+        Scratch scratch;
+        const auto worst = field_of(s, kCouplingIndex, "worst", scratch);
         return std::array{weighted_mean(s.weight, worst), weighted_deviation(s.weight, worst),
-                          soft_greatest(s.weight, worst, 100), weighted_mean(s.weight, s.inertia_condition)};
+                          soft_greatest(s.weight, worst, 100), weighted_mean(s.weight, s.of(kInertiaCondition))};
       };
       std::vector<Dual4> dual(p.begin(), p.end());
       for (std::size_t k = 0; k < 4; ++k) dual[by[k]].v[static_cast<int>(k)] = 1;
@@ -136,7 +138,7 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
 
 TEST(CrrCruCoupling, TheFourthIndexIsTheSameEverywhereAtPhiZero) {
   const auto s = survey("3crr-r-cru", nominal(), voxels(3, 0, {12, 12, 12}), coupling());
-  for (const double index : s.dci[3]) ASSERT_NEAR(index, 0.029011448, 2e-9);
+  for (const double index : s.of(kCouplingIndex, 3)) ASSERT_NEAR(index, 0.029011448, 2e-9);
 }
 
 }  // namespace

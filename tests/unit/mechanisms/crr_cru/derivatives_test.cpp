@@ -94,7 +94,9 @@ Agreement compare(const std::vector<Case>& cases, const Demand& demand, double t
 }
 
 const auto kVolume = [](const auto& survey) { return survey.volume; };
-const auto kConditioning = [](const auto& survey) { return weighted_mean(survey.weight, survey.conditioning); };
+const auto kMeanConditioning = [](const auto& survey) {
+  return weighted_mean(survey.weight, survey.of(kConditioning));
+};
 
 TEST(CrrCruDerivatives, OfTheVolumeEqualDifferences) {
   const Agreement found = compare(random_cases(96, 1, 1e-13), {}, kTolerance, kVolume);
@@ -104,8 +106,8 @@ TEST(CrrCruDerivatives, OfTheVolumeEqualDifferences) {
 
 TEST(CrrCruDerivatives, OfTheMeanConditioningEqualDifferences) {
   Demand demand;
-  demand.conditioning = true;
-  const Agreement found = compare(random_cases(48, 2, 1e-12), demand, kTolerance, kConditioning);
+  demand.add(kConditioning);
+  const Agreement found = compare(random_cases(48, 2, 1e-12), demand, kTolerance, kMeanConditioning);
   EXPECT_GT(found.compared, 500);
   EXPECT_LT(found.excluded, found.compared / 20);
 }

@@ -1,8 +1,8 @@
 // (3CRR/R)&CRU and Quadrupteron: forms of the equations of motion that must agree, and laws that they must obey.
 #include <gtest/gtest.h>
 
-#include "engine/dynamics/coriolis.hpp"
 #include "engine/dynamics/coupling.hpp"
+#include "tests/unit/dynamics/coriolis.hpp"
 #include "tests/unit/mechanisms/crr_cru/states.hpp"
 
 namespace pkm::testing::crr {

@@ -89,6 +89,10 @@ TEST(CrrCruKinematics, ForwardAfterInverseIsThePoseInAllWorkingModes) {
   EXPECT_GT(compared, 5000);
 }
 
+Eigen::Matrix4d jacobian(const std::array<Arm<double>, 4>& arm) {
+  return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(influence(arm).G.m.data());
+}
+
 TEST(CrrCruKinematics, JacobianIsTheDerivativeOfTheSlides) {
   for_random_poses(500, 3, [](const std::string& name, const auto& p, const Pose<double>& pose) {
     std::vector<Dual4> fixed(p.begin(), p.end());

@@ -79,7 +79,7 @@ TEST(CrrCruMotion, GoldenHandlingCycle) {
     expect_close(s.peak_force, entry["peak_force"], "peak force");
     expect_close(s.rms_force, entry["rms_force"], "RMS force");
     expect_close(s.peak_power, entry["peak_power"], "peak power");
-    expect_close(s.peak_speed, entry["peak_speed"], "peak speed");
+    expect_close(*s.peak_speed, entry["peak_speed"], "peak speed");
     const double power = entry["peak_total_power"];
     EXPECT_NEAR(s.peak_total_power, power, kAccuracy * power);
     EXPECT_NEAR(s.least_total_power, entry["min_total_power"].get<double>(), kAccuracy * power);

@@ -4,6 +4,7 @@
 #include "engine/mechanisms/crr_cru/bodies.hpp"
 #include "engine/mechanisms/crr_cru/dynamics.hpp"
 #include "engine/mechanisms/crr_cru/margins.hpp"
+#include "tests/unit/dynamics/square_closure.hpp"
 #include "tests/unit/mechanisms/crr_cru/golden.hpp"
 
 namespace pkm::testing::crr {
@@ -48,9 +49,28 @@ inline NewtonEuler newton_euler_of(const std::string& name, const State& s) {
   return newton_euler(m.g, m.b, m.limbs, s.motion, s.acceleration, s.wrench);
 }
 
+/// The forces in the joints with those couples of C_1 to C_4 set to zero that leave as many unknowns as equations.
+inline Eigen::VectorXd square_closure(const NewtonEuler& system) {
+  const bool jointed = system.joints.back().name == "t1";
+  return pkm::test::square_closure(system, [jointed](const Joint& joint, std::size_t couple) {
+    using Axes = std::vector<std::size_t>;
+    static const std::array<Axes, 4> decoupled = {Axes{}, {2}, {0, 1}, {0}}, quadrupteron = {Axes{1}, {0}, {}, {0}};
+    return joint.name[0] == 'c' &&
+           std::ranges::any_of((jointed ? decoupled : quadrupteron)[static_cast<std::size_t>(joint.name[1] - '1')],
+                               [&](std::size_t axis) { return joint.couples[couple][axis] == 1; });
+  });
+}
+
 inline PoseDynamics<double> dynamics_of(const std::string& name, const State& s) {
   const Model m = model_of(name, s);
   return pose_dynamics(m.g, m.b, s.motion, s.mode);
+}
+
+/// The plain test of one pose, but for clearance.
+inline bool keeps_limits(const Design<double>& d, const Pose<double>& pose) {
+  bool keeps = true;
+  state_margins(d, pose, [&keeps](std::size_t, double margin) { keeps = keeps && margin >= 0; });
+  return keeps;
 }
 
 /// A pose of the design with the document's default margins, rates to 1.5 m/s and 4 rad/s, accelerations to 15 m/s^2

@@ -6,9 +6,9 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/crr_cru/columns.hpp"
-#include "engine/mechanisms/crr_cru/margins.hpp"
 #include "engine/mechanisms/crr_cru/voxels.hpp"
-#include "tests/unit/mechanisms/crr_cru/golden.hpp"
+#include "tests/unit/mechanisms/crr_cru/states.hpp"
+#include "tests/unit/mechanisms/plain_loop.hpp"
 
 namespace pkm::testing::crr {
 namespace {
@@ -280,7 +280,7 @@ TEST(CrrCruColumns, FixedNodesConvergeToTheTolerance) {
 
 TEST(CrrCruConditioning, IsOneNumberPerYawAndSamplesAddUp) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   for (const Case& c : random_cases(32, 9)) {
     SCOPED_TRACE(text(c));
     const auto exact = survey(c.name, c.p, columns(c), demand),
@@ -290,16 +290,16 @@ TEST(CrrCruConditioning, IsOneNumberPerYawAndSamplesAddUp) {
       double sum = 0;
       for (const double w : s->weight) sum += w;
       EXPECT_NEAR(sum, s->volume, 1e-5 * s->volume);
-      ASSERT_EQ(s->weight.size(), s->conditioning.size());
+      ASSERT_EQ(s->weight.size(), s->of(kConditioning).size());
     }
-    const double mean = weighted_mean(exact.weight, exact.conditioning);
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.conditioning), mean, 5e-3);
+    const double mean = weighted_mean(exact.weight, exact.of(kConditioning));
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)), mean, 5e-3);
     if (c.held != 3) continue;
     const PoseReport r = mechanism(c.name).inspect(c.p, {0.2, 0.2, 0.2, c.value}, "-,-,+,-", c.limits);
     EXPECT_NEAR(mean, *r.conditioning, 1e-14);
     Demand longer = demand;
     longer.characteristic_length = 10;
-    EXPECT_LT(survey(c.name, c.p, columns(c), longer).conditioning[0], mean);
+    EXPECT_LT(survey(c.name, c.p, columns(c), longer).of(kConditioning)[0], mean);
   }
 }
 

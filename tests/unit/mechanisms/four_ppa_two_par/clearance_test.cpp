@@ -10,9 +10,10 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
-#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
+#include "tests/unit/mechanisms/four_ppa_two_par/plain_pose.hpp"
+#include "tests/unit/mechanisms/plain_loop.hpp"
 
 namespace pkm::testing {
 namespace {
@@ -384,7 +385,7 @@ TEST(FourPpaClearance, VoxelsEqualThePlainLoop) {
     summarise(grid, plain, expected);
     const VoxelMap map = voxel_map(four_ppa(), c.p, plan);
     Demand demand;
-    demand.conditioning = true;
+    demand.add(kConditioning);
     const auto found = survey(c.p, plan, demand);
     EXPECT_EQ(map.feasible, plain.feasible) << i;
     EXPECT_EQ(found.feasible_cells, expected.feasible_cells) << i;
@@ -392,7 +393,7 @@ TEST(FourPpaClearance, VoxelsEqualThePlainLoop) {
     double counted = 0;  // a sample may stand for its mirror images too
     for (const double w : found.weight) counted += w / found.cell_volume;
     EXPECT_NEAR(counted, static_cast<double>(expected.feasible_cells), 1e-6) << i;
-    EXPECT_EQ(found.weight.size(), found.conditioning.size()) << i;
+    EXPECT_EQ(found.weight.size(), found.of(kConditioning).size()) << i;
     auto without = plan;
     without.limits = no_limits_of_four_ppa();
     total += found.feasible_cells;
@@ -404,7 +405,7 @@ TEST(FourPpaClearance, VoxelsEqualThePlainLoop) {
 
 TEST(FourPpaClearance, SlidersAloneAreABoundOfTheirSpacing) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   for (const double least : {0.0, 0.02}) {
     LimitSpec equal = no_limits_of_four_ppa();
     equal.given[kHMin] = 0.03 + 0.08 / 2 + least / 2;
@@ -414,7 +415,7 @@ TEST(FourPpaClearance, SlidersAloneAreABoundOfTheirSpacing) {
       EXPECT_EQ(found.volume, expected.volume);
       EXPECT_EQ(found.error, expected.error);
       EXPECT_EQ(found.weight, expected.weight);
-      EXPECT_EQ(found.conditioning, expected.conditioning);
+      EXPECT_EQ(found.of(kConditioning), expected.of(kConditioning));
       EXPECT_LT(found.volume, survey(nominal(), columns(no_limits_of_four_ppa(), held)).volume);
     }
     EXPECT_EQ(survey(nominal(), voxels(clearance(least), {32, 34, 60})).feasible_cells,
@@ -512,7 +513,7 @@ TEST(FourPpaClearance, IntegratedOverYEqualsTheSumOverPlanes) {
 
 TEST(FourPpaClearance, ConditioningIsThatOfTheClearPoses) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   for (const Exotic& e : {exotics()[0], exotics()[1]}) {
     const auto p = with(e.changes);
     const auto exact = survey(p, columns(clearance(e.least), in_the_middle(), 1e-2), demand);
@@ -520,13 +521,14 @@ TEST(FourPpaClearance, ConditioningIsThatOfTheClearPoses) {
     for (const double w : exact.weight) sum += w;
     EXPECT_NEAR(sum, exact.volume, 0.04 * exact.volume);  // kinks that no node knows of
     const auto cells = survey(p, voxels(clearance(e.least), {80, 80, 80}), demand);
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.conditioning), weighted_mean(exact.weight, exact.conditioning), 5e-3);
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)),
+                weighted_mean(exact.weight, exact.of(kConditioning)), 5e-3);
   }
 }
 
 TEST(FourPpaClearance, NothingIsLeftWhereAPairIsTooNearAtEveryPose) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   for (const double least : {0.05, 0.19, 100.0})
     for (const HeldCoordinate& held : {in_the_middle(), over_y(10)}) {
       const SurveyPlan cells = voxels(clearance(least), {10, 10, 10}, held);

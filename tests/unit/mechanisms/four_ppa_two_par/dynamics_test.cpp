@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "engine/dynamics/coupling.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/coupling.hpp"
 #include "tests/unit/contracts/slopes.hpp"
@@ -286,7 +287,7 @@ TEST(FourPpaDynamics, LinksWithoutMassAreRefused) {
   auto p = nominal();
   p[kLambdaU] = 0;  // no survey of inertia, no question of masses
   EXPECT_GT(survey(p, columns(no_limits(four_ppa().info()))).volume, 0);
-  EXPECT_THROW(survey(p, columns(no_limits(four_ppa().info())), {.dci = true}), std::domain_error);
+  EXPECT_THROW(survey(p, columns(no_limits(four_ppa().info())), {.fields = {&kCouplingIndex}}), std::domain_error);
 }
 
 // --- surveys of coupling
@@ -309,14 +310,20 @@ TEST(FourPpaCoupling, KernelEqualsTheEquationsOfMotion) {
   EXPECT_EQ(compared, 200);
 }
 
+const Demand kAll{.fields = {&kConditioning, &kCouplingIndex, &kInertiaCondition}, .poses = true};
+
 TEST(FourPpaCoupling, WhereInertiaHasNoValueTheWorstIsTaken) {
   auto M = Matrix<double, 4, 4>::identity();
-  EXPECT_EQ(coupling(M, true).dci[0], 0);
-  EXPECT_EQ(coupling(M, true).condition, 1);
+  const auto values = [&M] {
+    Survey<double> survey;
+    survey.clear(kAll.fields);
+    add_inertia(M, survey);
+    return std::array{survey.of(kCouplingIndex)[0], survey.of(kInertiaCondition)[0]};
+  };
+  EXPECT_EQ(values(), (std::array{0.0, 1.0}));
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     M(2, 1) = M(1, 2) = bad;
-    EXPECT_EQ(coupling(M, true).dci[0], 1);
-    EXPECT_EQ(coupling(M, true).condition, 0);
+    EXPECT_EQ(values(), (std::array{1.0, 0.0}));
   }
 }
 
@@ -335,12 +342,10 @@ LimitSpec away() {
   return spec;
 }
 
-const Demand kAll{.conditioning = true, .poses = true, .dci = true, .inertia_condition = true};
-
 void expect_lengths(const Survey<double>& s) {
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.dci[i].size(), s.weight.size());
-  EXPECT_EQ(s.inertia_condition.size(), s.weight.size());
-  EXPECT_EQ(s.conditioning.size(), s.weight.size());
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.of(kCouplingIndex, i).size(), s.weight.size());
+  EXPECT_EQ(s.of(kInertiaCondition).size(), s.weight.size());
+  EXPECT_EQ(s.of(kConditioning).size(), s.weight.size());
   EXPECT_EQ(s.pose.size(), s.weight.size());
 }
 
@@ -351,11 +356,11 @@ void expect_poses(const std::vector<double>& p, const Survey<double>& s, const L
     const pkm::Pose<double>& at = s.pose[k];
     const auto M = joint_inertia(dynamics(p, fixed<4>(at), {}, 0));
     const AxisVector<double> index = coupling_indices(M);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(s.dci[i][k], index[i], 1e-8);
-    EXPECT_NEAR(s.inertia_condition[k], inertia_condition(M), 1e-8);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(s.of(kCouplingIndex, i)[k], index[i], 1e-8);
+    EXPECT_NEAR(s.of(kInertiaCondition)[k], inertia_condition(M), 1e-8);
     const PoseReport report = four_ppa().inspect(p, at, "lower,lower", limits);
     EXPECT_TRUE(report.feasible) << report.reason;
-    EXPECT_NEAR(s.conditioning[k], *report.conditioning, 1e-8);
+    EXPECT_NEAR(s.of(kConditioning)[k], *report.conditioning, 1e-8);
   }
 }
 
@@ -363,9 +368,11 @@ void expect_alike(const Survey<double>& exact, const Survey<double>& cells, doub
   expect_lengths(exact);
   expect_lengths(cells);
   for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.dci[i]), weighted_mean(exact.weight, exact.dci[i]), accuracy) << i;
-  EXPECT_NEAR(weighted_mean(cells.weight, cells.inertia_condition),
-              weighted_mean(exact.weight, exact.inertia_condition), accuracy);
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kCouplingIndex, i)),
+                weighted_mean(exact.weight, exact.of(kCouplingIndex, i)), accuracy)
+        << i;
+  EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kInertiaCondition)),
+              weighted_mean(exact.weight, exact.of(kInertiaCondition)), accuracy);
 }
 
 TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
@@ -379,7 +386,9 @@ TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
     EXPECT_NEAR(sum, exact.volume, 1e-4 * exact.volume);
     expect_poses(p, exact, away());
     // the joints do differ, so the comparison tells them apart
-    EXPECT_GT(std::fabs(weighted_mean(exact.weight, exact.dci[0]) - weighted_mean(exact.weight, exact.dci[2])), 0.006);
+    EXPECT_GT(std::fabs(weighted_mean(exact.weight, exact.of(kCouplingIndex, 0)) -
+                        weighted_mean(exact.weight, exact.of(kCouplingIndex, 2))),
+              0.006);
   }
 }
 
@@ -410,8 +419,9 @@ TEST(FourPpaCoupling, ASampleIsWhatThePoseHas) {
         const auto M = joint_inertia(dynamics(p, {{centre(0, i, 9), 1.25, centre(1, j, 10), centre(2, k, 11)}}, {}, 0));
         const AxisVector<double> index = coupling_indices(M);
         ASSERT_LT(sample, found.weight.size());
-        for (std::size_t joint = 0; joint < 4; ++joint) EXPECT_NEAR(found.dci[joint][sample], index[joint], 1e-9);
-        EXPECT_NEAR(found.inertia_condition[sample], inertia_condition(M), 1e-9);
+        for (std::size_t joint = 0; joint < 4; ++joint)
+          EXPECT_NEAR(found.of(kCouplingIndex, joint)[sample], index[joint], 1e-9);
+        EXPECT_NEAR(found.of(kInertiaCondition)[sample], inertia_condition(M), 1e-9);
         EXPECT_NEAR(found.pose[sample][3], centre(2, k, 11), 1e-12);
         ++sample;
       }
@@ -421,22 +431,24 @@ TEST(FourPpaCoupling, ASampleIsWhatThePoseHas) {
 
 TEST(FourPpaCoupling, OnlyWhatIsDemandedAndTheSameConditioning) {
   const auto plan = columns(away());
-  const auto plain = survey(nominal(), plan, {.conditioning = true}), all = survey(nominal(), plan, kAll),
-             indices = survey(nominal(), plan, {.dci = true});
-  EXPECT_TRUE(plain.dci[0].empty() && plain.inertia_condition.empty());
-  EXPECT_TRUE(indices.conditioning.empty() && indices.inertia_condition.empty());
-  EXPECT_EQ(indices.dci[3], all.dci[3]);
-  EXPECT_NEAR(weighted_mean(all.weight, all.conditioning), weighted_mean(plain.weight, plain.conditioning), 1e-12);
+  const auto plain = survey(nominal(), plan, {.fields = {&kConditioning}}), all = survey(nominal(), plan, kAll),
+             indices = survey(nominal(), plan, {.fields = {&kCouplingIndex}});
+  EXPECT_TRUE(plain.of(kCouplingIndex, 0).empty() && plain.of(kInertiaCondition).empty());
+  EXPECT_TRUE(indices.of(kConditioning).empty() && indices.of(kInertiaCondition).empty());
+  EXPECT_EQ(indices.of(kCouplingIndex, 3), all.of(kCouplingIndex, 3));
+  EXPECT_NEAR(weighted_mean(all.weight, all.of(kConditioning)), weighted_mean(plain.weight, plain.of(kConditioning)),
+              1e-12);
   // Without an uneven payload the joints change places under mirroring, and have the same mean.
   for (std::size_t i = 1; i < 4; ++i)
-    EXPECT_NEAR(weighted_mean(all.weight, all.dci[i]), weighted_mean(all.weight, all.dci[0]), 1e-12);
+    EXPECT_NEAR(weighted_mean(all.weight, all.of(kCouplingIndex, i)),
+                weighted_mean(all.weight, all.of(kCouplingIndex, 0)), 1e-12);
 }
 
 TEST(FourPpaCoupling, AnotherModeIsRefused) {
   const auto plan = columns(away());
-  EXPECT_NO_THROW(prepare_survey(four_ppa(), plan, {.dci = true, .mode = "lower,lower"}));
+  EXPECT_NO_THROW(prepare_survey(four_ppa(), plan, {.fields = {&kCouplingIndex}, .mode = "lower,lower"}));
   try {
-    prepare_survey(four_ppa(), plan, {.inertia_condition = true, .mode = "upper,upper"});
+    prepare_survey(four_ppa(), plan, {.fields = {&kInertiaCondition}, .mode = "upper,upper"});
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
@@ -465,8 +477,8 @@ TEST(FourPpaCoupling, DerivativesOfMeansEqualDifferences) {
       Survey<Dual4> found;
       survey_once<Dual4>(*surveyor, p, found);
       std::vector<Dual4> all;
-      for (std::size_t i = 0; i < 4; ++i) all.push_back(weighted_mean(found.weight, found.dci[i]));
-      all.push_back(weighted_mean(found.weight, found.inertia_condition));
+      for (std::size_t i = 0; i < 4; ++i) all.push_back(weighted_mean(found.weight, found.of(kCouplingIndex, i)));
+      all.push_back(weighted_mean(found.weight, found.of(kInertiaCondition)));
       return all;
     };
     const auto here = means(0);

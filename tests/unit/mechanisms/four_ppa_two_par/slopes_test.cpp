@@ -123,7 +123,7 @@ TEST(FourPpaSlopes, VolumesIntegratedOverY) { compare(60, HeldCoordinate::Kind::
 /// their mean conditioning as closely as the kinks allow.
 TEST(FourPpaSlopes, SamplesIntegratedOverY) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   int compared = 0;
   for (unsigned k = 0; compared < 3 && k < 10; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
@@ -140,7 +140,7 @@ TEST(FourPpaSlopes, SamplesIntegratedOverY) {
       survey_once<Dual4>(*surveyor, p, survey);
       Dual4 total;
       for (const Dual4& weight : survey.weight) total += weight;
-      return std::array{survey.volume, total, weighted_mean(survey.weight, survey.conditioning)};
+      return std::array{survey.volume, total, weighted_mean(survey.weight, survey.of(kConditioning))};
     };
     const auto here = sums(0);
     if (!(here[0].a > 1e-4)) continue;

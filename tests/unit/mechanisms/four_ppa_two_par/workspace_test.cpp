@@ -6,9 +6,10 @@
 
 #include "engine/math/statistics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/columns.hpp"
-#include "engine/mechanisms/four_ppa_two_par/inspect.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
+#include "tests/unit/mechanisms/four_ppa_two_par/plain_pose.hpp"
+#include "tests/unit/mechanisms/plain_loop.hpp"
 
 namespace pkm::testing {
 namespace {
@@ -338,7 +339,7 @@ TEST(FourPpaConditioning, SamplesAddUpAndVoxelsConvergeToThem) {
   for (const Case& c : random_cases(12, 9)) {
     const HeldCoordinate held = at_y(c.y);
     Demand demand;
-    demand.conditioning = true;
+    demand.add(kConditioning);
     const auto exact = survey(c.p, columns(c.limits, held), demand);
     double sum = 0;
     for (const double w : exact.weight) sum += w;
@@ -348,8 +349,9 @@ TEST(FourPpaConditioning, SamplesAddUpAndVoxelsConvergeToThem) {
     double counted = 0;  // a sample stands for its mirror images too
     for (const double w : cells.weight) counted += w / cells.cell_volume;
     EXPECT_NEAR(counted, static_cast<double>(cells.feasible_cells), 1e-6);
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.conditioning), weighted_mean(exact.weight, exact.conditioning), 3e-3);
-    for (const double value : exact.conditioning) ASSERT_TRUE(value >= 0 && value <= 1);
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)),
+                weighted_mean(exact.weight, exact.of(kConditioning)), 3e-3);
+    for (const double value : exact.of(kConditioning)) ASSERT_TRUE(value >= 0 && value <= 1);
   }
 }
 

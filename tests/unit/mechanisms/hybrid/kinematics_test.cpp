@@ -145,7 +145,7 @@ TEST(HybridKinematics, PosesAcrossSingularitiesAreFinite) {
     for (const WorkingMode& mode : all_signs()) {
       const Joints<double> j = inverse(g, pose, mode);
       for (const double s : j.s) EXPECT_TRUE(std::isfinite(s));
-      for (const double margin : margins(g, limits(std::span<const double>(p), none), pose, j, 1))
+      for (const double margin : margins(g, limits(std::span<const double>(p), none), pose, mode, 1))
         EXPECT_TRUE(std::isfinite(margin));
       const PoseReport report = mechanism().inspect(p, pose, mode_name(mode), none);
       EXPECT_EQ(report.assembles, j.assembles());
@@ -184,7 +184,7 @@ TEST(HybridKinematics, MarginsWithDerivativesHaveTheSameBitsAndTheSlopesOfDiffer
     };
     std::vector<Dual4> q(p.begin(), p.end()), found;
     q[varied] = Dual4::variable(p[varied], 0);
-    mechanism().derivatives()->pose_margins(q, none, {&at, 1}, found);
+    mechanism().pose_margins()->append(q, none, {&at, 1}, found);
     const auto plain = margins_at(p);
     ASSERT_EQ(found.size(), plain.size());
     auto lower = p, upper = p;

@@ -10,6 +10,8 @@
 #include "engine/mechanisms/hybrid/voxels.hpp"
 #include "engine/survey/survey_set.hpp"
 #include "tests/unit/mechanisms/hybrid/golden.hpp"
+#include "tests/unit/mechanisms/hybrid/plain_pose.hpp"
+#include "tests/unit/mechanisms/plain_loop.hpp"
 
 namespace pkm::testing::hybrid {
 namespace {
@@ -29,8 +31,9 @@ SurveyPlan voxels_plan(std::array<std::int64_t, 3> cells) {
 
 std::unique_ptr<const Surveyor> surveyor_of(const WorkingMode& mode, int branch, const SurveyPlan& plan,
                                             const Demand& demand = {}) {
-  if (const VoxelOptions* const voxels = plan.voxels()) return make_voxel_surveyor(mode, branch, plan, *voxels, demand);
-  return make_column_surveyor(mode, branch, plan, *plan.columns(), demand);
+  const Planned planned{mode, branch, plan, demand};
+  if (const VoxelOptions* const voxels = plan.voxels()) return make_surveyor(planned, *voxels);
+  return make_surveyor(planned, *plan.columns());
 }
 
 template <class S>
@@ -134,7 +137,7 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
     const std::vector<double> p = design_of(entry);
     const WorkingMode mode = mode_of(entry["wm"]);
     Demand demand;
-    demand.conditioning = true;
+    demand.add(kConditioning);
     for (const auto& grid : entry["grids"]) {
       SCOPED_TRACE(entry["design"].dump() + " " + grid.dump());
       SurveyPlan voxels = voxels_plan({grid["shape"][0], grid["shape"][1], grid["shape"][2]});
@@ -142,7 +145,7 @@ TEST(HybridVoxels, CountsAndIndicesAreTheGoldenOnes) {
       const auto found = survey(p, mode, voxels, demand);
       EXPECT_EQ(found.feasible_cells, grid["count"].get<std::int64_t>());
       EXPECT_NEAR(found.volume, grid["volume"].get<double>(), 1e-12 * found.volume);
-      EXPECT_NEAR(weighted_mean(found.weight, found.conditioning), grid["gci"].get<double>(), 1e-12);
+      EXPECT_NEAR(weighted_mean(found.weight, found.of(kConditioning)), grid["gci"].get<double>(), 1e-12);
     }
     const Box box = default_box({frame_of(p, mode)});
     for (std::size_t i = 0; i < 3; ++i)
@@ -203,7 +206,7 @@ TEST(HybridColumns, OfXHoldThePosesWhoseMarginsDo) {
       for (int i = 0; i < 400; ++i) {
         const SchoenfliesPose<double> pose{uniform(-0.15, 0.15), 0.5 * (f.l.s_min[1] + f.l.s_max[1]),
                                            uniform(0.15, 0.3), uniform(-0.7, 0.7)};
-        const Margins<double> m = margins(f.g, f.l, pose, inverse(f.g, pose, f.signs), branch);
+        const Margins<double> m = margins(f.g, f.l, pose, f.signs, branch);
         const auto holds = [&](std::size_t count) {
           return std::all_of(m.begin(), m.begin() + count, [](double margin) { return margin >= 0; });
         };
@@ -235,7 +238,7 @@ TEST(HybridVoxels, CountsFromColumnsEqualThePlainLoop) {
         const auto found = survey(c.p, c.mode, voxels);
         EXPECT_EQ(found.feasible_cells, expected.feasible_cells);
         EXPECT_EQ(found.touches_box, expected.touches_box);
-        EXPECT_EQ(pkm::hybrid::voxel_map(c.mode, 1, c.p, voxels, *voxels.voxels()).feasible, plain.feasible);
+        EXPECT_EQ(make_surveyor({c.mode, 1, voxels, {}}, *voxels.voxels())->map(c.p).feasible, plain.feasible);
         (with_links ? clear : total) += found.feasible_cells;
       }
     }
@@ -295,7 +298,7 @@ TEST(HybridColumns, ToleranceIsKept) {
 
 TEST(HybridColumns, SamplesAddUpAndHaveTheMeanOfTheVoxels) {
   Demand demand;
-  demand.conditioning = true;
+  demand.add(kConditioning);
   for (const Case& c : random_cases(18, 5)) {
     const auto exact = survey(c.p, c.mode, columns_plan(), demand),
                cells = survey(c.p, c.mode, voxels_plan({40, 60, 60}), demand);
@@ -303,7 +306,8 @@ TEST(HybridColumns, SamplesAddUpAndHaveTheMeanOfTheVoxels) {
     double sum = 0;
     for (const double w : exact.weight) sum += w;
     EXPECT_NEAR(sum / exact.volume, 1, 1e-5);  // 8 nodes along strips
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.conditioning), weighted_mean(exact.weight, exact.conditioning), 2e-3);
+    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kConditioning)),
+                weighted_mean(exact.weight, exact.of(kConditioning)), 2e-3);
   }
 }
 

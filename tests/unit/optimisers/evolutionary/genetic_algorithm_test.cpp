@@ -136,7 +136,7 @@ TEST(GeneticAlgorithm, AMoreDistantLimitOnlyContinues) {
     const Outcome shorter = run(*make(entry("ga"), problem, changes), problem);
     ASSERT_LT(shorter.table.size(), longer.table.size());
     EXPECT_TRUE(std::equal(shorter.table.designs.begin(), shorter.table.designs.end(), longer.table.designs.begin()));
-    SerialEvaluator serial;
+    ParallelEvaluator serial(1);
     ReplayEvaluator replay(serial, shorter.table);
     EXPECT_TRUE(same_bits(longer, run(*make(entry("ga"), problem), problem, 1, 1 << 30, &replay)));
   }

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "engine/optimisers/evolutionary/crossover.hpp"
 #include "engine/optimisers/evolutionary/known_designs.hpp"
-#include "engine/optimisers/evolutionary/mutation.hpp"
-#include "engine/optimisers/evolutionary/selection.hpp"
+#include "engine/optimisers/evolutionary/operators.hpp"
 #include "engine/optimisers/start.hpp"
 
 namespace pkm {

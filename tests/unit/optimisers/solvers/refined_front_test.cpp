@@ -32,7 +32,7 @@ Outcome refine(const Problem& problem, const Case& c, const std::vector<std::vec
                                                               {"scalarisation", c.scalarisation}};
   if (!c.algorithm.empty()) changes.emplace_back("algorithm", c.algorithm);
   const auto optimiser = make(entry(c.optimiser), problem, changes);
-  SerialEvaluator serial;
+  ParallelEvaluator serial(1);
   Outcome outcome{EvaluationTable(problem.shape(optimiser->detail())), Recorder(), {}};
   StageInput input{problem, serial, outcome.recorder, 1};
   for (const auto& design : starts) input.starts.push_back({design, "given"});
@@ -140,7 +140,7 @@ TEST(RefinedFrontOf, EpsilonConstraintGainsInTheObjectiveNamed) {
                                 {{"start", std::string("pareto")},
                                  {"scalarisation", std::string("epsilon-constraint")},
                                  {"objective", std::string(name)}});
-    SerialEvaluator serial;
+    ParallelEvaluator serial(1);
     Outcome outcome{EvaluationTable(problem.shape(optimiser->detail())), Recorder(), {}};
     StageInput input{problem, serial, outcome.recorder, 1, {{kStarts[1], "given"}}, {{1, 1}, {}}};
     outcome.result = optimiser->minimise(input, outcome.table);

@@ -154,13 +154,25 @@ TEST(Solvers, AnInfeasibleProblemKeepsTheLeastViolationSeen) {
   }
 }
 
+TEST(Solvers, DoNotConvergeWhereNothingCanBeEvaluated) {
+  const FunctionProblem nowhere(box(1, -2, -1), 0, [](auto x, auto) { return sqrt(x[0]); });
+  for (const std::string optimiser : {"nlopt", "ipopt"}) {
+    const Outcome outcome = solve(optimiser, nowhere, {{"evaluations", std::int64_t{200}}}, {{-1.5}});
+    EXPECT_EQ(best_status(outcome), Status::failed);
+    EXPECT_EQ(outcome.result.starts[0].stop, "failed") << optimiser;
+    if (optimiser == "nlopt") {  // which takes it for an optimum
+      EXPECT_EQ(outcome.result.starts[0].message, "none of its designs could be evaluated");
+    }
+  }
+}
+
 /// Throws at the evaluation of row `at`.
 class Throwing final : public Evaluator {
  public:
   explicit Throwing(std::size_t at) : at_(at) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override {
     if (table.size() > at_) throw std::runtime_error("the evaluator broke");
-    SerialEvaluator().evaluate(problem, table, first);
+    ParallelEvaluator(1).evaluate(problem, table, first);
   }
 
  private:
@@ -271,6 +283,9 @@ TEST(Solvers, RefuseOptionsThatTheirLibraryDoesNotTake) {
   EXPECT_EQ(ipopt("acceptable_iter", std::int64_t{0}), "");
   EXPECT_EQ(ipopt("acceptable_iter", 0.5),
             "Ipopt's option acceptable_iter = 0.5, which must be an integer in Ipopt's range for it");
+  EXPECT_EQ(ipopt("max_soc", std::int64_t{4}), "");
+  EXPECT_EQ(ipopt("max_soc", std::int64_t{4294967300}),  // 4 in 32 bits
+            "Ipopt's option max_soc = 4294967300, which must be an integer in Ipopt's range for it");
   EXPECT_EQ(ipopt("tolerance", 1e-10), "Ipopt has no option 'tolerance'");
   EXPECT_EQ(ipopt("mu_stratgy", "adaptive"), "Ipopt has no option 'mu_stratgy'; did you mean 'mu_strategy'?");
   EXPECT_EQ(ipopt("tol", -1.0), "Ipopt's option tol = -1, which must be a number in Ipopt's range for it");
@@ -307,7 +322,7 @@ TEST(Optimality, MultipliersAreWhatRelaxingGains) {
   table.extend(1);
   table.design(0)[0] = 0;
   table.design(0)[1] = 1;
-  SerialEvaluator().evaluate(problem, table, 0);
+  ParallelEvaluator(1).evaluate(problem, table, 0);
   const Optimality found = optimality(problem, std::as_const(table).design(0), table.slope_row(0));
   EXPECT_NEAR(found.optimality, 0, 1e-14);
   ASSERT_EQ(found.margins.size(), 1u);
@@ -319,7 +334,7 @@ TEST(Optimality, MultipliersAreWhatRelaxingGains) {
 
   table.design(0)[0] = 0.5;  // inside: the gradient is left, relative to the objective
   table.design(0)[1] = 0.25;
-  SerialEvaluator().evaluate(problem, table, 0);
+  ParallelEvaluator(1).evaluate(problem, table, 0);
   EXPECT_NEAR(optimality(problem, std::as_const(table).design(0), table.slope_row(0)).optimality, 4, 1e-14);
 }
 

@@ -1,0 +1,78 @@
+#include "engine/core/printable.hpp"
+
+#include <algorithm>
+
+namespace pkm {
+namespace {
+
+struct Character {
+  char32_t code = 0;
+  std::size_t length = 0;  ///< in bytes; 0: no UTF-8
+};
+
+bool continues(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
+/// Bytes of the character that begins with this one; 0: none does.
+std::size_t length_of(char first) {
+  const auto byte = static_cast<unsigned char>(first);
+  return byte < 0x80 ? 1 : byte < 0xC2 ? 0 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : byte < 0xF5 ? 4 : 0;
+}
+
+Character first_of(std::string_view text) {
+  const std::size_t length = length_of(text[0]);
+  if (length <= 1) return {static_cast<unsigned char>(text[0]), length};
+  if (text.size() < length || !std::all_of(text.begin() + 1, text.begin() + static_cast<long>(length), continues))
+    return {};
+  char32_t code = static_cast<unsigned char>(text[0]) & (0x7FU >> length);
+  for (std::size_t i = 1; i < length; ++i) code = code << 6U | (static_cast<unsigned char>(text[i]) & 0x3FU);
+  const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+  const bool surrogate = code >= 0xD800 && code < 0xE000;
+  return overlong || surrogate || code > 0x10FFFF ? Character{} : Character{code, length};
+}
+
+bool steers(char32_t code) {
+  return code < 0x20 || (code >= 0x7F && code < 0xA0) || (code >= 0x200E && code <= 0x200F) ||
+         (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::string_view keep) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string shown;
+  shown.reserve(text.size());
+  while (!text.empty()) {
+    const Character next = first_of(text);
+    const std::size_t length = std::max<std::size_t>(1, next.length);
+    const bool kept = length == 1 && keep.find(text[0]) != std::string_view::npos;
+    if (kept || (next.length > 0 && !steers(next.code))) {
+      shown += text.substr(0, length);
+    } else {
+      for (const char c : text.substr(0, length)) {
+        const auto byte = static_cast<unsigned char>(c);
+        shown += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
+      }
+    }
+    text.remove_prefix(length);
+  }
+  return shown;
+}
+
+std::string excerpt(std::string_view text, std::size_t longest) {
+  constexpr std::string_view kGap = "...";
+  if (text.size() <= longest) return std::string(text);
+  std::size_t head = (longest - kGap.size()) * 3 / 4, tail = text.size() - (longest - kGap.size() - head);
+  while (head > 0 && continues(text[head])) --head;
+  while (tail < text.size() && continues(text[tail])) ++tail;
+  return std::string(text.substr(0, head)) + std::string(kGap) + std::string(text.substr(tail));
+}
+
+std::size_t begun_character(std::string_view text) {
+  for (std::size_t back = 1; back <= std::min<std::size_t>(3, text.size()); ++back) {
+    const char byte = text[text.size() - back];
+    if (!continues(byte)) return length_of(byte) > back ? back : 0;
+  }
+  return 0;
+}
+
+}  // namespace pkm

@@ -1,0 +1,191 @@
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "engine/math/formula_program.hpp"
+
+namespace pkm::formula {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+bool is_constant(double) { return true; }
+template <int N>
+bool is_constant(const Dual<N>& x) {
+  for (int i = 0; i < N; ++i)
+    if (x.v[i] != 0) return false;
+  return true;
+}
+bool is_constant(const Taylor& x) { return x.d == 0 && x.dd == 0; }
+
+/// The portable sine and cosine reduce angles up to 1e5 rad.
+template <class S>
+SinCosOf<S> sine_and_cosine(const S& angle) {
+  if (!(std::fabs(value_of(angle)) <= 1e5)) return {S(kNaN), S(kNaN)};
+  return sincos(angle);
+}
+
+template <class S>
+S tangent(const S& angle) {
+  const auto [sine, cosine] = sine_and_cosine(angle);
+  return sine / cosine;
+}
+
+/// x^n by squaring: as many roundings as multiplications.
+template <class S>
+S whole_power(S x, int n) {
+  if (n < 0) return 1.0 / whole_power(x, -n);
+  S result(1.0);
+  for (bool first = true; n > 0; n /= 2, x = x * x)
+    if (n % 2) {
+      result = first ? x : result * x;
+      first = false;
+    }
+  return result;
+}
+
+template <class S>
+S power(const S& x, const S& y) {
+  const double base = value_of(x), exponent = value_of(y);
+  if (exponent == std::nearbyint(exponent) && std::fabs(exponent) <= 1024) {
+    S result = whole_power(x, static_cast<int>(exponent));
+    // An exponent that varies adds derivatives, but no value: e^0 is 1.
+    if (!is_constant(y) && base > 0) result = result * exp(S((y - exponent) * log(x)));
+    return result;
+  }
+  if (base > 0) return exp(S(y * log(x)));
+  if (base == 0 && exponent > 0) return S(0.0);
+  if (base == 0 && exponent < 0) return S(std::numeric_limits<double>::infinity());
+  return S(kNaN);
+}
+
+template <class S>
+S hyperbolic_sine(const S& x) {
+  if (std::fabs(value_of(x)) > 0.5) {
+    const S e = exp(x);
+    return (e - 1.0 / e) * 0.5;
+  }
+  // x + x^3/3! + ... + x^13/13!; e^x - e^-x would lose digits
+  const S q = x * x;
+  S sum = q * (1.0 / 156) + 1.0;
+  for (const double inverse : {1.0 / 110, 1.0 / 72, 1.0 / 42, 1.0 / 20, 1.0 / 6}) sum = q * inverse * sum + 1.0;
+  return x * sum;
+}
+
+template <class S>
+S hyperbolic_cosine(const S& x) {
+  const S e = exp(x);
+  return (e + 1.0 / e) * 0.5;
+}
+
+template <class S>
+S hyperbolic_tangent(const S& x) {
+  if (std::fabs(value_of(x)) <= 0.5) return hyperbolic_sine(x) / hyperbolic_cosine(x);
+  if (value_of(x) < 0) return -hyperbolic_tangent(S(-x));
+  return 1.0 - 2.0 / (exp(S(x * 2.0)) + 1.0);
+}
+
+/// The least of them for Less = std::less, the greatest for std::greater; undefined where one is.
+template <class Less, class S>
+S extreme(std::span<const S> x) {
+  S best = x[0];
+  for (const S& each : x.subspan(1)) {
+    const double next = value_of(each);
+    if (Less()(next, value_of(best)) || next != next) best = each;
+    if (next != next) break;
+  }
+  return best;
+}
+
+/// F as a rule. What depends on constants alone is constant, even where the operation has no slope (sqrt at 0).
+template <std::size_t arguments, class F, class S>
+S rule(const S* x, std::size_t count) {
+  if constexpr (!std::is_same_v<S, double>)
+    if (count <= 2 && is_constant(x[0]) && is_constant(x[count - 1])) {
+      const double values[2] = {value_of(x[0]), value_of(x[count - 1])};
+      return S(rule<arguments, F>(values, count));
+    }
+  if constexpr (arguments == 0) return F()(std::span<const S>(x, count));
+  if constexpr (arguments == 1) return F()(x[0]);
+  if constexpr (arguments == 2) return F()(x[0], x[1]);
+}
+
+template <std::size_t arguments, class F>
+Operation operation(std::string name, F, int rank = 0) {
+  return {std::move(name),
+          arguments,
+          {rule<arguments, F, double>, rule<arguments, F, Dual4>, rule<arguments, F, Taylor>},
+          rank};
+}
+
+/// A question about two values: 1 or 0; NaN when something undefined was asked for.
+template <class F>
+Operation question(std::string name, F, int rank) {
+  const auto truth = [](const auto& x, const auto& y) {
+    const double a = value_of(x), b = value_of(y);
+    return a == a && b == b ? (F()(a, b) ? 1.0 : 0.0) : kNaN;
+  };
+  return operation<2>(std::move(name), truth, rank);
+}
+
+}  // namespace
+
+const std::vector<Operation>& functions() {
+  static const std::vector<Operation> list = {
+      operation<1>("sin", [](const auto& x) { return sine_and_cosine(x).sin; }),
+      operation<1>("cos", [](const auto& x) { return sine_and_cosine(x).cos; }),
+      operation<1>("tan", [](const auto& x) { return tangent(x); }),
+      operation<1>("asin", [](const auto& x) { return asin(x); }),
+      operation<1>("acos", [](const auto& x) { return acos(x); }),
+      operation<1>("atan", []<class S>(const S& x) { return atan2(x, S(1.0)); }),
+      operation<2>("atan2", [](const auto& y, const auto& x) { return atan2(y, x); }),
+      operation<1>("sinh", [](const auto& x) { return hyperbolic_sine(x); }),
+      operation<1>("cosh", [](const auto& x) { return hyperbolic_cosine(x); }),
+      operation<1>("tanh", [](const auto& x) { return hyperbolic_tangent(x); }),
+      operation<1>("exp", [](const auto& x) { return exp(x); }),
+      operation<1>("log", [](const auto& x) { return log(x); }),
+      operation<1>("log10", [](const auto& x) { return log(x) / 2.302585092994045684; }),
+      operation<1>("sqrt", [](const auto& x) { return sqrt(x); }),
+      operation<1>("abs", [](const auto& x) { return magnitude(x); }),
+      operation<1>("sign",
+                   [](const auto& x) {
+                     const double a = value_of(x);
+                     return a > 0 ? 1.0 : a < 0 ? -1.0 : a;
+                   }),
+      operation<0>("min", [](const auto& x) { return extreme<std::less<>>(x); }),
+      operation<0>("max", [](const auto& x) { return extreme<std::greater<>>(x); }),
+  };
+  return list;
+}
+
+const std::vector<Operation>& operators() {
+  static const std::vector<Operation> list = {
+      question(
+          "||", [](double a, double b) { return a != 0 || b != 0; }, 1),
+      question(
+          "&&", [](double a, double b) { return a != 0 && b != 0; }, 2),
+      question("<", std::less<>(), 4),
+      question("<=", std::less_equal<>(), 4),
+      question(">", std::greater<>(), 4),
+      question(">=", std::greater_equal<>(), 4),
+      question("==", std::equal_to<>(), 4),
+      question("!=", std::not_equal_to<>(), 4),
+      operation<2>("+", std::plus<>(), 5),
+      operation<2>("-", std::minus<>(), 5),
+      operation<2>("*", std::multiplies<>(), 6),
+      operation<2>("/", std::divides<>(), 6),
+      operation<2>(
+          "^", [](const auto& x, const auto& y) { return power(x, y); }, 7),
+  };
+  return list;
+}
+
+const Operation& negation() {
+  static const Operation sign = operation<1>("-", std::negate<>(), 6);
+  return sign;
+}
+
+}  // namespace pkm::formula

@@ -1,0 +1,69 @@
+#include "engine/report/design_table.hpp"
+
+#include <algorithm>
+
+namespace pkm {
+namespace {
+
+std::vector<DesignTable::Column> columns(const StudyContents& contents) {
+  if (!contents.final || !contents.final->best) {
+    if (const auto best = best_so_far(contents)) return {{"best so far", best, {}}};
+    return {};
+  }
+  const FinalRecord& final = *contents.final;
+  std::vector<DesignTable::Column> list = {
+      {contents.problem.objectives.size() > 1 ? "compromise" : "best", final.best, final.best_exact}};
+  if (final.rounded) list.push_back({"rounded", final.rounded, {}});
+  if (final.baseline) list.push_back({"baseline", final.baseline, final.baseline_exact});
+  return list;
+}
+
+}  // namespace
+
+DesignTable design_table(const StudyContents& contents, const std::vector<Reference>& references) {
+  DesignTable table{columns(contents), {}};
+  if (table.columns.empty()) return table;
+  const auto add = [&](DesignTable::Line line, bool exact, std::optional<Direction> direction, const auto& of,
+                       const auto& published) {
+    for (const DesignTable::Column& column : table.columns) {
+      const auto& record = exact ? column.exact : column.record;
+      line.values.push_back(record ? std::optional<double>(of(*record)) : std::nullopt);
+    }
+    const auto best = line.values.front(), baseline = line.values.back();
+    if (direction && table.has_baseline() && best && baseline) line.gain = gain_over(*baseline, *best, *direction);
+    for (const Reference& r : references) line.published.push_back(exact ? std::nullopt : published(r));
+    if (exact) line.name += ", exact";
+    table.lines.push_back(std::move(line));
+  };
+  const ProblemRecord& problem = contents.problem;
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+    const ParameterRecord& p = problem.parameters[i];
+    const auto published = [v = static_cast<std::size_t>(p.variable)](const Reference& r) {
+      return r.design.empty() ? std::nullopt : r.design[v];
+    };
+    const auto of = [i](const DesignRecord& r) { return r.parameters[i]; };
+    if (p.variable >= 0) add({"variable", p.name, p.unit, "", {}, {}, {}}, false, {}, of, published);
+  }
+  const auto add_all = [&](const char* kind, const auto& infos, std::vector<double> DesignRecord::*values) {
+    const bool is_margin = values == &DesignRecord::margins;
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      const auto& info = infos[i];
+      std::optional<Direction> direction;
+      if constexpr (requires { info.direction; }) direction = info.direction;
+      const auto of = [values, i](const DesignRecord& r) { return (r.*values)[i]; };
+      const auto published = [&](const Reference& r) -> std::optional<double> {
+        const auto known = std::ranges::find(r.values, info.name, [](const auto& named) { return named.first; });
+        return is_margin || known == r.values.end() ? std::nullopt : std::optional(known->second);
+      };
+      for (const bool exact : {false, true})
+        if (!exact || (table.columns[0].exact && !is_margin))
+          add({kind, info.name, info.unit, info.meaning, {}, {}, {}}, exact, direction, of, published);
+    }
+  };
+  add_all("objective", problem.objectives, &DesignRecord::objectives);
+  add_all("report", problem.reports, &DesignRecord::reports);
+  add_all("constraint", problem.margins, &DesignRecord::margins);
+  return table;
+}
+
+}  // namespace pkm

@@ -1,0 +1,29 @@
+// Surveyors written once for numbers and for derivatives.
+#pragma once
+
+#include "engine/mechanism/surveyor.hpp"
+
+namespace pkm {
+
+/// Self has `template <class S> void run(std::span<const S> parameters, Scratch&, Survey<S>&) const`.
+template <class Self>
+class WithSlopes : public Surveyor, public SlopeSurveyor {
+ public:
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const final {
+    static_cast<const Self&>(*this).run(parameters, scratch, survey);
+  }
+  void survey(std::span<const Dual4> parameters, Scratch& scratch, Survey<Dual4>& survey) const final {
+    static_cast<const Self&>(*this).run(parameters, scratch, survey);
+  }
+  const SlopeSurveyor* slopes() const override { return this; }
+};
+
+/// The parameters of a design as constants of another scalar.
+template <class To, std::size_t N, class From>
+std::array<To, N> constants(std::span<const From> parameters) {
+  std::array<To, N> values;
+  for (std::size_t i = 0; i < N; ++i) values[i] = To(value_of(parameters[i]));
+  return values;
+}
+
+}  // namespace pkm

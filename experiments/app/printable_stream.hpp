@@ -1,0 +1,30 @@
+// What a program prints, printable: names of files and of studies, which may be another's, do not steer a terminal.
+#pragma once
+
+#include <ostream>
+#include <streambuf>
+#include <string>
+
+namespace pkm {
+
+/// While it lives, what goes to a stream arrives there with its control characters escaped, all but line feeds and
+/// tabs. Text that must stay on its line is escaped where it is printed.
+class PrintableStream : private std::streambuf {
+ public:
+  explicit PrintableStream(std::ostream& stream);
+  ~PrintableStream() override;
+  PrintableStream(const PrintableStream&) = delete;
+  PrintableStream& operator=(const PrintableStream&) = delete;
+
+ private:
+  std::streamsize xsputn(const char* text, std::streamsize size) override;
+  int_type overflow(int_type c) override;
+  int sync() override;
+  bool pass(std::size_t size);
+
+  std::ostream& stream_;
+  std::streambuf* sink_;
+  std::string begun_;  ///< what has come and is not handed on: bytes of a character whose end is still to come
+};
+
+}  // namespace pkm

@@ -1,0 +1,210 @@
+// Greatest magnitude of an actuator's force, or of its power (force times speed, driving or braking), along a motion,
+// over its samples. Gradient solvers see the power mean of the magnitudes (power_mean).
+//
+// They look at the design alone: no survey, and none of the limits of poses, which say where a workspace ends. What a
+// motion needs of the workspace is the affair of constraints. Where the mechanism does not assemble somewhere along the
+// motion there is no force to speak of: the value is NaN, the design `failed`, and the reason names the time.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
+#include "engine/math/statistics.hpp"
+#include "engine/mechanism/drive_along.hpp"
+#include "engine/problem/pose_options.hpp"
+#include "objectives/list.hpp"
+
+namespace pkm {
+namespace {
+
+/// What is looked at of each actuator.
+enum class Load { force, power };
+
+const NamedMotion& motion_of(const EntryContext& context) {
+  const std::string& name = context.options.word("motion");
+  if (const NamedMotion* found = find_named(context.motions, name)) return *found;
+  const auto known = names_of(context.motions);
+  if (known.empty())
+    throw std::invalid_argument("the study has no motion called '" + name +
+                                "'; describe it in a table [[motion]] with name = \"" + name + "\"");
+  throw std::invalid_argument("the study has no motion called '" + name + "'; it has " + join(known) +
+                              did_you_mean(name, known));
+}
+
+Wrench<double> wrench_of(const Options& options) {
+  Wrench<double> wrench;
+  if (!options.has("wrench")) return wrench;
+  const NamedNumbers& given = options.numbers("wrench");
+  for (std::size_t i = 0; i < wrench_names().size(); ++i)
+    if (const auto at = given.find(wrench_names()[i]); at != given.end()) wrench[i] = at->second;
+  return wrench;
+}
+
+template <class S>
+struct Loads {
+  std::vector<S> of_samples;
+};
+
+class AlongMotion final : public Quantity {
+ public:
+  AlongMotion(const EntryContext& context, Load load)
+      : name_(motion_of(context).name),
+        samples_(sample(*motion_of(context).motion, static_cast<std::size_t>(context.options.integer("samples")))),
+        mode_(mode_of(context)),
+        wrench_(wrench_of(context.options)),
+        joint_(context.options.word("joint")),
+        sharpness_(context.options.number("sharpness")),
+        load_(load) {
+    for (const MotionSample& at : samples_)
+      for (std::size_t i = 0; i < at.pose.size(); ++i)
+        if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
+          throw std::invalid_argument("the motion " + name_ + " has no finite pose, velocity and acceleration at t = " +
+                                      with_unit(at.time, "s"));
+  }
+
+  double value(const DesignView<double>& design) const override {
+    std::vector<double>& loads = design.scratch.get<Loads<double>>().of_samples;
+    if (collect(design, loads) < samples_.size()) return std::numeric_limits<double>::quiet_NaN();
+    double greatest = 0;
+    for (const double load : loads) {
+      if (!std::isfinite(load)) return load;
+      greatest = std::fmax(greatest, load);
+    }
+    return greatest;
+  }
+  Dual4 smooth(const DesignView<Dual4>& design) const override {
+    std::vector<Dual4>& loads = design.scratch.get<Loads<Dual4>>().of_samples;
+    const bool known = collect(design, loads) == samples_.size() &&
+                       std::ranges::all_of(loads, [](const Dual4& load) { return std::isfinite(load.a); });
+    if (!known) return Dual4(std::numeric_limits<double>::quiet_NaN());
+    return power_mean(loads, sharpness_);
+  }
+  std::string why_undefined(const DesignView<double>& design) const override {
+    std::vector<double> loads;
+    const std::size_t last = collect(design, loads);
+    if (last < samples_.size()) {
+      const MotionSample& at = samples_[last];
+      const PoseReport report =
+          design.mechanism.inspect(design.parameters, at.pose, mode_, no_limits(design.mechanism.info()));
+      return "the motion " + name_ + " leaves the reach of the mechanism at t = " + with_unit(at.time, "s") +
+             (report.reason.empty() ? "" : " (" + report.reason + ")");
+    }
+    const auto infinite = std::find_if(loads.begin(), loads.end(), [](double load) { return !std::isfinite(load); });
+    if (infinite == loads.end()) return {};
+    const auto k = static_cast<std::size_t>(infinite - loads.begin()) * samples_.size() / loads.size();
+    return "the motion " + name_ + " meets a singularity at t = " + with_unit(samples_[k].time, "s") + ", sample " +
+           std::to_string(k + 1) + " of " + std::to_string(samples_.size());
+  }
+
+ private:
+  /// The loads of all samples, or of those before the first at which the mechanism does not assemble.
+  template <class S>
+  std::size_t collect(const DesignView<S>& design, std::vector<S>& loads) const {
+    loads.clear();
+    return drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
+                          design.scratch.template get<DriveScratch<S>>(),
+                          [&](std::size_t, const Drive<S>& drive) { append(drive, loads); });
+  }
+  /// Appends those of one sample, of the joints looked at.
+  template <class S>
+  void append(const Drive<S>& drive, std::vector<S>& loads) const {
+    S total(0.0);
+    for (std::size_t i = 0; i < drive.forces.size(); ++i) {
+      const S load = load_ == Load::force ? drive.forces[i] : drive.power(i);
+      total += load;
+      if (joint_ == "worst" || joint_[0] == static_cast<char>('1' + i)) loads.push_back(magnitude(load));
+    }
+    if (joint_ == "total") loads.push_back(magnitude(total));
+  }
+
+  std::string name_;
+  std::vector<MotionSample> samples_;
+  std::string mode_;
+  Wrench<double> wrench_;
+  std::string joint_;
+  double sharpness_;
+  Load load_;
+};
+
+/// @param joints  the words that `joint` knows besides numbers; the first is the default
+std::vector<OptionSpec> load_options(const std::vector<std::string>& joints) {
+  std::vector<std::pair<std::string, std::string>> wrench;
+  for (std::size_t i = 0; i < wrench_names().size(); ++i) wrench.emplace_back(wrench_names()[i], i < 3 ? "N" : "N m");
+  return {
+      {.name = "motion", .kind = OptionKind::word, .required = true, .meaning = "name of a [[motion]] of the study"},
+      {.name = "joint",
+       .kind = OptionKind::word,
+       .initial = joints.front(),
+       .choices = numbers_of_joints(joints),
+       .meaning = "the joint looked at; worst: the greatest of all joints" +
+                  std::string(joints.size() > 1 ? "; total: the sum over the joints" : "")},
+      {.name = "samples",
+       .kind = OptionKind::integer,
+       .initial = std::int64_t{201},
+       .lower = 2,
+       .upper = 100'000,
+       .meaning = "poses along the motion, at equal distances in time, both ends included"},
+      mode_option(),
+      {.name = "wrench",
+       .kind = OptionKind::named_numbers,
+       .meaning = "force and moment on the platform, the same all the time; default: none",
+       .fields = wrench},
+      {.name = "sharpness",
+       .initial = 200.0,
+       .lower = 1,
+       .upper = 1e6,
+       .meaning = "of the smooth stand-in for the peak that gradient solvers are given, the mean of powers of this "
+                  "exponent: larger is nearer"},
+  };
+}
+
+/// Unit of the force of the joint that the options name. Throws std::invalid_argument where the joints looked at have
+/// different ones.
+std::string force_unit(const EntryContext& context) {
+  const auto& joints = context.mechanism.info().joints;
+  const std::string& joint = context.options.word("joint");
+  refuse_unknown_joint(context.mechanism, joint);
+  const bool turns = (joint == "worst" ? joints.front() : joints[static_cast<std::size_t>(joint[0] - '1')]).turns();
+  if (joint == "worst" && std::ranges::any_of(joints, [turns](const AxisInfo& j) { return j.turns() != turns; }))
+    throw std::invalid_argument("mechanism " + context.mechanism.info().name +
+                                " has joints of both kinds, whose forces [N] and torques [N m] have no greatest; name "
+                                "a joint");
+  return turns ? "N m" : "N";
+}
+
+/// @param what  "peak force", for listings: "peak force of joint 2 along the motion pick"
+ObjectiveEntry load_entry(Load load, const std::string& what, const std::string& meaning,
+                          const std::vector<std::string>& joints, std::string (*unit)(const EntryContext&)) {
+  std::string name = what;
+  std::ranges::replace(name, ' ', '-');
+  return {
+      .name = name,
+      .meaning = meaning,
+      .direction = Direction::minimise,
+      .options = load_options(joints),
+      .unit = unit,
+      .refusal = [name](const Mechanism& mechanism) { return refuse_without_dynamics(name, mechanism); },
+      .make = [load](const EntryContext& context) { return std::make_unique<AlongMotion>(context, load); },
+      .detail =
+          [what](const EntryContext& context) {
+            const std::string& joint = context.options.word("joint");
+            const std::string of = joint == "worst"   ? "the worst joint"
+                                   : joint == "total" ? "all joints together"
+                                                      : "joint " + joint;
+            return what + " of " + of + " along the motion " + context.options.word("motion");
+          },
+      .reads_survey = false,
+  };
+}
+
+}  // namespace
+
+std::vector<ObjectiveEntry> peak_objectives() {
+  return {
+      load_entry(Load::force, "peak force", "greatest force of the actuators along a motion", {"worst"}, force_unit),
+      load_entry(Load::power, "peak power", "greatest power of the actuators along a motion, driving or braking",
+                 {"worst", "total"}, [](const EntryContext&) { return std::string("W"); })};
+}
+
+}  // namespace pkm

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# fuzz.sh [SECONDS | --runs N]: builds all fuzzers and runs each for SECONDS (default 60), or until it has executed N
+# inputs. What leads somewhere new is kept in build/fuzz/corpus/TARGET and serves the next run; inputs that crash, hang
+# or break what must hold are kept in build/fuzz/crashes. Prints a table; exit code 1 if there were any.
+# TARGETS="formula motion" chooses among the fuzzers.
+set -euo pipefail
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
+
+by=max_total_time amount=${1:-60}
+[[ ${1-} == --runs ]] && by=runs amount=$2
+root=$PWD build=$PWD/build/fuzz
+[[ -f $build/build.ninja ]] || cmake --preset fuzz --log-level=WARNING
+cmake --build --preset fuzz --parallel "$(nproc)"
+export LSAN_OPTIONS="suppressions=$root/tests/leaks.txt:print_suppressions=0"
+mkdir -p "$build/crashes" "$build/empty"
+cd "$build/empty"  # files that arguments name are not there
+
+declare -A most=([study_toml]=8192 [motion]=2048 [formula]=512 [quantity]=128 [command_line]=512 [study_file]=262144)
+faults=0
+rows=$(printf '%-14s%14s%10s%10s' target executions seconds crashes)
+for target in ${TARGETS:-study_toml motion formula quantity command_line study_file}; do
+  seeds=("$root/tests/campaigns/corpus/$target")
+  [[ $target == study_toml || $target == motion ]] && seeds+=("$root/experiments")
+  [[ $target == study_file ]] && seeds+=("$root/tests/data")  # older schemas
+  mkdir -p "$build/corpus/$target"
+  executed=0 crashes=0 begin=$SECONDS left=$amount
+  while ((left > 0)); do  # a crash ends a fuzzer: it goes on with what is left
+    log=$build/$target.log code=0
+    "$build/bin/fuzz_$target" "-$by=$left" -timeout=60 "-max_len=${most[$target]}" -print_final_stats=1 -close_fd_mask=1 \
+      -verbosity=1 "-artifact_prefix=$build/crashes/$target-" "$build/corpus/$target" "${seeds[@]}" >"$log" 2>&1 || code=$?
+    now=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+    executed=$((executed + ${now:-0}))
+    ((code)) || break
+    crashes=$((crashes + 1))
+    cp "$log" "$build/crashes/$target-$crashes.log"
+    ((crashes < 20)) || break
+    if [[ $by == runs ]]; then left=$((amount - executed)); else left=$((amount - SECONDS + begin)); fi
+  done
+  faults=$((faults + crashes))
+  rows+=$'\n'$(printf '%-14s%14d%10d%10d' "$target" "$executed" $((SECONDS - begin)) "$crashes")
+  printf '%s\n' "${rows##*$'\n'}"
+done
+printf '\n%s\n' "$rows"
+((faults == 0))

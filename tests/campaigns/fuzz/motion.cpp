@@ -1,0 +1,20 @@
+// Input: the text of a motion, read for every mechanism; its ends and its middle are looked at.
+#include "engine/core/error.hpp"
+#include "engine/mechanisms/all.hpp"
+#include "engine/setup/motion_section.hpp"
+#include "tests/campaigns/fuzz/expect.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace pkm;
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  for (const auto& mechanism : all_mechanisms()) try {
+      const TomlValue document = parse_toml(text, "motion.toml");
+      const auto motion = read_motion(ConfigValue(document, "motion.toml", ""), motion_names(*mechanism));
+      fuzz::expect(motion->duration() > 0, "a motion takes time");
+      fuzz::expect(sample(*motion, 3).size() == 3, "as many samples as were asked for");
+      is_periodic(*motion, mechanism->info().coordinates);
+    } catch (const ConfigError& error) {
+      fuzz::expect_sentence(error.what(), text);
+    }
+  return 0;
+}

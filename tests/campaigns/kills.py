@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+"""Studies killed by SIGKILL at random instants and resumed until they are finished.
+
+kills.py PROGRAM UNRELIABLE_DISK [--kills N] [--seed S]
+
+Over all optimisers, 1 and 2 threads, checkpoints after each generation to seconds and those that adapt themselves, on a
+sound disk, a slow one and one that fills up. After each kill the study file is complete, or there is none yet; what is
+resumed to its end has the bits of the run that nobody disturbed. Prints a table; exit code 1 if anything was lost.
+"""
+
+import argparse
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import campaign
+
+EVERY = ["", "0", "0.02", "0.3", "2"]
+DISKS = ["sound", "slow", "full"]
+
+
+class Lost(Exception):
+    pass
+
+
+class Campaign:
+    def __init__(self, folder, library, seed):
+        self.folder, self.library, self.random = folder, library, random.Random(seed)
+        self.straight = {}
+        self.count = {name: dict.fromkeys(("studies", "kills", "before", "full", "lost"), 0)
+                      for name in campaign.STUDIES}
+
+    def measure(self):
+        for name, text in campaign.STUDIES.items():
+            self.folder.write("straight.toml", text)
+            begin = time.monotonic()
+            code, output = self.folder.run(["run", "straight.toml", "--output", name + ".h5", "--threads", "1"])
+            if code != 0:
+                sys.exit("%s did not run: %s" % (name, output))
+            self.straight[name] = (time.monotonic() - begin, campaign.digest(self.folder.file(name + ".h5")))
+
+    def variables(self, kind):
+        if kind == "slow":
+            return campaign.disk(self.library, self.folder.path, delay_us=self.random.choice([500, 3000, 20000]))
+        if kind == "full":
+            return campaign.disk(self.library, self.folder.path, fails_at=self.random.randrange(1, 60), fails_for=0)
+        return {}
+
+    def one_study(self, name, most):
+        """Kills one study until it comes to its end, or has been killed `most` times. Returns the kills."""
+        seconds, digest = self.straight[name]
+        count = self.count[name]
+        every = self.random.choice(EVERY)
+        self.folder.write("study.toml", campaign.STUDIES[name] + ("[checkpoint]\nevery = %s\n" % every if every else ""))
+        file = self.folder.file("study.h5")
+        for left in os.listdir(self.folder.path):
+            if left.startswith(("study.h5", ".pkmopt-")):
+                os.remove(self.folder.file(left))
+        count["studies"] += 1
+        kills, seen = 0, False
+        while True:
+            kind = self.random.choice(DISKS) if kills < most else "sound"
+            threads = ["--threads", str(self.random.choice([1, 2]))]
+            first = ["run", "study.toml", "--output", "study.h5"]
+            if seen and not os.path.exists(file):
+                raise Lost("the file is gone")
+            seen = os.path.exists(file)
+            child = self.folder.start((["resume", "study.h5"] if seen else first) + threads, self.variables(kind))
+            try:
+                # Late kills find a study on its way, early ones its beginning.
+                output = child.communicate(timeout=self.random.uniform(0, 1.2 * seconds) if kills < most else 600)[0]
+            except subprocess.TimeoutExpired:
+                child.send_signal(signal.SIGKILL)
+                child.communicate()
+                kills += 1
+                count["before"] += not os.path.exists(file)
+                if kills > most:
+                    raise Lost("no end within 600 s") from None
+                continue
+            if child.returncode == 0:
+                break
+            if kind != "full" or child.returncode != 1 or "No space left on device" not in output:
+                raise Lost("exit code %d on a %s disk: %s" % (child.returncode, kind, output[-500:]))
+            count["full"] += 1
+        if campaign.state(file) != "finished" or campaign.digest(file) != digest:
+            raise Lost("it ended with other bits")
+        return kills
+
+    def run(self, kills):
+        done, share = 0, -(-kills // len(campaign.STUDIES))
+        while done < kills:
+            for name in campaign.STUDIES:
+                if done >= kills:
+                    break
+                try:
+                    made = self.one_study(name, min(10, share, kills - done))
+                except Lost as what:
+                    made = 1
+                    self.count[name]["lost"] += 1
+                    kept = tempfile.mkdtemp(prefix="pkmopt-lost-")
+                    shutil.copytree(self.folder.path, kept, dirs_exist_ok=True)
+                    print("%s: %s; its files: %s" % (name, what, kept), flush=True)
+                done += made
+                self.count[name]["kills"] += made
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("unreliable_disk")
+    parser.add_argument("--kills", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="pkmopt-kills-") as path:
+        run = Campaign(campaign.Folder(path, arguments.program), arguments.unreliable_disk, arguments.seed)
+        run.measure()
+        begin = time.monotonic()
+        run.run(arguments.kills)
+    print("%-8s%10s%8s%22s%12s%8s" % ("study", "studies", "kills", "before the first file", "disk full", "lost"))
+    for name, count in run.count.items():
+        print("%-8s%10d%8d%22d%12d%8d" % (name, *(count[c] for c in ("studies", "kills", "before", "full", "lost"))))
+    total = {c: sum(count[c] for count in run.count.values()) for c in ("studies", "kills", "lost")}
+    print("%(kills)d kills of %(studies)d studies, %(lost)d lost" % total, "in %.0f s" % (time.monotonic() - begin))
+    return 1 if total["lost"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# The campaigns at full length: hours. Each prints a table; exit code 1 if one of them found anything.
+#   run.sh [EXECUTIONS]  of each fuzzer (default 1000000)
+set -uo pipefail
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
+
+root=$(cd ../.. && pwd) program=$root/build/ci/bin/pkmopt disk=$root/build/ci/tests/campaigns/libpkm_unreliable_disk.so
+[[ -f $root/build/ci/build.ninja ]] || (cd "$root" && cmake --preset ci --log-level=WARNING) || exit
+(cd "$root" && cmake --build --preset ci --parallel "$(nproc)" --target pkmopt_app pkm_unreliable_disk) || exit
+found=0
+step() {
+  echo "== $*"
+  "$@" || found=1
+}
+step ./kills.py "$program" "$disk" --kills 1000
+step ./disk.py "$program" "$disk"
+step ./soak.py "$program" --evaluations 10000000 --runs 200
+step ./fuzz.sh --runs "${1:-1000000}"
+exit $found
