@@ -37,7 +37,8 @@ std::array<std::optional<double>, 3> couple_of(const JointColumns& at, const Lea
     for (Index k = 0; k < at.couple_count; ++k) {
       const double share = at.joint.couples[static_cast<std::size_t>(k)][axis];
       value += share * solution.x[at.couples + k];
-      free += share * solution.null_space.row(at.couples + k);
+      // a matrix without columns has no address to count its rows from
+      if (free.size() > 0) free += share * solution.null_space.row(at.couples + k);
     }
     if (free.norm() < kUniqueTolerance) couple[axis] = value;
   }

@@ -105,14 +105,8 @@ void limit(decltype(RLIMIT_AS) resource, rlim_t most) {
 
 /// A sanitizer's shadow memory alone exceeds every limit.
 constexpr bool kSanitized =
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef PKM_SANITIZED
     true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-    true;
-#else
-    false;
-#endif
 #else
     false;
 #endif
