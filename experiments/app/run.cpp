@@ -119,11 +119,12 @@ struct SeedTable {
   int feasible_seeds = 0;
   std::vector<Row> rows = {{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
+  std::string note = {};  ///< the first
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
     const FinalRecord final = contents.final.value_or(FinalRecord());
     const auto objective = [](const std::optional<DesignRecord>& record) -> std::optional<double> {
-      if (!record || record->objectives.empty()) return {};
+      if (!record || record->objectives.empty() || std::isnan(record->objectives[0])) return {};
       return record->objectives[0];
     };
     const bool feasible = objective(final.best) && final.best->status == Status::feasible;
@@ -136,6 +137,8 @@ struct SeedTable {
     const auto value = trade_off ? evolved_hypervolume(study, contents) : objective(final.best);
     const std::string best_text = feasible ? keep(value, best) : "nothing feasible";
     seconds.push_back(contents.seconds);
+    if (note.empty() && !contents.notes.empty())
+      note = "note of seed " + std::to_string(contents.seed) + ": " + printable(join(contents.notes, "; ")) + '\n';
     rows.push_back({std::to_string(contents.seed), best_text, trade_off ? "" : keep(objective(final.best_exact), exact),
                     std::to_string(contents.evaluations()), duration_text(contents.seconds), file});
   }
@@ -183,7 +186,8 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   if (!arguments.common.quiet)
     std::cout << printable(study.name) << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
               << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
-              << " seeds ended feasible\n";
+              << " seeds ended feasible\n"
+              << table.note;
   if (session.exit_code == kStoppedEarly)
     std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study) << " --seeds "
               << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output) << '\n';
