@@ -173,21 +173,33 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   SeedTable table{study.problem->objectives().size() > 1};
   const auto screen = make_progress(arguments.common);
   SeedProgress progress(*screen, arguments.seeds);
+  std::optional<std::string> unwritten;  // why what was found is not in its file
   for (int i = 0; i < arguments.seeds && session.exit_code == kDone; ++i) {
     study.seed = first + static_cast<std::uint64_t>(i);
     progress.next();
-    const RunOutcome outcome = run_one(study, file_of(i), arguments, session, progress);
-    if (outcome.stopped.empty()) table.add(study, outcome.contents, file_of(i));
+    RunEnd end;
+    try {
+      end = end_of_run([&] { return run_one(study, file_of(i), arguments, session, progress); });
+    } catch (const StorageError& failure) {
+      if (table.seconds.empty()) throw;
+      unwritten = failure.what();
+      break;
+    }
+    const RunOutcome& outcome = end.outcome;
+    if (outcome.stopped.empty()) table.add(study, outcome.contents, end.unwritten ? "not written" : file_of(i));
+    unwritten = end.unwritten;
+    if (unwritten) break;
     const bool last = i == arguments.seeds - 1;
     if (!outcome.stopped.empty() || (StopRequest::signal() != 0 && !last)) session.exit_code = kStoppedEarly;
   }
   screen->finish();
   table.add_spread();
-  if (!arguments.common.quiet)
+  if (!arguments.common.quiet || unwritten)
     std::cout << printable(study.name) << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
               << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
               << " seeds ended feasible\n"
-              << table.note;
+              << table.note << std::flush;
+  if (unwritten) throw StorageError(*unwritten);
   if (session.exit_code == kStoppedEarly)
     std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study) << " --seeds "
               << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output) << '\n';
@@ -206,9 +218,9 @@ void run(const RunArguments& arguments, Session& session) {
     return;
   }
   const auto progress = make_progress(arguments.common);
-  const RunOutcome outcome = run_one(study, output, arguments, session, *progress);
+  const RunEnd end = end_of_run([&] { return run_one(study, output, arguments, session, *progress); });
   progress->finish();
-  print_outcome(outcome, study, output, arguments.common, session);
+  print_end(end, study, output, arguments.common, session);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ class Columns {
   /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
   virtual std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
                                                   const Demand& demand) const = 0;
-  /// Whether ColumnOptions::box can cut them; else no survey is prepared of a plan with one.
+  /// Whether ColumnOptions::box can cut them.
   virtual bool take_box() const { return false; }
 };
 
