@@ -1,6 +1,7 @@
 #include "engine/report/design_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pkm {
 namespace {
@@ -55,8 +56,11 @@ DesignTable design_table(const StudyContents& contents, const std::vector<Refere
         const auto known = std::ranges::find(r.values, info.name, [](const auto& named) { return named.first; });
         return is_margin || known == r.values.end() ? std::nullopt : std::optional(known->second);
       };
+      const bool on_columns = !is_margin && std::ranges::any_of(table.columns, [&](const DesignTable::Column& column) {
+        return column.exact && !std::isnan(of(*column.exact));
+      });
       for (const bool exact : {false, true})
-        if (!exact || (table.columns[0].exact && !is_margin))
+        if (!exact || on_columns)
           add({kind, info.name, info.unit, info.meaning, {}, {}, {}}, exact, direction, of, published);
     }
   };

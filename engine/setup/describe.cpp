@@ -6,12 +6,15 @@
 #include "engine/core/printable.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
-#include "engine/setup/study.hpp"
+#include "engine/setup/sections.hpp"
 
 namespace pkm {
 namespace {
 
 using Row = std::vector<std::string>;
+
+/// Behind what a study gives or leaves out: whether it is what it would be without.
+const char* mark(bool is_default) { return is_default ? "(default)" : ""; }
 
 std::string range(double lower, double upper, const std::string& unit) {
   return shortest(lower) + " .. " + with_unit(upper, unit);
@@ -41,7 +44,7 @@ void write_parameters(std::ostream& out, const Study& study) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (contains(parts.varies, i)) continue;
     const double value = parts.parameters[i];
-    std::string note = value == known[i].nominal ? "(default)" : "";
+    std::string note = mark(value == known[i].nominal);
     if (study.baseline && (*study.baseline)[i] != value)
       note += (note.empty() ? "" : " ") + ("baseline " + with_unit((*study.baseline)[i], known[i].unit));
     fixed.push_back({known[i].name, with_unit(value, known[i].unit), note, known[i].meaning});
@@ -62,28 +65,43 @@ std::string held_text(const HeldCoordinate& held, const std::string& unit) {
 std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
   const auto coordinate = [&info](int i) { return info.coordinates[static_cast<std::size_t>(i)]; };
   const Sweep& sweep = sweep_of(info, plan);
+  SurveyPlan usual = plan;
+  set_usual(info, usual);
+  bool usual_cells = true;
   std::vector<std::string> cells, nodes, box;
   for (std::size_t k = 0; k < sweep.swept.size(); ++k) {
     const AxisInfo swept = coordinate(sweep.swept[k]);
-    if (plan.voxels()) cells.push_back(swept.name + " = " + std::to_string(plan.voxels()->cells[k]));
+    if (plan.voxels()) {
+      cells.push_back(swept.name + " = " + std::to_string(plan.voxels()->cells[k]));
+      usual_cells = usual_cells && plan.voxels()->cells[k] == usual.voxels()->cells[k];
+    }
     if (plan.columns() && sweep.swept[k] != sweep.column)
       nodes.push_back(swept.name + " = " + std::to_string(plan.columns()->nodes[nodes.size()]));
     if (const auto& given = plan.box())
       box.push_back(swept.name + " = " + range((*given)[k][0], (*given)[k][1], swept.unit));
   }
-  for (const HeldCoordinate& held : plan.held)
-    if (held.cells > 0) cells.push_back(coordinate(held.coordinate).name + " = " + std::to_string(held.cells));
-  std::vector<Row> rows = {{"method", plan.voxels() ? "voxels" : "columns"}};
-  if (plan.voxels()) rows.push_back({"cells", join(cells)});
-  if (plan.voxels() || !box.empty()) rows.push_back({"box", box.empty() ? "derived from each design" : join(box)});
+  for (std::size_t k = 0; k < plan.held.size(); ++k) {
+    const HeldCoordinate& held = plan.held[k];
+    if (held.cells == 0) continue;
+    cells.push_back(coordinate(held.coordinate).name + " = " + std::to_string(held.cells));
+    usual_cells = usual_cells && held.cells == usual.held[k].cells;
+  }
+  std::vector<Row> rows = {{"method", plan.voxels() ? "voxels" : "columns", mark(!plan.voxels())}};
+  if (plan.voxels()) rows.push_back({"cells", join(cells), mark(usual_cells)});
+  if (plan.voxels() || !box.empty())
+    rows.push_back({"box", box.empty() ? "derived from each design" : join(box), mark(box.empty())});
   if (const ColumnOptions* const columns = plan.columns()) {
     if (columns->nodes[0] > 0)
       rows.push_back({"nodes", join(nodes) + " per piece"});
     else
-      rows.push_back({"tolerance", shortest(columns->tolerance) + " relative"});
+      rows.push_back({"tolerance", shortest(columns->tolerance) + " relative",
+                      mark(columns->tolerance == usual.columns()->tolerance)});
   }
-  for (const int held : sweep.held)
-    rows.push_back({coordinate(held).name, held_text(how_held(plan, held), coordinate(held).unit)});
+  for (const int i : sweep.held) {
+    const HeldCoordinate held = how_held(plan, i);
+    rows.push_back(
+        {coordinate(i).name, held_text(held, coordinate(i).unit), mark(held.kind == HeldCoordinate::Kind::middle)});
+  }
   return rows;
 }
 
@@ -93,14 +111,17 @@ std::vector<Row> limit_rows(const Study& study) {
   std::vector<Row> rows;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto& limit = known[i];
-    std::string value = with_unit(limit.inactive, limit.unit), origin = "(default: cuts nothing)";
+    const char* const cuts_nothing = "(default: cuts nothing)";
+    std::string value = with_unit(limit.inactive, limit.unit), origin = cuts_nothing;
     if (const Parameter* own = find_named(parts.mechanism->info().parameters, limit.name)) {
       value = "the parameter";
       origin = "(default: " + own->name + " of the design)";
     }
     if (!study.limit_origins[i].empty()) {
-      value = parts.plan.limits.given[i] ? with_unit(*parts.plan.limits.given[i], limit.unit) : limit.derivation;
-      origin = "from " + study.limit_origins[i];
+      const std::optional<double>& given = parts.plan.limits.given[i];
+      const bool is_default = given && *given == limit.inactive && origin == cuts_nothing;
+      value = given ? with_unit(*given, limit.unit) : limit.derivation;
+      origin = "from " + study.limit_origins[i] + (is_default ? std::string(" ") + cuts_nothing : "");
     }
     rows.push_back({limit.name, value, origin, limit.meaning});
   }
@@ -117,7 +138,7 @@ void write_options(std::ostream& out, const std::vector<OptionSpec>& specs, cons
     }
     const std::string unit = spec.kind == OptionKind::number && spec.unit != "1" ? " " + spec.unit : "";
     const bool initial = spec.initial && *spec.initial == value->second;
-    rows.push_back({"  " + spec.name, to_text(value->second) + unit, initial ? "(default)" : ""});
+    rows.push_back({"  " + spec.name, to_text(value->second) + unit, mark(initial)});
   }
   out << aligned(rows);
 }
@@ -137,10 +158,12 @@ std::string describe(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
   std::ostringstream out;
-  out << aligned({{"study", study.name},
+  Study bare;
+  bare.file_name = study.file_name;
+  out << aligned({{"study", study.name, mark(study.name + ".h5" == bare.output_file())},
                   {"file", study.file_name},
-                  {"seed", std::to_string(study.seed)},
-                  {"output", study.output_file()},
+                  {"seed", std::to_string(study.seed), mark(study.seed == bare.seed)},
+                  {"output", study.output_file(), mark(study.output_file() == bare.output_file())},
                   {"mechanism", info.name + ": " + info.title}});
   write_parameters(out, study);
   write_table(out, "workspace", survey_rows(info, parts.plan));
@@ -162,9 +185,11 @@ std::string describe(const Study& study) {
   std::string round = "best design as it is";
   if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
   write_table(out, "run",
-              {{"checkpoint", study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
-                                                     : "adapts: at most 2 % of the run time"},
-               {"final", round}});
+              {{"checkpoint",
+                study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
+                                       : "adapts: at most 2 % of the run time",
+                mark(!study.checkpoint_every)},
+               {"final", round, mark(!study.round)}});
   for (const auto& warning : study.warnings) out << "\nwarning: " << warning << '\n';
   return out.str();
 }

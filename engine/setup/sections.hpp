@@ -27,6 +27,8 @@ void read_variables(const ConfigValue& root, StudyDraft& draft);
 void read_baseline(const ConfigValue& root, StudyDraft& draft);
 /// [workspace]: method, grid or accuracy, held coordinate, limits.
 void read_workspace(const ConfigValue& root, StudyDraft& draft);
+/// Cells and accuracy of a survey by the plan's method where a study names none.
+void set_usual(const MechanismInfo& info, SurveyPlan& plan);
 /// The [[constraint]]s that cut the workspace: they complete the survey plan, so they come before what uses it.
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
 /// [[region]]: named parts of the workspace with surveys of their own, under the study's limits of a pose.

@@ -32,6 +32,17 @@ Refusal refusal_of(const OptimiserEntry& entry, const Options& options, const De
   return {};
 }
 
+/// What an option has that the study does not give, beside the others as they are.
+std::optional<OptionValue> default_of(const std::string& name, const OptimiserEntry& entry, const Options& options,
+                                      const DesignSpace& space) {
+  Options others;
+  for (const auto& [other, value] : options.values())
+    if (other != name) others.set(other, value);
+  if (entry.resolve) entry.resolve(others, space);
+  const auto found = others.values().find(name);
+  return found == others.values().end() ? std::nullopt : std::optional(found->second);
+}
+
 /// The designs that a stage is to start from lie in the space that it searches.
 void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpace& space) {
   for (const OptionSpec& spec : stage.specs) {
@@ -74,7 +85,7 @@ void read_stages(const ConfigValue& root, StudyDraft& draft) {
           "start = \"pareto\" needs a [[stage]] before it that finds a front, such as nsga2");
     if (entry.resolve) entry.resolve(stage.options, draft.parts.space);
     for (auto& spec : specs)
-      if (!table.has(spec.name) && stage.options.has(spec.name)) spec.initial = stage.options.values().at(spec.name);
+      if (!spec.initial) spec.initial = default_of(spec.name, entry, stage.options, draft.parts.space);
     stage.specs = std::move(specs);
     check_designs(table, stage, draft.parts.space);
     stage.optimiser = table.explained([&] { return entry.make(stage.options, draft.parts.space); });

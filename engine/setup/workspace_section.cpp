@@ -187,10 +187,8 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
     if (tolerance) columns->tolerance = relative;
     if (nodes) read_nodes(*nodes, info, sweep, *columns);
   } else {
+    set_usual(info, plan);
     VoxelOptions& voxels = std::get<VoxelOptions>(plan.method);
-    std::copy_n(kPaperCells.begin(), sweep.swept.size(), voxels.cells.begin());
-    for (HeldCoordinate& held : plan.held)
-      if (integrated(held)) held.cells = kHeldCells;
     if (const auto cells = table.find("cells")) read_cells(*cells, info, plan, voxels);
   }
   if (const auto given = table.find("box"))
@@ -198,6 +196,18 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
 }
 
 }  // namespace
+
+void set_usual(const MechanismInfo& info, SurveyPlan& plan) {
+  if (plan.columns()) {
+    plan.method = ColumnOptions();
+    return;
+  }
+  VoxelOptions voxels;
+  std::copy_n(kPaperCells.begin(), sweep_of(info, plan).swept.size(), voxels.cells.begin());
+  plan.method = voxels;
+  for (HeldCoordinate& held : plan.held)
+    if (integrated(held)) held.cells = kHeldCells;
+}
 
 void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   const MechanismInfo& info = draft.info();

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kChunkBytes = std::size_t{1} << 17;
 constexpr std::size_t kLeastDeflated = 1024;  // bytes of a chunk: to start deflate takes a quarter of a megabyte
 constexpr std::size_t kGrowth = std::size_t{1} << 16;  // bytes; HDF5 clears them
+constexpr std::size_t kMostInAttribute = 4000;         // texts, 16 bytes each: an attribute holds 64 kB in all
 constexpr unsigned kDeflateLevel = 1;                  // twice as fast as level 6, and files are a few per cent larger
 
 /// While one lives, HDF5 prints nothing.
@@ -167,13 +168,6 @@ std::string read_text(hid_t attribute, const std::string& what) {
   return text;
 }
 
-void write_labels(hid_t dataset, const Leaf& leaf) {
-  write_text(dataset, "description", leaf.description, leaf.path);
-  if (!leaf.columns.empty()) write_texts(dataset, "columns", leaf.columns.size(), leaf.columns, leaf.path);
-  const bool one = leaf.columns.empty() && leaf.units.size() == 1;
-  write_texts(dataset, "unit", one ? std::optional<hsize_t>() : leaf.units.size(), leaf.units, leaf.path);
-}
-
 Handle core_access(const std::string& what) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
   check(H5Pset_fapl_core(access.get(), kGrowth, false), what);
@@ -274,7 +268,18 @@ void ImageWriter::array(const Leaf& leaf, const std::vector<T>& values, const Ex
         H5Dcreate2(file, leaf.path.c_str(), type.file, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
         H5Dclose, leaf.path);
     if (!values.empty()) check(H5Dwrite(dataset.get(), type.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), leaf.path);
-    write_labels(dataset.get(), leaf);
+    write_text(dataset.get(), "description", leaf.description, leaf.path);
+    const auto label = [&](const std::string& name, const std::vector<std::string>& texts) {
+      if (texts.size() <= kMostInAttribute) return write_texts(dataset.get(), name, texts.size(), texts, leaf.path);
+      const std::string beside = leaf.path + "_" + name;
+      write_text(dataset.get(), name, beside, leaf.path);
+      array(Leaf{beside, "The attribute " + name + " of " + leaf.path}, texts, {kAnyRows});
+    };
+    if (!leaf.columns.empty()) label("columns", leaf.columns);
+    if (leaf.columns.empty() && leaf.units.size() == 1)
+      write_text(dataset.get(), "unit", leaf.units[0], leaf.path);
+    else
+      label("unit", leaf.units);
   };
   if constexpr (std::is_same_v<T, std::string>) {
     std::size_t length = 1;

@@ -61,16 +61,78 @@ DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<d
   return record;
 }
 
-/// The same problem on exact columns, or null where the mechanism has none.
-std::unique_ptr<const DesignProblem> on_columns(const ProblemParts& parts) {
-  ProblemParts exact = parts;
-  exact.plan.method = ColumnOptions{.tolerance = 1e-10, .nodes = {}, .box = parts.plan.box()};
-  try {
-    return std::make_unique<const DesignProblem>(std::move(exact));
-  } catch (const std::invalid_argument&) {
-    return nullptr;
+constexpr const char* kNoExactValues = "no exact values of the ";
+
+/// What a voxel study says of its designs on exact columns, where the mechanism has them and they know it.
+class ExactValues {
+ public:
+  explicit ExactValues(const ProblemParts& parts) : parts_(parts) {
+    if (!parts.plan.voxels() || !parts.mechanism->columns()) return;
+    ColumnOptions columns;
+    columns.tolerance = 1e-10;
+    if (parts.mechanism->columns()->take_box()) columns.box = parts.plan.box();
+    ProblemParts exact = parts;
+    exact.plan.method = columns;
+    try {
+      problem_ = std::make_unique<const DesignProblem>(std::move(exact));
+    } catch (const std::invalid_argument&) {
+    }
   }
-}
+
+  /// @param name  of the design in the note that says why there are none
+  std::optional<DesignRecord> of(const char* name, std::span<const double> parameters,
+                                 std::vector<std::string>& notes) const {
+    if (!problem_) return {};
+    if (const Refusal poses = poses_beyond_box(parameters)) {
+      notes.push_back(std::string(kNoExactValues) + name + ": columns of mechanism " + parts_.mechanism->info().name +
+                      " cannot be cut by workspace.box, which has to hold all poses that the design may reach (" +
+                      *poses + ")");
+      return {};
+    }
+    DesignRecord record = evaluated(*problem_, parameters);
+    forget_voxels(parts_.objectives, record.objectives);
+    forget_voxels(parts_.reports, record.reports);
+    return record;
+  }
+
+ private:
+  /// Which poses a design may reach, where the box may leave some of them out that columns count.
+  Refusal poses_beyond_box(std::span<const double> parameters) const {
+    const std::optional<Box>& box = parts_.plan.box();
+    if (!box || problem_->parts().plan.box()) return {};
+    SurveyPlan plan = parts_.plan;
+    plan.method = VoxelOptions{};  // a single cell, of a box that holds all
+    VoxelMap all;
+    try {
+      all = voxel_map(*parts_.mechanism, parameters, plan);
+    } catch (const std::exception& reason) {
+      return reason.what();
+    }
+    const MechanismInfo& info = parts_.mechanism->info();
+    const std::vector<int>& swept = sweep_of(info, parts_.plan).swept;
+    std::vector<std::string> ranges;
+    bool holds = true;
+    for (std::size_t k = 0; k < swept.size(); ++k) {
+      const double lower = all.lower[k], upper = all.upper[k];
+      const double roundoff = 1e-12 * std::fmax(std::fabs(lower), std::fabs(upper));
+      holds = holds && (*box)[k][0] <= lower + roundoff && (*box)[k][1] >= upper - roundoff;
+      const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(swept[k])];
+      ranges.push_back(axis.name + " = " + shortest(lower) + " .. " + with_unit(upper, axis.unit));
+    }
+    return holds ? Refusal() : join(ranges);
+  }
+
+  /// Regions keep their own surveys: what is read from one on voxels is not exact.
+  void forget_voxels(const std::vector<NamedQuantity>& quantities, std::vector<double>& values) const {
+    for (std::size_t i = 0; i < quantities.size(); ++i)
+      if (const NamedQuantity& q = quantities[i];
+          q.reads_survey && q.survey > 0 && parts_.regions[q.survey - 1].plan.voxels())
+        values[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  const ProblemParts& parts_;
+  std::unique_ptr<const DesignProblem> problem_;
+};
 
 /// Cells of the map that a study by columns stores.
 constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
@@ -225,21 +287,22 @@ std::optional<OptimalityRecord> optimality_record(const Study& study, const Stag
   return record;
 }
 
-FinalRecord final_record(const Study& study, const StudyContents& contents) {
+FinalRecord final_record(const Study& study, StudyContents& contents) {
   const DesignProblem& problem = *study.problem;
   const ProblemParts& parts = problem.parts();
   const MechanismInfo& info = parts.mechanism->info();
-  const auto exact = parts.plan.voxels() ? on_columns(parts) : nullptr;
+  std::erase_if(contents.notes, [](const std::string& note) { return note.starts_with(kNoExactValues); });
+  const ExactValues exact(parts);
   FinalRecord f;
   f.volume_unit = volume_unit(info, parts.plan);
   if (study.baseline) {
     f.baseline = evaluated(problem, *study.baseline);
-    if (exact) f.baseline_exact = evaluated(*exact, *study.baseline);
+    f.baseline_exact = exact.of("baseline", *study.baseline, contents.notes);
   }
   if (contents.best.row < 0) return f;
   const auto best = problem.parameters(contents.best_design());
   f.best = evaluated(problem, best);
-  if (exact) f.best_exact = evaluated(*exact, best);
+  f.best_exact = exact.of("best design", best, contents.notes);
   f.active = active_sentences(problem, *f.best);
   if (study.round) {
     auto rounded = best;

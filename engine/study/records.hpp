@@ -29,7 +29,9 @@ double rounded_to(double value, double step);
 /// has no derivatives (its evaluation failed).
 std::optional<OptimalityRecord> optimality_record(const Study& study, const StageRecord& stage);
 
-/// What is worked out at the end, from the best design so far. Empty records where nothing was evaluated.
-FinalRecord final_record(const Study& study, const StudyContents& contents);
+/// What is worked out at the end, from the best design so far. Empty records where nothing was evaluated. A note says
+/// why a voxel study knows no values on exact columns that its mechanism has; they are NaN where they are read from a
+/// region on voxels.
+FinalRecord final_record(const Study& study, StudyContents& contents);
 
 }  // namespace pkm

@@ -86,12 +86,17 @@ class Run final : public Monitor {
     for (std::size_t i = 0; i < study_.stages.size(); ++i)
       if (!run_stage(i)) break;
     RunOutcome outcome;
+    std::optional<std::string> unwritten;
     outcome.stopped = stopped_;
     if (!stopped_.empty() && replaying_) {
       contents_ = read_study(path_);  // stopped before it came to anything new: the file holds more than this run
     } else {
       if (stopped_.empty()) contents_.final = final_record(study_, contents_);
-      write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);
+      try {
+        write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);
+      } catch (const StorageError& failure) {
+        unwritten = failure.what();
+      }
     }
     outcome.contents = std::move(contents_);
     outcome.seconds = now() - start_;
@@ -99,6 +104,7 @@ class Run final : public Monitor {
     outcome.evaluations = evaluator_.made;
     outcome.warnings = warnings_;
     outcome.parallel_efficiency = evaluator_.wall > 0 ? evaluator_.busy / (evaluator_.wall * evaluator_.threads()) : 0;
+    if (unwritten) throw UnwrittenOutcome(*unwritten, std::move(outcome));
     return outcome;
   }
 

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/core/error.hpp"
 #include "engine/setup/study.hpp"
 #include "engine/storage/study_contents.hpp"
 #include "engine/study/extension.hpp"
@@ -38,6 +40,13 @@ struct RunOutcome {
   double checkpoint_share = 0;        ///< of the run time, first and final write not counted
   double parallel_efficiency = 0;     ///< evaluation time over threads times wall time of the evaluations
   std::vector<std::string> warnings;  ///< sentences for the user; also in the file
+};
+
+/// The last write of a run failed: what it has found is here, and not in its file.
+class UnwrittenOutcome : public StorageError {
+ public:
+  UnwrittenOutcome(const std::string& why, RunOutcome found) : StorageError(why), outcome(std::move(found)) {}
+  RunOutcome outcome;
 };
 
 /// Runs a new study into `path`, which must not exist unless `overwrite`. Throws StorageError.

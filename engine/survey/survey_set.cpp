@@ -54,6 +54,9 @@ std::unique_ptr<const Surveyor> prepare_one(const Mechanism& mechanism, const Su
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no column surveys" +
                                   (foreign ? " of " + std::string(foreign->meaning) : "") +
                                   "; take workspace.method = \"voxels\"");
+    if (columns->box && !mechanism.columns()->take_box())
+      throw std::invalid_argument("columns of mechanism " + mechanism.info().name +
+                                  " cannot be cut by a box; take workspace.method = \"voxels\"");
     return mechanism.columns()->prepare(plan, *columns, demand);
   }
   if (mechanism.voxels() && !foreign) return mechanism.voxels()->prepare(plan, *plan.voxels(), demand);

@@ -37,9 +37,10 @@ void resume(const ResumeArguments& arguments, Session& session) {
     }
   }
   const auto progress = make_progress(arguments.common);
-  const RunOutcome outcome = resume_study(arguments.file, session.catalogues, extension, options, *progress);
+  const RunEnd end =
+      end_of_run([&] { return resume_study(arguments.file, session.catalogues, extension, options, *progress); });
   progress->finish();
-  print_outcome(outcome, study_of(outcome.contents, session.catalogues), arguments.file, arguments.common, session);
+  print_end(end, study_of(end.outcome.contents, session.catalogues), arguments.file, arguments.common, session);
 }
 
 }  // namespace

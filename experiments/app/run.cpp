@@ -24,26 +24,56 @@ struct RunArguments {
   RunningArguments common;
 };
 
-/// What the evaluations will cost at most, from a timed one in the middle of the design space.
-void print_estimate(const Study& study, int seeds, int threads) {
+/// What an evaluation takes [s]: in the middle of the design space or at the baseline, whichever takes longer, for a
+/// design that cannot be evaluated takes no time.
+double seconds_of_one(const Study& study, Detail detail) {
   const DesignProblem& problem = *study.problem;
-  EvaluationTable table(problem.shape());
-  table.extend(1);
-  for (std::size_t i = 0; i < problem.space().dimension(); ++i) table.design(0)[i] = problem.space().from_unit(i, 0.5);
-  using Clock = std::chrono::steady_clock;
-  double seconds = 1e30;
-  Scratch scratch;
-  for (int i = 0; i < 3 && (i == 0 || seconds < 1); ++i) {  // the first one also warms up
-    const auto begin = Clock::now();
-    problem.evaluate(table.design(0), scratch, table.slot(0));
-    seconds = std::min(seconds, std::chrono::duration<double>(Clock::now() - begin).count());
+  EvaluationTable table(problem.shape(detail));
+  table.extend(study.baseline ? 2 : 1);
+  for (std::size_t i = 0; i < problem.space().dimension(); ++i) {
+    table.design(0)[i] = problem.space().from_unit(i, 0.5);
+    if (study.baseline) table.design(1)[i] = (*study.baseline)[problem.parts().varies[i]];
   }
-  std::int64_t limit = 0;
-  for (const auto& stage : study.stages) limit += stage.optimiser->evaluation_limit(problem);
-  std::cout << printable(study.name) << ": at most " << limit << " evaluations";
-  if (seeds > 1) std::cout << " for each of " << seeds << " seeds";
-  std::cout << " of about " << duration_text(seconds) << ", together about "
-            << duration_text(seconds * static_cast<double>(limit) * seeds / threads) << " on " << threads
+  using Clock = std::chrono::steady_clock;
+  Scratch scratch;
+  double longest = 0;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    double seconds = 1e30;
+    for (int i = 0; i < 3 && (i == 0 || seconds < 1); ++i) {  // the first one also warms up
+      const auto begin = Clock::now();
+      problem.evaluate(table.design(row), scratch, table.slot(row));
+      seconds = std::min(seconds, std::chrono::duration<double>(Clock::now() - begin).count());
+    }
+    longest = std::max(longest, seconds);
+  }
+  return longest;
+}
+
+/// What the evaluations will cost at most, from timed ones. Optimisers that are told all of every design, such as
+/// solvers, ask for one after the other; those to whom a broken design-level margin is enough, for many at a time.
+void print_estimate(const Study& study, int seeds, int threads) {
+  std::int64_t plain = 0, with_derivatives = 0, in_turn = 0;
+  for (const auto& stage : study.stages) {
+    const Detail detail = stage.optimiser->detail();
+    const std::int64_t limit = stage.optimiser->evaluation_limit(*study.problem);
+    (detail == Detail::derivatives ? with_derivatives : plain) += limit;
+    if (detail == Detail::complete) in_turn += limit;
+  }
+  const auto all = static_cast<double>(plain), turn = static_cast<double>(in_turn);
+  double together = 0;
+  std::vector<std::string> parts;
+  const auto add = [&](std::int64_t limit, const char* what, double seconds, double rounds) {
+    parts.push_back(std::to_string(limit) + what + " of about " + duration_text(seconds));
+    together += seconds * rounds;
+  };
+  if (plain > 0 || with_derivatives == 0)
+    add(plain, " evaluations", seconds_of_one(study, Detail::complete), (all - turn) / threads + turn);
+  if (with_derivatives > 0)
+    add(with_derivatives, plain > 0 ? " with derivatives" : " evaluations with derivatives",
+        seconds_of_one(study, Detail::derivatives), static_cast<double>(with_derivatives));
+  std::cout << printable(study.name) << ": at most " << join(parts, " and ");
+  if (seeds > 1) std::cout << ", for each of " << seeds << " seeds";
+  std::cout << ", together about " << duration_text(together * seeds) << " on " << threads
             << (threads == 1 ? " thread" : " threads") << std::endl;  // at once, also into a pipe
 }
 
@@ -119,11 +149,12 @@ struct SeedTable {
   int feasible_seeds = 0;
   std::vector<Row> rows = {{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
+  std::string note = {};  ///< the first
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
     const FinalRecord final = contents.final.value_or(FinalRecord());
     const auto objective = [](const std::optional<DesignRecord>& record) -> std::optional<double> {
-      if (!record || record->objectives.empty()) return {};
+      if (!record || record->objectives.empty() || std::isnan(record->objectives[0])) return {};
       return record->objectives[0];
     };
     const bool feasible = objective(final.best) && final.best->status == Status::feasible;
@@ -136,6 +167,8 @@ struct SeedTable {
     const auto value = trade_off ? evolved_hypervolume(study, contents) : objective(final.best);
     const std::string best_text = feasible ? keep(value, best) : "nothing feasible";
     seconds.push_back(contents.seconds);
+    if (note.empty() && !contents.notes.empty())
+      note = "note of seed " + std::to_string(contents.seed) + ": " + printable(join(contents.notes, "; ")) + '\n';
     rows.push_back({std::to_string(contents.seed), best_text, trade_off ? "" : keep(objective(final.best_exact), exact),
                     std::to_string(contents.evaluations()), duration_text(contents.seconds), file});
   }
@@ -170,20 +203,33 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   SeedTable table{study.problem->objectives().size() > 1};
   const auto screen = make_progress(arguments.common);
   SeedProgress progress(*screen, arguments.seeds);
+  std::optional<std::string> unwritten;  // why what was found is not in its file
   for (int i = 0; i < arguments.seeds && session.exit_code == kDone; ++i) {
     study.seed = first + static_cast<std::uint64_t>(i);
     progress.next();
-    const RunOutcome outcome = run_one(study, file_of(i), arguments, session, progress);
-    if (outcome.stopped.empty()) table.add(study, outcome.contents, file_of(i));
+    RunEnd end;
+    try {
+      end = end_of_run([&] { return run_one(study, file_of(i), arguments, session, progress); });
+    } catch (const StorageError& failure) {
+      if (table.seconds.empty()) throw;
+      unwritten = failure.what();
+      break;
+    }
+    const RunOutcome& outcome = end.outcome;
+    if (outcome.stopped.empty()) table.add(study, outcome.contents, end.unwritten ? "not written" : file_of(i));
+    unwritten = end.unwritten;
+    if (unwritten) break;
     const bool last = i == arguments.seeds - 1;
     if (!outcome.stopped.empty() || (StopRequest::signal() != 0 && !last)) session.exit_code = kStoppedEarly;
   }
   screen->finish();
   table.add_spread();
-  if (!arguments.common.quiet)
+  if (!arguments.common.quiet || unwritten)
     std::cout << printable(study.name) << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
               << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
-              << " seeds ended feasible\n";
+              << " seeds ended feasible\n"
+              << table.note << std::flush;
+  if (unwritten) throw StorageError(*unwritten);
   if (session.exit_code == kStoppedEarly)
     std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study) << " --seeds "
               << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output) << '\n';
@@ -202,9 +248,9 @@ void run(const RunArguments& arguments, Session& session) {
     return;
   }
   const auto progress = make_progress(arguments.common);
-  const RunOutcome outcome = run_one(study, output, arguments, session, *progress);
+  const RunEnd end = end_of_run([&] { return run_one(study, output, arguments, session, *progress); });
   progress->finish();
-  print_outcome(outcome, study, output, arguments.common, session);
+  print_end(end, study, output, arguments.common, session);
 }
 
 }  // namespace

@@ -37,13 +37,23 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-void print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
-                   const RunningArguments& arguments, Session& session) {
-  if (!arguments.quiet) std::cout << summary_text(outcome.contents, study);
+RunEnd end_of_run(const std::function<RunOutcome()>& run) {
+  try {
+    return {run()};
+  } catch (const UnwrittenOutcome& failure) {
+    return {failure.outcome, failure.what()};
+  }
+}
+
+void print_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
+               Session& session) {
+  const RunOutcome& outcome = end.outcome;
+  if (!arguments.quiet || end.unwritten) std::cout << summary_text(outcome.contents, study);
   if (!outcome.stopped.empty()) {
     // Also when quiet: it must not be missed.
-    std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations()
-              << " evaluations; go on with: " << session.program << " resume " << quoted(file) << '\n';
+    std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
+    if (!end.unwritten) std::cout << "; go on with: " << session.program << " resume " << quoted(file);
+    std::cout << '\n';
     session.exit_code = kStoppedEarly;
   } else if (!arguments.quiet) {
     char line[200];
@@ -52,9 +62,12 @@ void print_outcome(const RunOutcome& outcome, const Study& study, const std::str
                   "the time\n",
                   static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
                   100 * outcome.parallel_efficiency, team_size(arguments.threads), 100 * outcome.checkpoint_share);
-    std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n") << "written to "
-              << file << '\n';
+    std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
+    if (!end.unwritten) std::cout << "written to " << file << '\n';
   }
+  if (!end.unwritten) return;
+  std::cout << std::flush;
+  throw StorageError(*end.unwritten);
 }
 
 }  // namespace pkm

@@ -1,7 +1,9 @@
 // What `run` and `resume` have in common.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/study/run_study.hpp"
@@ -25,8 +27,16 @@ std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
 /// A word for a shell: quoted where it needs to be.
 std::string quoted(const std::string& word);
-/// The end of a run, and what the program's exit code is for it.
-void print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
-                   const RunningArguments& arguments, Session& session);
+/// How a run ended, also where what it found could not be written.
+struct RunEnd {
+  RunOutcome outcome;
+  std::optional<std::string> unwritten = {};  ///< why
+};
+RunEnd end_of_run(const std::function<RunOutcome()>& run);
+
+/// The end of a run, and what the program's exit code is for it. Throws StorageError after what it has to tell where
+/// that is not in the file.
+void print_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
+               Session& session);
 
 }  // namespace pkm

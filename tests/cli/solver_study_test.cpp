@@ -8,6 +8,7 @@ namespace pkm::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 
 class SolverProgram : public StudyProgram {
  protected:
@@ -49,6 +50,30 @@ TEST_F(SolverProgram, KilledInsideNloptAndResumedEndsTheSame) {
 TEST_F(SolverProgram, KilledInsideIpoptAndResumedEndsTheSame) {
   write_toml(kIpopt);
   kill_at_random(8, 31);
+}
+
+TEST_F(SolverProgram, TheEstimateCountsDerivatives) {
+  const auto estimate = [&](const std::vector<std::string>& more = {}) {
+    std::vector<std::string> command = {"run", "study.toml", "--force", "--threads", "1"};
+    command.insert(command.end(), more.begin(), more.end());
+    EXPECT_EQ(run(command), 0) << output_;
+    const auto at = output_.find("kill me: at most ");
+    return at == std::string::npos ? output_ : output_.substr(at, output_.find('\n', at) - at);
+  };
+  const std::string ga = "[[stage]]\noptimiser = \"ga\"\npopulation = 10\ngenerations = 2\n";
+  const std::string one = "of about [0-9.]+ [a-z]+", all = ", together about [0-9.]+ [a-z]+ on 1 thread";
+  const std::string solver =
+      "[[stage]]\noptimiser = \"nlopt\"\nstart = \"best-of-basins\"\nstarts = 2\nevaluations = 30\n";
+  write_toml(ga + solver);
+  EXPECT_THAT(estimate(),
+              MatchesRegex("kill me: at most 30 evaluations " + one + " and 60 with derivatives " + one + all));
+  EXPECT_THAT(estimate({"--seeds", "2"}),
+              MatchesRegex("kill me: at most 30 evaluations " + one + " and 60 with derivatives " + one +
+                           ", for each of 2 seeds" + all));
+  write_toml(ga);
+  EXPECT_THAT(estimate(), MatchesRegex("kill me: at most 30 evaluations " + one + all));
+  write_toml("[[stage]]\noptimiser = \"nlopt\"\nstart = \"none\"\nmultistart = 3\nevaluations = 20\n");
+  EXPECT_THAT(estimate(), MatchesRegex("kill me: at most 60 evaluations with derivatives " + one + all));
 }
 
 TEST_F(SolverProgram, CtrlCStopsInsideASolver) {

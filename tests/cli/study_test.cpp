@@ -274,6 +274,61 @@ TEST_F(GaProgram, AFullDiskIsAnErrorAndTheLastCheckpointStays) {
   EXPECT_EQ(first_difference(read("straight.h5"), read("study.h5")), "");
 }
 
+TEST_F(GaProgram, AResultThatCannotBeWrittenIsToldBeforeTheFailure) {
+  write_toml(120, "[checkpoint]\nevery = 1000\n");  // the first write and the last one
+  ChildProcess::Settings small;
+  small.file_size = 110'000;
+  const std::string failure = "the previous state is kept (File too large)";
+  for (const bool quiet : {false, true}) {
+    std::vector<std::string> command = {"run", "study.toml", "--force"};
+    if (quiet) command.push_back("--quiet");
+    EXPECT_EQ(run(command, small), 1);
+    const auto result = output_.find("kill me: finished, "), best = output_.find("workspace-ratio  ");
+    EXPECT_LT(result, best) << output_;
+    EXPECT_LT(best, output_.find(failure)) << output_;
+    EXPECT_NE(output_.find(failure), std::string::npos) << output_;
+    EXPECT_EQ(output_.find("written to"), std::string::npos) << output_;
+    EXPECT_EQ(read("study.h5").evaluations(), 0);
+  }
+  EXPECT_EQ(run({"resume", "study.h5", "--quiet"}, small), 1);
+  EXPECT_LT(output_.find("kill me: finished, "), output_.find(failure)) << output_;
+  EXPECT_EQ(run({"run", "study.toml", "--seeds", "3"}, small), 1);
+  EXPECT_LT(output_.find("kill me, 1 of 3 seeds"), output_.find(failure)) << output_;
+  EXPECT_NE(output_.find("not written"), std::string::npos) << output_;
+  ASSERT_EQ(run({"resume", "study.h5", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  EXPECT_EQ(first_difference(read("straight.h5"), read("study.h5")), "");
+}
+
+TEST_F(GaProgram, NothingIsCalledExactThatTheBoxDoesNotCut) {
+  const auto write = [&](const std::string& box) {
+    std::ofstream(path("study.toml")) << "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.15, max = 0.3 "
+                                         "}\n[workspace]\nmethod = \"voxels\"\nbox = { z = [-2, 0], theta = [\"-90 "
+                                         "deg\", \"90 deg\"], x = "
+                                      << box
+                                      << " }\n[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = "
+                                         "\"ga\"\npopulation = 4\ngenerations = 2\n";
+  };
+  write("[0, 1]");
+  ASSERT_EQ(run({"run", "study.toml"}), 0) << output_;
+  EXPECT_NE(output_.find("workspace-volume, exact"), std::string::npos) << output_;
+  EXPECT_EQ(output_.find("no exact values"), std::string::npos) << output_;
+  write("[0.4, 0.5]");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"run", "study.toml", "--force"}, {"show", "study.h5"}}) {
+    ASSERT_EQ(run(command), 0) << output_;
+    EXPECT_EQ(output_.find(", exact"), std::string::npos) << output_;
+    EXPECT_NE(output_.find("note: no exact values of the best design: columns of mechanism 4ppa-2par cannot be cut by "
+                           "workspace.box, which has to hold all poses that the design may reach (x = 0 .. 0.8 m, "),
+              std::string::npos)
+        << output_;
+  }
+  ASSERT_EQ(run({"show", "study.h5", "--json"}), 0) << output_;
+  EXPECT_EQ(output_.find("best_exact"), std::string::npos) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--force", "--seeds", "2"}), 0) << output_;
+  EXPECT_NE(output_.find("note of seed 1: no exact values of the best design"), std::string::npos) << output_;
+}
+
 TEST_F(GaProgram, UnusableFilesAreErrors) {
   write_toml(2);
   ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;

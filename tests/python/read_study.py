@@ -7,6 +7,7 @@ read_study.py contiguous FILE     writes one dataset anew, in h5py's own layout
 read_study.py put FILE PATH INDEX VALUE  changes one value
 read_study.py shorten FILE PATH   takes the last row off a dataset
 read_study.py remove FILE PATH    removes a dataset
+read_study.py wide FILE PATH      says where the names of a dataset's columns are, and some of them
 read_study.py forge FILE KIND     does what pkmopt never writes, see forge()
 """
 
@@ -42,6 +43,10 @@ def values(path):
 def labels(path):
     count = 0
 
+    def listed(item, name):
+        label = item.attrs[name]
+        return item.file[label].asstr()[:] if isinstance(label, str) and label.startswith("/") else label
+
     def visit(name, item):
         nonlocal count
         assert item.attrs["description"], name
@@ -54,7 +59,9 @@ def labels(path):
             if math.prod(item.chunks) * item.dtype.itemsize >= 1024:
                 assert item.compression == "gzip" and item.shuffle, name
         if "columns" in item.attrs:
-            assert len(item.attrs["columns"]) == len(item.attrs["unit"]) == item.shape[-1], name
+            names = listed(item, "columns")
+            assert len(names) == len(listed(item, "unit")) == item.shape[-1], name
+            assert len(set(names)) == len(names), name
 
     with h5py.File(path, "r") as f:
         assert f.userblock_size == 512
@@ -97,6 +104,13 @@ def remove(path, name):
         del f[name]
 
 
+def wide(path, name):
+    with h5py.File(path, "r") as f:
+        beside = f[name].attrs["columns"]
+        names = f[beside].asstr()[:] if isinstance(beside, str) else beside
+        print(beside if isinstance(beside, str) else "attribute", len(names), names[0], names[-1])
+
+
 def forge(path, kind):
     rows = "stages/1/evaluations/objective"
     with h5py.File(path, "r+") as f:
@@ -130,5 +144,5 @@ def forge(path, kind):
 
 
 if __name__ == "__main__":
-    commands = {c.__name__: c for c in (values, labels, snippets, contiguous, put, shorten, remove, forge)}
+    commands = {c.__name__: c for c in (values, labels, snippets, contiguous, put, shorten, remove, wide, forge)}
     commands[sys.argv[1]](*sys.argv[2:])

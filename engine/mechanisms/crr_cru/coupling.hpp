@@ -2,13 +2,16 @@
 // Derivation: README.md.
 #pragma once
 
+#include <limits>
+
 #include "engine/dynamics/coupling.hpp"
 #include "engine/mechanisms/crr_cru/dynamics.hpp"
 #include "engine/mechanisms/crr_cru/joint_inertia.hpp"
 
 namespace pkm::crr_cru {
 
-/// What all poses of one phi have in common.
+/// What all poses of one phi have in common. NaN, and with it M_q in every row, where J, which depends on phi alone, is
+/// singular to working precision.
 template <class S>
 struct InertiaFrame : SlideFrame<S> {
   std::array<Vector3<S>, 4> arm;  ///< C_i - D
@@ -21,7 +24,9 @@ InertiaFrame<S> inertia_frame(const Geometry<S>& g, const Masses<S>& b, const S&
   std::array<Vector<S, 3>, 4> turn;
   for (std::size_t i = 0; i < 4; ++i) turn[i] = turning(arm[i]);
   const S j1 = turn[0][0], j2 = turn[1][1], j4 = turn[3][1];
-  const S w = S(1.0) / (j4 - j2);
+  const Matrix<double, 3, 3> J = {
+      {1, 0, value_of(j1), 0, 1, value_of(j2), 0, 1, value_of(j4)}};  // of x, y, phi; z stands alone
+  const S w = is_singular(J) ? S(std::numeric_limits<double>::quiet_NaN()) : S(S(1.0) / (j4 - j2));
   const Vector<S, 4> X = {{j1 * w * -1.0, j2 * w * -1.0, S(0.0), w}};  // per rho_4 rate
 
   Matrix<S, 4, 4> M = platform_inertia(g, b, sin, cos);

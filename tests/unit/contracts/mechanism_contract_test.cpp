@@ -235,6 +235,31 @@ TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
   }
 }
 
+TEST_P(MechanismContract, ColumnsAreCutByABoxOrRefuseIt) {
+  if (!mechanism().columns()) GTEST_SKIP() << "no columns";
+  for (const Sweep& sweep : info().sweeps) {
+    SCOPED_TRACE(test::words(info(), sweep));
+    const VoxelMap all = voxel_map(mechanism(), parameters(), test::voxels(info(), sweep, 1));
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k) box[k] = {all.lower[k], all.upper[k]};
+    SurveyPlan columns = test::columns(info(), sweep);
+    const double whole = survey(mechanism(), parameters(), columns).volume;
+    columns.method = ColumnOptions{.tolerance = 1e-8, .nodes = {}, .box = box};
+    if (!mechanism().columns()->take_box()) {
+      EXPECT_THROW(prepare_survey(mechanism(), columns, {}), std::invalid_argument);
+      continue;
+    }
+    EXPECT_NEAR(survey(mechanism(), parameters(), columns).volume / whole, 1, 1e-7);
+    box[0][1] = (box[0][0] + box[0][1]) / 2;
+    std::get<ColumnOptions>(columns.method).box = box;
+    SurveyPlan voxels = test::voxels(info(), sweep, 60);
+    std::get<VoxelOptions>(voxels.method).box = box;
+    const double cut = survey(mechanism(), parameters(), columns).volume;
+    EXPECT_LT(cut, 0.9 * whole);
+    EXPECT_NEAR(survey(mechanism(), parameters(), voxels).volume / cut, 1, 0.03);
+  }
+}
+
 TEST_P(MechanismContract, InactiveLimitsLieInTheirRangeAndCutNothing) {
   for (const Sweep& sweep : test::sweeps(mechanism()))
     for (SurveyPlan& p : test::plans(mechanism(), sweep, 30)) {

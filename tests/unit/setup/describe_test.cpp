@@ -10,10 +10,10 @@ using testing::kSmallest;
 using testing::read_right;
 
 TEST(Describe, SpellsOutEveryDefault) {
-  EXPECT_EQ(describe(read_right(kSmallest)), R"(  study      wide
+  EXPECT_EQ(describe(read_right(kSmallest)), R"(  study      wide                         (default)
   file       runs/wide.toml
-  seed       1
-  output     wide.h5
+  seed       1                            (default)
+  output     wide.h5                      (default)
   mechanism  slider: a machine for tests
 
 variables
@@ -25,9 +25,9 @@ fixed parameters
   mass  2 kg     (default)  mass
 
 workspace
-  method     columns
-  tolerance  1e-08 relative
-  y          middle of each design
+  method     columns                (default)
+  tolerance  1e-08 relative         (default)
+  y          middle of each design  (default)
 
 limits of a pose
   gap_min    0 m      (default: cuts nothing)  least gap
@@ -48,8 +48,8 @@ stages
     width       3        (default)
 
 run
-  checkpoint  adapts: at most 2 % of the run time
-  final       best design as it is
+  checkpoint  adapts: at most 2 % of the run time  (default)
+  final       best design as it is                 (default)
 )");
 }
 
@@ -70,7 +70,7 @@ fixed parameters
 
 workspace
   method  voxels
-  cells   x = 32, z = 34, theta = 60
+  cells   x = 32, z = 34, theta = 60                                             (default)
   box     x = 0 .. 0.8 m, z = -1 .. 1 m, theta = -1.5707963267948966 .. 1.5 rad
   y       0.2 m
 
@@ -112,6 +112,33 @@ run
 
 warning: variable a never takes its max 0.72 m: the last value that min + k step reaches is 0.65 m
 )");
+}
+
+/// The line of a description that begins with these words.
+std::string line_of(const std::string& text, const std::string& begin) {
+  const std::string lines = '\n' + text;
+  const auto at = lines.find("\n  " + begin);
+  return at == std::string::npos ? "no line" : lines.substr(at + 1, lines.find('\n', at + 1) - at - 1);
+}
+
+TEST(Describe, MarksWhatIsGivenAndEqualsTheDefault) {
+  const std::string given = describe(read_right(
+      "[study]\nname = \"wide\"\nseed = 1\noutput = \"wide.h5\"\n" + kSmallest +
+      "population = 40\nrate = 0.25\nwidth = 3\n[mechanism.parameters]\nb = 0.8\n[workspace]\nmethod = \"columns\"\n"
+      "tolerance = 1e-8\ny = \"middle\"\nlimits = { gap_min = 0, angle_max = 1 }\n"));
+  for (const char* const row :
+       {"study", "seed", "output", "b ", "method", "tolerance", "y ", "  population", "  width"})
+    EXPECT_TRUE(line_of(given, row).find("(default)") != std::string::npos) << line_of(given, row);
+  EXPECT_EQ(line_of(given, "  rate").find("(default)"), std::string::npos) << line_of(given, "  rate");
+  EXPECT_NE(line_of(given, "gap_min").find("from workspace.limits (line 22) (default: cuts nothing)"),
+            std::string::npos)
+      << given;
+  EXPECT_EQ(line_of(given, "angle_max").find("(default"), std::string::npos) << given;
+  const std::string other = describe(
+      read_right(kSmallest + "width = 4\n[workspace]\nmethod = \"voxels\"\ncells = { x = 32, z = 34, theta = 61 }\n"));
+  for (const char* const row : {"method", "cells", "  width"})
+    EXPECT_EQ(line_of(other, row).find("(default)"), std::string::npos) << line_of(other, row);
+  EXPECT_NE(line_of(other, "box").find("(default)"), std::string::npos) << other;
 }
 
 }  // namespace

@@ -60,6 +60,24 @@ map (1, 2, 3) ['x', 'z', 'theta']
 
 TEST_F(H5py, FindsUnitDescriptionAndLayoutEverywhere) { EXPECT_THAT(python("labels"), HasSubstr(" datasets\n")); }
 
+TEST_F(H5py, FindsTheNamesOfMoreColumnsThanAnAttributeHolds) {
+  for (const std::size_t count : {4000u, 4001u, 5000u}) {
+    StudyContents study = test::sample_study();
+    study.problem.margins.clear();
+    for (std::size_t i = 0; i < count; ++i) study.problem.margins.push_back({"m" + std::to_string(i), "m", ""});
+    study.stages.clear();
+    study.stages.push_back(test::sample_stage(study.problem.shape(), 2, 3));
+    study.final.reset();
+    study.best = {};
+    write_study(path_, study);
+    EXPECT_EQ(first_difference(read_study(path_), study), "") << count;
+    EXPECT_THAT(python("labels"), HasSubstr(" datasets\n"));
+    const std::string margin = "/stages/1/evaluations/margin";
+    EXPECT_EQ(python("wide", margin), (count <= 4000 ? "attribute" : margin + "_columns") + " " +
+                                          std::to_string(count) + " m0 m" + std::to_string(count - 1) + "\n");
+  }
+}
+
 TEST_F(H5py, RunsTheSnippetsOfTheDocumentation) {
   EXPECT_THAT(python("snippets", "'" + std::string(PKM_TEST_DATA) + "/../../engine/storage/README.md'"),
               testing::EndsWith("\n4 snippets\n"));

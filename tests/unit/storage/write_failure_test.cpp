@@ -112,18 +112,6 @@ TEST(WriteFailure, SymbolicLinksInACircle) {
             folder / "a.h5" + ": cannot be opened (Too many levels of symbolic links)");
 }
 
-TEST(WriteFailure, WhatHdf5CannotHold) {
-  const Folder folder;
-  const std::string path = folder / "s.h5";
-  StudyContents study;
-  study.problem.objectives.resize(1);
-  study.problem.margins.resize(5000);  // an attribute, here the columns' names, holds 64 kB
-  study.stages.emplace_back().table = EvaluationTable(study.problem.shape());
-  EXPECT_THAT(storage_error([&] { write_study(path, study); }),
-              testing::StartsWith(path + ": cannot be written (/stages/1/evaluations/margin: "));
-  EXPECT_FALSE(std::filesystem::exists(path));
-}
-
 TEST(WriteFailure, WhatNobodyCouldReadIsNotWritten) {
   const Folder folder;
   const std::string path = folder / "s.h5";

@@ -12,15 +12,18 @@
 namespace pkm {
 namespace {
 
+Study read(const std::string& text) {
+  return read_study_toml(text, "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
+}
+
 /// A study of a and b within their bounds, rounded to `round`.
 Study study(const std::string& a_bounds, const std::string& b_bounds, const std::string& round) {
-  return read_study_toml(
+  return read(
       "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = " + a_bounds + "\nb = " + b_bounds +
-          "\n[workspace]\nmethod = \"voxels\"\ncells = { x = 8, z = 8, theta = 8 }\n[[objective]]\ntype = "
-          "\"workspace-volume\"\n[[report]]\ntype = \"conditioning\"\n[[stage]]\noptimiser = \"ga\"\n[final]\nround "
-          "= " +
-          round + "\n",
-      "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
+      "\n[workspace]\nmethod = \"voxels\"\ncells = { x = 8, z = 8, theta = 8 }\n[[objective]]\ntype = "
+      "\"workspace-volume\"\n[[report]]\ntype = \"conditioning\"\n[[stage]]\noptimiser = \"ga\"\n[final]\nround "
+      "= " +
+      round + "\n");
 }
 
 /// The end of a study whose only evaluation is a design given by a and b.
@@ -81,6 +84,70 @@ TEST(FinalRecord, RoundedToNoMechanismIsNotEvaluated) {
   EXPECT_TRUE(std::isnan(f.rounded->objectives[0]));
   ASSERT_EQ(f.rounded->reports.size(), 1u);
   EXPECT_TRUE(std::isnan(f.rounded->reports[0]));
+}
+
+/// The end of a study by voxels whose only evaluation is its baseline.
+struct Ended {
+  FinalRecord final;
+  std::vector<std::string> notes;
+};
+Ended end_in_box(const std::string& mechanism, const std::string& variable, const std::string& box,
+                 const std::string& more = "") {
+  const Study s = read("[mechanism]\ntype = \"" + mechanism + "\"\n[variables]\n" + variable +
+                       " = { min = 0.15, max = 1.5 }\n[baseline]\n[workspace]\nmethod = \"voxels\"\n" +
+                       (box.empty() ? "" : "box = { " + box + " }\n") + "[[objective]]\ntype = \"workspace-volume\"\n" +
+                       more + "[[stage]]\noptimiser = \"ga\"\n");
+  StudyContents contents = new_contents(s);
+  contents.stages.push_back({"ga", {}, EvaluationTable(s.problem->shape())});
+  contents.stages[0].table.extend(1);
+  contents.stages[0].table.design(0)[0] = (*s.baseline)[s.problem->parts().varies[0]];
+  contents.best = {0, 0};
+  contents.notes = {"another", "no exact values of the best design: of an end that is no more"};
+  Ended ended{final_record(s, contents), {}};
+  ended.notes = contents.notes;
+  return ended;
+}
+
+TEST(FinalRecord, NothingIsExactWhereColumnsCannotBeCutByTheBox) {
+  const Ended free = end_in_box("4ppa-2par", "b", "");
+  ASSERT_TRUE(free.final.best_exact && free.final.baseline_exact);
+  EXPECT_EQ(free.notes, std::vector<std::string>{"another"});
+  const Ended cut = end_in_box("4ppa-2par", "b", "x = [0.4, 0.5], z = [-0.9, -0.8], theta = [-0.1, 0.1]");
+  EXPECT_GT(cut.final.best->volume, 0);
+  EXPECT_LT(cut.final.best->volume, 0.1 * free.final.best->volume);
+  EXPECT_FALSE(cut.final.best_exact || cut.final.baseline_exact);
+  const std::string why =
+      ": columns of mechanism 4ppa-2par cannot be cut by workspace.box, which has to hold all poses that the design "
+      "may reach (x = 0 .. 0.8 m, z = -1.2999999999999998 .. -0.15 m, theta = -1.5707963267948966 .. "
+      "1.5707963267948966 rad)";
+  EXPECT_EQ(cut.notes, (std::vector<std::string>{"another", "no exact values of the baseline" + why,
+                                                 "no exact values of the best design" + why}));
+  EXPECT_FALSE(end_in_box("2t1r-p-hybrid", "e", "x = [-0.1, 0], z = [0, 2], beta = [-1, 1]").final.best_exact);
+}
+
+TEST(FinalRecord, ABoxThatHoldsAllPosesChangesNothing) {
+  const Ended free = end_in_box("4ppa-2par", "b", "");
+  const Ended held = end_in_box("4ppa-2par", "b", "x = [0, 0.8], z = [-1.3, 0], theta = [\"-90 deg\", \"90 deg\"]");
+  ASSERT_TRUE(held.final.best_exact && held.final.baseline_exact);
+  EXPECT_EQ(held.final.best_exact->volume, free.final.best_exact->volume);
+  EXPECT_EQ(held.notes, free.notes);
+}
+
+TEST(FinalRecord, ABoxCutsColumnsThatCanBeCut) {
+  const Ended cut = end_in_box("3crr-r-cru", "l", "x = [0.1, 0.16], y = [0.1, 0.2], z = [0.2, 0.25]");
+  ASSERT_TRUE(cut.final.best_exact);
+  EXPECT_GT(cut.final.best_exact->volume, 0);
+  EXPECT_NEAR(cut.final.best_exact->volume, cut.final.best->volume, 0.01 * cut.final.best->volume);
+}
+
+TEST(FinalRecord, WhatIsReadFromARegionOnVoxelsIsNotExact) {
+  const Ended found =
+      end_in_box("4ppa-2par", "b", "",
+                 "[[report]]\ntype = \"conditioning\"\nregion = \"task\"\n[[region]]\nname = \"task\"\nmethod = "
+                 "\"voxels\"\nbox = { x = [0.4, 0.5], z = [-0.9, -0.8], theta = [-0.1, 0.1] }\n");
+  EXPECT_GT(found.final.best->reports[0], 0);
+  EXPECT_GT(found.final.best_exact->objectives[0], 0);
+  EXPECT_TRUE(std::isnan(found.final.best_exact->reports[0]));
 }
 
 }  // namespace

@@ -71,6 +71,29 @@ TEST(CrrCruCoupling, SamplesEqualTheEquationsOfMotion) {
       }
 }
 
+TEST(CrrCruCoupling, ThereIsNoneInAParallelSingularity) {
+  for (const Platform platform : {Platform::jointed, Platform::rigid}) {
+    const std::string name = platform == Platform::jointed ? "3crr-r-cru" : "quadrupteron";
+    const std::vector<double> p = nominal();
+    const auto g = geometry(platform, std::span<const double>(p));
+    const auto b = masses(MassModel::table, std::span<const double>(p));
+    const double singular = kPi / 2 - offset(yaw(g));
+    const auto inertia = [&](double phi) {
+      return joint_inertia(g, b, inertia_frame(g, b, phi), {0.15, 0.15, 0.2}, WorkingMode{-1, -1, 1, -1});
+    };
+    for (const double phi : {singular - 1e-9, singular + 1e-9})
+      for (const double index : coupling_indices(inertia(phi))) EXPECT_TRUE(std::isfinite(index)) << name;
+    for (const double phi : {singular - 1e-14, singular, singular + 1e-14}) {
+      for (const double index : coupling_indices(inertia(phi))) EXPECT_TRUE(std::isnan(index)) << name;
+      EXPECT_EQ(inertia_condition(inertia(phi)), 0) << name;
+      std::vector<Dual4> dual(p.begin(), p.end());
+      const auto slopes = inertia_frame(geometry(platform, std::span<const Dual4>(dual)),
+                                        masses(MassModel::table, std::span<const Dual4>(dual)), Dual4(phi));
+      EXPECT_TRUE(std::isnan(slopes.k.a)) << name;
+    }
+  }
+}
+
 TEST(CrrCruCoupling, ColumnsAgreeWithFineVoxelsInABox) {
   for (const std::string& name : both()) {
     const Box box = {{{0.05, 0.25}, {0.06, 0.30}, {0.12, 0.30}}};
