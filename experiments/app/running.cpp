@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iostream>
 
+#include "engine/report/standing.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/version.hpp"
 
@@ -37,9 +38,16 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+void conclude(const std::optional<Verdict>& verdict, const RunningArguments& arguments, Session& session) {
+  if (!verdict) return;
+  session.exit_code = kNothingFeasible;
+  if (arguments.quiet) std::cerr << session.program << ": " << one_line(*verdict) << '\n';
+}
+
 void print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
                    const RunningArguments& arguments, Session& session) {
-  if (!arguments.quiet) std::cout << summary_text(outcome.contents, study);
+  const auto verdict = verdict_on(outcome.contents, study.problem.get());
+  if (!arguments.quiet) std::cout << summary_text(outcome.contents, study, verdict);
   if (!outcome.stopped.empty()) {
     // Also when quiet: it must not be missed.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations()
@@ -55,6 +63,7 @@ void print_outcome(const RunOutcome& outcome, const Study& study, const std::str
     std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n") << "written to "
               << file << '\n';
   }
+  if (outcome.stopped.empty()) conclude(verdict, arguments, session);
 }
 
 }  // namespace pkm

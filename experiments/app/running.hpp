@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/problem/verdict.hpp"
 #include "engine/study/run_study.hpp"
 #include "experiments/app/commands.hpp"
 
@@ -25,6 +26,8 @@ std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
 /// A word for a shell: quoted where it needs to be.
 std::string quoted(const std::string& word);
+/// Sets the exit code where the study found nothing, and says so in a line on stderr when quiet.
+void conclude(const std::optional<Verdict>& verdict, const RunningArguments& arguments, Session& session);
 /// The end of a run, and what the program's exit code is for it.
 void print_outcome(const RunOutcome& outcome, const Study& study, const std::string& file,
                    const RunningArguments& arguments, Session& session);
