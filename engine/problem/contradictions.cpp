@@ -116,7 +116,7 @@ std::optional<Box> derived_box(const Mechanism& mechanism, const std::vector<dou
     Box box;
     for (std::size_t axis = 0; axis < 3; ++axis) box[axis] = {map.lower[axis], map.upper[axis]};
     return box;
-  } catch (const std::exception&) {
+  } catch (const std::invalid_argument&) {
     return {};  // the mechanism does not say where its workspace is
   }
 }

@@ -190,7 +190,7 @@ std::optional<Verdict> verdict_on(const std::vector<const EvaluationTable*>& tab
   if (problem) add(contradictions(problem->parts()));
   if (feasible == 0) add(broken_constraints(designs));
   if (failed > 0) add({failure(designs, failed, all)});
-  if (problem && problem->report(designs.parameters(least)).survey.volume == 0)
+  if (problem && status_of(least) != Status::failed && problem->report(designs.parameters(least)).survey.volume == 0)
     add(limits_that_empty(*problem, designs.parameters(least)));
   return verdict;
 }

@@ -105,7 +105,7 @@ std::string probe_text(const Probe& probe) {
   if (!probe.verdict) return text;
   std::vector<Reason> reasons = probe.verdict->reasons;
   std::erase_if(reasons, [](const Reason& reason) { return reason.kind == "contradiction"; });
-  return text + "warning: " + probe.verdict->sentence + "; a run may still find others\n" + reasons_text(reasons);
+  return text + "note: " + probe.verdict->sentence + "; a run may still find others\n" + reasons_text(reasons);
 }
 
 void check(const CheckArguments& arguments, Session& session) {

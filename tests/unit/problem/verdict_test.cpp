@@ -149,7 +149,7 @@ TEST(Verdict, PutsContradictionsFirst) {
   ASSERT_TRUE(v);
   ASSERT_GE(v->reasons.size(), 2u);
   EXPECT_EQ(v->reasons[0].kind, "contradiction");
-  EXPECT_THAT(v->reasons[1].sentence, HasSubstr("no pose of the least bad design keeps beta_min"));
+  EXPECT_THAT(v->reasons[1].sentence, HasSubstr("no pose of the least bad design keeps beta_max"));
 }
 
 TEST(Verdict, AnEmptyWorkspacesCouplingSaysNothing) {
