@@ -194,6 +194,7 @@ ObjectiveEntry load_entry(Load load, const std::string& what, const std::string&
                                                       : "joint " + joint;
             return what + " of " + of + " along the motion " + context.options.word("motion");
           },
+      .range = not_negative,
       .reads_survey = false,
   };
 }

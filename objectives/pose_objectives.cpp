@@ -5,6 +5,7 @@
 // conditioning tends to 0 unless the singularity margins are positive. Gradient solvers see it through a smooth end of
 // the samples (soft_least, soft_greatest); a quantile is a sample and has no derivative.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/problem/pose_statistic.hpp"
 #include "objectives/list.hpp"
@@ -18,6 +19,12 @@ std::string name_of(const PoseQuantity& quantity) {
   std::string name = quantity.name;
   std::ranges::replace(name, '_', '-');
   return name;
+}
+
+/// ", in [0, 1]"; "" for any number.
+std::string range_words(const PoseQuantity& quantity) {
+  if (!std::isfinite(quantity.least) || !std::isfinite(quantity.greatest)) return {};
+  return ", in [" + shortest(quantity.least) + ", " + shortest(quantity.greatest) + "]";
 }
 
 OptionSpec limb_option(Worst worst) {
@@ -74,6 +81,11 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
                                            " with statistic = \"p95\" is a quantile, which has none; take \"mean\", "
                                            "\"max\" or \"std\"");
       },
+      .range = [&quantity, statistic](const EntryContext& context) -> Range {
+        if ((statistic.empty() ? context.options.word("statistic") : statistic) != "std")
+          return {quantity.least, quantity.greatest};
+        return {0, (quantity.greatest - quantity.least) / 2};
+      },
   };
 }
 
@@ -86,7 +98,7 @@ std::vector<ObjectiveEntry> pose_objectives() {
     const std::string name = name_of(*quantity), meaning = quantity->meaning;
     entries.push_back(entry(*quantity, name,
                             meaning + (quantity->per_joint ? " of the joints" : "") + " over the workspace" +
-                                quantity->range + where_empty(*quantity),
+                                range_words(*quantity) + where_empty(*quantity),
                             least ? Direction::maximise : Direction::minimise, ""));
     if (quantity->per_joint)
       entries.push_back(entry(*quantity, name + "-uniformity",

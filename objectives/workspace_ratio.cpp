@@ -32,6 +32,7 @@ ObjectiveEntry workspace_ratio() {
               return S(design.survey->volume / design.mechanism.size()->of(design.parameters));
             });
           },
+      .range = not_negative,
   };
 }
 

@@ -1,7 +1,23 @@
 // The measure of the feasible set of poses, as the survey found it.
+#include <algorithm>
+
 #include "objectives/list.hpp"
 
 namespace pkm {
+namespace {
+
+/// At most the box that a study gives.
+Range range_of(const EntryContext& context) {
+  Range range{.least = 0};
+  const SurveyPlan& plan = context.plan;
+  const auto integrated = [](const HeldCoordinate& held) { return held.kind == HeldCoordinate::Kind::integrated; };
+  if (!plan.box() || std::ranges::any_of(plan.held, integrated)) return range;
+  range.greatest = 1;
+  for (const auto& [lower, upper] : *plan.box()) range.greatest *= upper - lower;
+  return range;
+}
+
+}  // namespace
 
 ObjectiveEntry workspace_volume() {
   return {
@@ -11,6 +27,7 @@ ObjectiveEntry workspace_volume() {
       .unit = [](const EntryContext& context) { return volume_unit(context.mechanism.info(), context.plan); },
       .make =
           [](const EntryContext&) { return make_quantity([](const auto& design) { return design.survey->volume; }); },
+      .range = range_of,
   };
 }
 

@@ -19,6 +19,12 @@ Refusal Mechanism::refuse(std::span<const double> parameters) const {
   return {};
 }
 
+std::optional<std::array<double, 2>> Mechanism::reach(std::span<const double> parameters, int coordinate) const {
+  const auto all = ranges(parameters);
+  if (!all) return {};
+  return (*all)[static_cast<std::size_t>(coordinate)];
+}
+
 void Mechanism::thresholds(std::span<const double>, const LimitSpec& limits, std::span<double> values) const {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = limits.given[i].value_or(info().limits[i].inactive);
 }

@@ -64,6 +64,10 @@ class Mechanism {
                              const LimitSpec& limits) const = 0;
   /// Ranges of all coordinates that hold the workspace, for surveys that give no box [m, rad]; none: it does not say.
   virtual std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double>) const { return {}; }
+  /// Where a coordinate that a sweep holds has to lie for any pose to be feasible [m or rad]; none: it does not say.
+  /// Here as `ranges` has it. Over a box of parameters its ends are greatest and least at corners of the box.
+  /// @param coordinate  one that a sweep of the mechanism holds
+  virtual std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const;
   /// What HeldCoordinate::Kind::middle means for a design: the value at which a map holds that coordinate, unless its
   /// plan says another [m or rad]; none: it does not say.
   /// @param coordinate  one that a sweep of the mechanism holds

@@ -46,12 +46,12 @@ struct PoseResult {
 struct PoseQuantity {
   enum class Worst { least, greatest };
 
-  const char* name;      ///< of its field, "inertia_condition"; that of its objective has hyphens
-  const char* unit;      ///< SI, "1"
-  const char* meaning;   ///< "inverse condition number of the Jacobian"
-  const char* range;     ///< in words, ", in [0, 1]"; "": any number
-  Worst worst;           ///< which value a design is judged by; objectives go the other way
-  double without_value;  ///< of a pose where it is not finite, and of a workspace without poses
+  const char* name;        ///< of its field, "inertia_condition"; that of its objective has hyphens
+  const char* unit;        ///< SI, "1"
+  const char* meaning;     ///< "inverse condition number of the Jacobian"
+  double least, greatest;  ///< what its values can be
+  Worst worst;             ///< which value a design is judged by; objectives go the other way
+  double without_value;    ///< of a pose where it is not finite, and of a workspace without poses
   bool per_joint = false;
   std::array<PoseResult, 2> results = {};  ///< without a statistic: none
   // Its values at a pose, one or as many as joints, from one of the following; the other is not set.

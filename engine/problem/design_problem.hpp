@@ -19,6 +19,7 @@ struct NamedQuantity {
   std::shared_ptr<const Quantity> quantity;
   std::size_t survey = 0;  ///< which one it reads: 0 the workspace's, k the k-th region's
   bool reads_survey = true;
+  Range range = {};  ///< of the quantity's values
   /// Margins made from an objective: margin = value - least, or greatest - value. Neither: the value is the margin.
   std::optional<double> least, greatest;
 };

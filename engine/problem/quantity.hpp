@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -85,6 +86,14 @@ struct EntryContext {
   std::span<const NamedMotion> motions = {};  ///< the study's
 };
 
+/// What the values of a quantity can be, whatever the design.
+struct Range {
+  double least = -std::numeric_limits<double>::infinity();
+  double greatest = std::numeric_limits<double>::infinity();
+};
+inline Range any_number(const EntryContext&) { return {}; }
+inline Range not_negative(const EntryContext&) { return {.least = 0}; }
+
 inline std::string no_unit(const EntryContext&) { return "1"; }
 inline Refusal serves_all(const Mechanism&) { return {}; }
 inline void needs_nothing(const EntryContext&, Demand&) {}
@@ -103,6 +112,7 @@ struct ObjectiveEntry {
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// What one with these options computes; none: `meaning`.
   std::function<std::string(const EntryContext&)> detail = nullptr;
+  std::function<Range(const EntryContext&)> range = any_number;  ///< of its values
   bool reads_survey = true;  ///< of the workspace, or of the region that a study names; false: the design alone
 };
 

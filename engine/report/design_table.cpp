@@ -12,8 +12,7 @@ std::vector<DesignTable::Column> columns(const StudyContents& contents) {
     return {};
   }
   const FinalRecord& final = *contents.final;
-  std::vector<DesignTable::Column> list = {
-      {contents.problem.objectives.size() > 1 ? "compromise" : "best", final.best, final.best_exact}};
+  std::vector<DesignTable::Column> list = {{name_of_best(contents), final.best, final.best_exact}};
   if (final.rounded) list.push_back({"rounded", final.rounded, {}});
   if (final.baseline) list.push_back({"baseline", final.baseline, final.baseline_exact});
   return list;

@@ -12,7 +12,7 @@
 namespace pkm {
 
 struct DesignTable {
-  /// A design: "best", and the same on exact columns where there are both.
+  /// A design: "best" (name_of_best), and the same on exact columns where there are both.
   struct Column {
     std::string name;
     std::optional<DesignRecord> record, exact;

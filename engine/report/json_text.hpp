@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/problem/verdict.hpp"
+
 namespace pkm {
 
 using Json = nlohmann::ordered_json;
@@ -41,6 +43,19 @@ Json named(const Infos& infos) {
   Json list = Json::array();
   for (const auto& info : infos) list.push_back({{"name", info.name}, {"unit", info.unit}, {"meaning", info.meaning}});
   return list;
+}
+
+/// { kind, names, sentence } of each.
+inline Json reasons_json(const std::vector<Reason>& reasons) {
+  Json list = Json::array();
+  for (const Reason& reason : reasons)
+    list.push_back({{"kind", reason.kind}, {"names", reason.names}, {"sentence", reason.sentence}});
+  return list;
+}
+/// { finding, sentence, reasons }; null for none.
+inline Json verdict_json(const std::optional<Verdict>& verdict) {
+  if (!verdict) return Json();
+  return {{"finding", verdict->finding}, {"sentence", verdict->sentence}, {"reasons", reasons_json(verdict->reasons)}};
 }
 
 }  // namespace pkm

@@ -25,6 +25,22 @@ std::optional<DesignRecord> best_so_far(const StudyContents& contents) {
   return record;
 }
 
+std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignProblem* problem) {
+  if (contents.state != StudyState::finished) return {};
+  std::vector<const EvaluationTable*> tables;
+  for (const StageRecord& stage : contents.stages) tables.push_back(&stage.table);
+  return verdict_on(tables, contents.problem.objectives, contents.problem.margins, problem);
+}
+
+std::string name_of_best(const StudyContents& contents) {
+  if (verdict_on(contents, nullptr)) {
+    const Status status = contents.best_stage().table.status[static_cast<std::size_t>(contents.best.row)];
+    return status == Status::feasible ? "as good as any" : "least bad";
+  }
+  if (contents.problem.objectives.size() > 1) return "compromise";
+  return contents.final ? "best" : "best so far";
+}
+
 std::optional<std::size_t> most_broken(std::span<const double> margins) {
   std::optional<std::size_t> worst;
   for (std::size_t i = 0; i < margins.size(); ++i)

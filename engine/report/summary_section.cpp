@@ -100,6 +100,7 @@ Json summary_data(const PageStudy& page) {
                {"evaluations", contents.evaluations()},
                {"reproducible", contents.reproducible()},
                {"notes", contents.notes},
+               {"verdict", verdict_json(verdict_on(contents, page.study ? page.study->problem.get() : nullptr))},
                {"unreadable", page.unreadable},
                {"table", table(page)},
                {"stages", stages(contents)},

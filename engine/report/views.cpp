@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "engine/report/standing.hpp"
 #include "engine/report/thinning.hpp"
 #include "engine/survey/picture_plan.hpp"
 
@@ -84,14 +85,8 @@ Views views_of(const PageStudy& page) {
   const StudyContents& contents = page.contents;
   const ProblemParts& parts = page.study->problem->parts();
   Views views = no_views(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions);
-  if (contents.best.row >= 0) {
-    const bool one = contents.problem.objectives.size() < 2;
-    add_view(views,
-             !one             ? "compromise"
-             : contents.final ? "best"
-                              : "best so far",
-             page.study->problem->parameters(contents.best_design()));
-  }
+  if (contents.best.row >= 0)
+    add_view(views, name_of_best(contents), page.study->problem->parameters(contents.best_design()));
   if (page.study->baseline) add_view(views, "baseline", *page.study->baseline);
   return views;
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "engine/core/unit.hpp"
+#include "engine/problem/verdict.hpp"
 #include "engine/setup/sections.hpp"
 #include "engine/setup/text_file.hpp"
 #include "engine/survey/survey_set.hpp"
@@ -89,6 +90,23 @@ void warn_of_empty_workspace(Study& study) {
                            (plan.box() ? " in the box" : "") + " is feasible");
 }
 
+/// A target beyond what the objective's values can be ends no stage.
+void warn_of_targets(Study& study) {
+  const auto& objectives = study.problem->parts().objectives;
+  for (std::size_t s = 0; objectives.size() == 1 && s < study.stages.size(); ++s) {
+    const Options& options = study.stages[s].options;
+    if (!options.has("target")) continue;
+    const NamedQuantity& q = objectives[0];
+    const double target = options.number("target");
+    const bool up = q.direction == Direction::maximise;
+    if (up ? target > q.range.greatest : target < q.range.least)
+      study.warnings.push_back(
+          "stage " + std::to_string(s + 1) + ": the target " + with_unit(target, q.unit) +
+          " is never reached, because values of " + q.name + " are never " +
+          (up ? "above " + with_unit(q.range.greatest, q.unit) : "below " + with_unit(q.range.least, q.unit)));
+  }
+}
+
 }  // namespace
 
 std::string Study::output_file() const { return output ? *output : stem(file_name) + ".h5"; }
@@ -149,6 +167,8 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
   read_references(root, draft);
   read_stages(root, draft);
   read_run_sections(root, draft);
+  for (std::string& doubt : doubts(draft.study.problem->parts())) draft.study.warnings.push_back(std::move(doubt));
+  warn_of_targets(draft.study);
   warn_of_empty_workspace(draft.study);
   return std::move(draft.study);
 }

@@ -1,11 +1,16 @@
-// `pkmopt check`: a study as it was understood, every default spelled out; nothing is run.
+// `pkmopt check`: a study as it was understood, every default spelled out, what contradicts itself in it, and whether a
+// few designs are feasible; nothing is run.
 
 #include <algorithm>
 #include <iostream>
 
+#include "engine/problem/verdict.hpp"
+#include "engine/report/json_text.hpp"
+#include "engine/study/probe.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/summary.hpp"
 
 namespace pkm {
 namespace {
@@ -90,22 +95,45 @@ Json study_json(const Study& study) {
   return json;
 }
 
-void check(const Catalogues& catalogues, const CheckArguments& arguments) {
-  const Study study = load_study_toml(arguments.study, catalogues);
-  if (arguments.json)
-    print_json(study_json(study));
-  else
-    std::cout << describe(study);
+Json probe_json(const Probe& probe) {
+  return {{"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"verdict", verdict_json(probe.verdict)}};
+}
+
+/// The contradictions, which a verdict repeats, are told before.
+std::string probe_text(const Probe& probe) {
+  std::string text = "\nprobe: " + words(probe) + '\n';
+  if (!probe.verdict) return text;
+  std::vector<Reason> reasons = probe.verdict->reasons;
+  std::erase_if(reasons, [](const Reason& reason) { return reason.kind == "contradiction"; });
+  return text + "note: " + probe.verdict->sentence + "; a run may still find others\n" + reasons_text(reasons);
+}
+
+void check(const CheckArguments& arguments, Session& session) {
+  const Study study = load_study_toml(arguments.study, session.catalogues);
+  const std::vector<Reason> against = contradictions(study.problem->parts());
+  const Probe tried = probe(study);
+  if (!against.empty()) session.exit_code = kNothingFeasible;
+  if (arguments.json) {
+    Json json = study_json(study);
+    json["contradictions"] = reasons_json(against);
+    json["probe"] = probe_json(tried);
+    print_json(json);
+    return;
+  }
+  std::cout << describe(study);
+  for (const Reason& reason : against) std::cout << "\ncontradiction: " << reason.sentence << '\n';
+  std::cout << probe_text(tried);
 }
 
 }  // namespace
 
 void add_check(CLI::App& app, Session& session) {
-  const auto [command, arguments] =
-      add_command<CheckArguments>(app, "check", "The resolved problem, every default spelled out, nothing run.",
-                                  "Exit code 2 and one sentence with file, line and key when the study is wrong.\n"
-                                  "Example: pkmopt check experiments/4ppa-2par/paper-problem.toml",
-                                  [&session](const CheckArguments& given) { check(session.catalogues, given); });
+  const auto [command, arguments] = add_command<CheckArguments>(
+      app, "check", "The resolved problem, every default spelled out, and a few designs tried.",
+      "Exit code 2 and one sentence with file, line and key when the study is wrong; 4 when\n"
+      "what it asks for contradicts itself, so that nothing can be feasible.\n"
+      "Example: pkmopt check experiments/4ppa-2par/paper-problem.toml",
+      [&session](const CheckArguments& given) { check(given, session); });
   add_option(command, "STUDY.toml", arguments.study, "The study's path")->required();
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }

@@ -24,7 +24,8 @@ namespace pkm {
 inline constexpr int kDone = 0;
 inline constexpr int kFailure = 1;
 inline constexpr int kBadInput = 2;
-inline constexpr int kStoppedEarly = 3;  ///< with a checkpoint to go on from
+inline constexpr int kStoppedEarly = 3;     ///< with a checkpoint to go on from
+inline constexpr int kNothingFeasible = 4;  ///< the study has ended, or cannot end otherwise; its file is complete
 
 /// What every command is given, and gives back.
 struct Session {

@@ -60,7 +60,8 @@ void run(const std::vector<std::string>& arguments, Session& session) {
   app.require_subcommand(1);
   app.footer(
       "'pkmopt COMMAND --help' tells more of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
-      "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint to go on from.\n"
+      "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint to go on from, 4 nothing "
+      "feasible.\n"
       "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml");
   for (AddCommand* const add :
        {add_run, add_resume, add_check, add_evaluate, add_pose, add_forward, add_dynamics, add_coupling, add_trajectory,

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "engine/core/unit.hpp"
+#include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
@@ -30,9 +31,12 @@ void resume(const ResumeArguments& arguments, Session& session) {
   if (!extension.generations && !extension.evaluations) {
     const StudyContents contents = read_study(arguments.file);
     if (contents.state == StudyState::finished) {
+      const Study study = study_of(contents, session.catalogues);
+      const auto verdict = verdict_on(contents, study.problem.get());
       if (!arguments.common.quiet)
-        std::cout << summary_text(contents, study_of(contents, session.catalogues))
+        std::cout << summary_text(contents, study, verdict)
                   << "nothing is left to do; --generations or --evaluations extend the last stage\n";
+      conclude(verdict, arguments.common, session);
       return;
     }
   }

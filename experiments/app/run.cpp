@@ -8,10 +8,12 @@
 #include <limits>
 
 #include "engine/core/printable.hpp"
+#include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
+#include "experiments/app/summary.hpp"
 
 namespace pkm {
 namespace {
@@ -150,6 +152,7 @@ struct SeedTable {
   std::vector<Row> rows = {{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
   std::string note = {};  ///< the first
+  std::optional<Verdict> verdict = {};  ///< of the first seed that found nothing
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
     const FinalRecord final = contents.final.value_or(FinalRecord());
@@ -157,7 +160,9 @@ struct SeedTable {
       if (!record || record->objectives.empty() || std::isnan(record->objectives[0])) return {};
       return record->objectives[0];
     };
-    const bool feasible = objective(final.best) && final.best->status == Status::feasible;
+    const auto nothing = verdict_on(contents, study.problem.get());
+    if (!verdict) verdict = nothing;
+    const bool feasible = !nothing && objective(final.best) && final.best->status == Status::feasible;
     feasible_seeds += feasible;
     const auto keep = [feasible](std::optional<double> value, std::vector<double>& all) -> std::string {
       if (!feasible || !value) return "";
@@ -230,6 +235,12 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
               << " seeds ended feasible\n"
               << table.note << std::flush;
   if (unwritten) throw StorageError(*unwritten);
+  if (session.exit_code == kDone && table.feasible_seeds == 0 && table.verdict) {
+    if (!arguments.common.quiet)
+      std::cout << "verdict: " << table.verdict->finding << ": " << table.verdict->sentence << '\n'
+                << reasons_text(table.verdict->reasons);
+    conclude(table.verdict, arguments.common, session);
+  }
   if (session.exit_code == kStoppedEarly)
     std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study) << " --seeds "
               << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output) << '\n';
@@ -241,6 +252,8 @@ void run(const RunArguments& arguments, Session& session) {
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;
   check_outputs({output}, {arguments.study}, Existing::replaced);
   for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
+  for (const Reason& reason : contradictions(study.problem->parts()))
+    std::cerr << session.program << ": warning: " << reason.sentence << '\n';
   warn_of_box(study, session.program);
   if (!arguments.common.quiet) print_estimate(study, arguments.seeds, team_size(arguments.common.threads));
   if (arguments.seeds > 1) {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iostream>
 
+#include "engine/report/standing.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/version.hpp"
 
@@ -45,10 +46,17 @@ RunEnd end_of_run(const std::function<RunOutcome()>& run) {
   }
 }
 
+void conclude(const std::optional<Verdict>& verdict, const RunningArguments& arguments, Session& session) {
+  if (!verdict) return;
+  session.exit_code = kNothingFeasible;
+  if (arguments.quiet) std::cerr << session.program << ": " << one_line(*verdict) << '\n';
+}
+
 void print_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
                Session& session) {
   const RunOutcome& outcome = end.outcome;
-  if (!arguments.quiet || end.unwritten) std::cout << summary_text(outcome.contents, study);
+  const auto verdict = verdict_on(outcome.contents, study.problem.get());
+  if (!arguments.quiet || end.unwritten) std::cout << summary_text(outcome.contents, study, verdict);
   if (!outcome.stopped.empty()) {
     // Also when quiet: it must not be missed.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
@@ -65,9 +73,11 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
     std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
     if (!end.unwritten) std::cout << "written to " << file << '\n';
   }
-  if (!end.unwritten) return;
-  std::cout << std::flush;
-  throw StorageError(*end.unwritten);
+  if (end.unwritten) {
+    std::cout << std::flush;
+    throw StorageError(*end.unwritten);
+  }
+  if (outcome.stopped.empty()) conclude(verdict, arguments, session);
 }
 
 }  // namespace pkm

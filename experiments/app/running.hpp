@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/problem/verdict.hpp"
 #include "engine/study/run_study.hpp"
 #include "experiments/app/commands.hpp"
 
@@ -33,6 +34,9 @@ struct RunEnd {
   std::optional<std::string> unwritten = {};  ///< why
 };
 RunEnd end_of_run(const std::function<RunOutcome()>& run);
+
+/// Sets the exit code where the study found nothing, and says so in a line on stderr when quiet.
+void conclude(const std::optional<Verdict>& verdict, const RunningArguments& arguments, Session& session);
 
 /// The end of a run, and what the program's exit code is for it. Throws StorageError after what it has to tell where
 /// that is not in the file.

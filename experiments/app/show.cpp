@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
 #include "experiments/app/commands.hpp"
@@ -42,8 +43,9 @@ std::string history(const StudyContents& contents) {
   return text;
 }
 
-/// References are in the study's text only; a file whose text this program no longer reads is shown without them.
-std::string text(const StudyContents& contents, const Catalogues& catalogues) {
+/// References are in the study's text only, and a verdict's reasons partly; a file whose text this program no longer
+/// reads is shown without them.
+void show(const StudyContents& contents, bool json, const Catalogues& catalogues) {
   Study study;
   std::string note;
   try {
@@ -52,7 +54,11 @@ std::string text(const StudyContents& contents, const Catalogues& catalogues) {
     note = "note: this program cannot read the study's text, so references are left out (" + std::string(error.what()) +
            ")\n";
   }
-  return summary_text(contents, study) + history(contents) + note;
+  const auto verdict = verdict_on(contents, study.problem.get());
+  if (json)
+    print_json(summary_json(contents, verdict));
+  else
+    std::cout << summary_text(contents, study, verdict) << history(contents) << note;
 }
 
 struct ShowArguments {
@@ -63,15 +69,10 @@ struct ShowArguments {
 }  // namespace
 
 void add_show(CLI::App& app, Session& session) {
-  const auto [command, arguments] =
-      add_command<ShowArguments>(app, "show", "Shows what a study found: best design, margins, history in brief.",
-                                 "Example: pkmopt show paper-problem.h5", [&session](const ShowArguments& given) {
-                                   const StudyContents contents = read_study(given.file);
-                                   if (given.json)
-                                     print_json(summary_json(contents));
-                                   else
-                                     std::cout << text(contents, session.catalogues);
-                                 });
+  const auto [command, arguments] = add_command<ShowArguments>(
+      app, "show", "Shows what a study found: best design, margins, history in brief.",
+      "Example: pkmopt show paper-problem.h5",
+      [&session](const ShowArguments& given) { show(read_study(given.file), given.json, session.catalogues); });
   add_option(command, "file F.h5", arguments.file, "The study file")->required();
   command.add_flag("--json", arguments.json, "One JSON object, numbers in full precision");
 }

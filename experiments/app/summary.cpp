@@ -4,6 +4,7 @@
 
 #include "engine/core/printable.hpp"
 #include "engine/report/design_table.hpp"
+#include "engine/report/json_text.hpp"
 #include "engine/study/progress.hpp"
 #include "experiments/app/stage_summary.hpp"
 
@@ -63,7 +64,13 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
 
 }  // namespace
 
-std::string summary_text(const StudyContents& contents, const Study& study) {
+std::string reasons_text(const std::vector<Reason>& reasons) {
+  std::string text;
+  for (const Reason& reason : reasons) text += "  " + printable(reason.sentence) + '\n';
+  return text;
+}
+
+std::string summary_text(const StudyContents& contents, const Study& study, const std::optional<Verdict>& verdict) {
   std::ostringstream out;
   out << printable(contents.name) << ": " << words(contents.state) << ", " << contents.evaluations()
       << " evaluations in " << duration_text(contents.seconds) << ", seed " << contents.seed << '\n';
@@ -116,10 +123,12 @@ std::string summary_text(const StudyContents& contents, const Study& study) {
     out << "warning: feasible cells of the best design touch the box; a larger box may hold more workspace\n";
   for (const auto& r : study.references)
     if (r.seconds) out << printable(r.name) << " took " << duration_text(*r.seconds) << '\n';
+  if (verdict)
+    out << "verdict: " << verdict->finding << ": " << verdict->sentence << '\n' << reasons_text(verdict->reasons);
   return out.str();
 }
 
-Json summary_json(const StudyContents& contents) {
+Json summary_json(const StudyContents& contents, const std::optional<Verdict>& verdict) {
   Json object = {{"name", contents.name},
                  {"mechanism", contents.problem.mechanism},
                  {"state", words(contents.state)},
@@ -142,6 +151,7 @@ Json summary_json(const StudyContents& contents) {
   object["reproducible"] = contents.reproducible();
   object["notes"] = contents.notes;
   object["stop"] = contents.stages.empty() ? "" : contents.stages.back().stop;
+  object["verdict"] = verdict_json(verdict);
   object["best"] = nullptr;
   if (contents.best.row >= 0) {
     const StageRecord& stage = contents.best_stage();

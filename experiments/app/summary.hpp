@@ -3,16 +3,20 @@
 
 #include <string>
 
+#include "engine/problem/verdict.hpp"
 #include "engine/setup/study.hpp"
 #include "engine/storage/study_contents.hpp"
 #include "experiments/app/print.hpp"
 
 namespace pkm {
 
-/// Best design beside the baseline and published results, active bounds, stages, time.
-std::string summary_text(const StudyContents& contents, const Study& study);
+/// Best design beside the baseline and published results, active bounds, stages, time; the verdict, if there is one.
+std::string summary_text(const StudyContents& contents, const Study& study, const std::optional<Verdict>& verdict);
+
+/// The reasons of a verdict, a line each.
+std::string reasons_text(const std::vector<Reason>& reasons);
 
 /// The object of `pkmopt show --json`.
-Json summary_json(const StudyContents& contents);
+Json summary_json(const StudyContents& contents, const std::optional<Verdict>& verdict);
 
 }  // namespace pkm

@@ -362,7 +362,7 @@ optimiser = "ga"
 population = 8
 generations = 3
 )";
-  ASSERT_EQ(run({"run", "no.toml"}), 0) << output_;
+  ASSERT_EQ(run({"run", "no.toml"}), 4) << output_;
   EXPECT_NE(
       output_.find("nothing feasible was found; this is the least infeasible design: conditioning blocks, margin -0."),
       std::string::npos)

@@ -98,6 +98,9 @@ class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTe
   const MechanismInfo& info() const override { return info_; }
 
   std::optional<double> middle(std::span<const double> p, int) const override { return middle_plane(geometry(p)); }
+  std::optional<std::array<double, 2>> reach(std::span<const double> p, int) const override {
+    return std::array{0.0, p[kL0]};  // of y: between the rails' ends
+  }
   void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
     thresholds_of(p, spec, values);
   }

@@ -77,6 +77,9 @@ class Hybrid final : public MechanismWith<Voxels, Columns, Size, PoseMarginsOf<H
   std::optional<double> middle(std::span<const double> p, int) const override {
     return (p[kSMin + 1] + p[kSMax + 1]) / 2;
   }
+  std::optional<std::array<double, 2>> reach(std::span<const double> p, int) const override {
+    return std::array{p[kSMin + 1], p[kSMax + 1]};  // of y: the carriage's way
+  }
   void thresholds(std::span<const double> p, const LimitSpec& spec, std::span<double> values) const override {
     find_thresholds(p, spec, values);
   }

@@ -105,6 +105,12 @@ function designTable({ columns, rows }) {
 function remarks(study) {
   const { summary } = study;
   const list = [];
+  if (summary.verdict)
+    list.push([
+      "warning",
+      summary.verdict.finding + ": " + summary.verdict.sentence + ".",
+      ...summary.verdict.reasons.map((reason) => reason.sentence),
+    ]);
   const columns = summary.table ? summary.table.columns : [];
   for (const column of columns)
     if (!column.reference && (column.status !== "feasible" || column.reason))
@@ -131,7 +137,14 @@ function remarks(study) {
         summary.unreadable,
     ]);
   for (const note of summary.notes) list.push(["", note]);
-  return list.map(([kind, text]) => element("li", kind, text));
+  return list.map(([kind, text, ...reasons]) =>
+    element(
+      "li",
+      kind,
+      text,
+      reasons.length ? element("ul", "", ...reasons.map((reason) => element("li", "", reason))) : null,
+    ),
+  );
 }
 
 function perStep(unit) {

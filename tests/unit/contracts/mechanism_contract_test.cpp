@@ -2,6 +2,8 @@
 // is tested without a change here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <set>
 
@@ -102,6 +104,43 @@ TEST_P(MechanismContract, TakesItsNominalParametersAndRefusesThoseOutOfRange) {
       p[i] = wrong;
       EXPECT_NE(mechanism().refuse(p).value_or("").find(info().parameters[i].name), std::string::npos) << wrong;
     }
+}
+
+TEST_P(MechanismContract, NoPoseIsFeasibleOutOfItsReach) {
+  for (const Sweep& sweep : info().sweeps)
+    for (const int held : sweep.held) {
+      const auto reach = mechanism().reach(parameters(), held);
+      const bool whole_turn = reach && info().coordinates[static_cast<std::size_t>(held)].turns() &&
+                              (*reach)[1] - (*reach)[0] >= 2 * std::numbers::pi;
+      if (!reach || whole_turn) continue;
+      for (Pose<double> pose : centres().inside)
+        for (const double value : {(*reach)[0] - 1e-3, (*reach)[1] + 1e-3}) {
+          pose[static_cast<std::size_t>(held)] = value;
+          EXPECT_FALSE(inspect(pose).feasible) << test::words(info(), pose);
+        }
+    }
+}
+
+TEST_P(MechanismContract, ReachIsWidestAtCornersOfTheDesigns) {
+  // along each parameter on its own, about its nominal value
+  const auto near = [&](std::size_t i, double share) {
+    const Parameter& p = info().parameters[i];
+    return std::clamp(parameters()[i] + 0.1 * share * (std::fabs(parameters()[i]) + 0.01), p.lower, p.upper);
+  };
+  const int coordinate = info().sweeps[0].held.empty() ? -1 : info().sweeps[0].held[0];
+  if (coordinate < 0 || !mechanism().reach(parameters(), coordinate)) GTEST_SKIP() << "says nothing";
+  for (std::size_t i = 0; i < info().parameters.size(); ++i) {
+    const auto at = [&](double share) {
+      auto p = parameters();
+      p[i] = near(i, share);
+      return *mechanism().reach(p, coordinate);
+    };
+    const auto low = at(-1), high = at(1);
+    for (const double share : {-0.7, -0.2, 0.0, 0.4, 0.9}) {
+      EXPECT_GE(at(share)[0], std::fmin(low[0], high[0])) << info().parameters[i].name;
+      EXPECT_LE(at(share)[1], std::fmax(low[1], high[1])) << info().parameters[i].name;
+    }
+  }
 }
 
 TEST_P(MechanismContract, AssemblesWhereTheVoxelMapSaysAndNowhereElse) {

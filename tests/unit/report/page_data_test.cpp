@@ -92,6 +92,28 @@ TEST(Standing, GainsAreOfTheBaselinesSizeInTheObjectivesDirection) {
   EXPECT_EQ(most_broken(std::vector<double>{0.1, std::nan("")}), std::nullopt);
 }
 
+TEST(PageData, AStudyThatFoundNothingHasAVerdict) {
+  PageStudy page = sample_page();
+  EXPECT_TRUE(json::parse(json_text(summary_data(page)))["verdict"].is_null()) << "it has not ended";
+  StudyContents& contents = page.contents;
+  contents.state = StudyState::finished;
+  EXPECT_TRUE(json::parse(json_text(summary_data(page)))["verdict"].is_null()) << "something is feasible";
+  std::size_t designs = 0;
+  for (StageRecord& stage : contents.stages) {
+    std::ranges::fill(stage.table.status, Status::infeasible);
+    std::ranges::fill(stage.table.margins, -0.5);
+    designs += stage.table.size();
+  }
+  const json summary = json::parse(json_text(summary_data(page)));
+  const json& verdict = summary["verdict"];
+  EXPECT_EQ(verdict["finding"], "nothing feasible");
+  EXPECT_EQ(verdict["sentence"],
+            "none of " + std::to_string(designs) + " designs is feasible: " + std::to_string(designs) + " infeasible");
+  EXPECT_EQ(verdict["reasons"][0]["kind"], "constraint");
+  EXPECT_EQ(verdict["reasons"][0]["names"][0], contents.problem.margins[0].name);
+  EXPECT_EQ(summary["table"]["columns"][0]["name"], "least bad");
+}
+
 TEST(PageData, SummaryHasTheFilesNumbers) {
   const PageStudy page = sample_page();
   const json summary = json::parse(json_text(summary_data(page)));

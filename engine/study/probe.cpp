@@ -1,0 +1,76 @@
+#include "engine/study/probe.hpp"
+
+#include <algorithm>
+
+#include "engine/optimisers/start.hpp"
+#include "engine/problem/evaluator.hpp"
+#include "engine/survey/survey_set.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr std::size_t kMost = 64, kFewest = 4;
+constexpr double kBudget = 50e-3, kTooMuch = 0.5;  // [s] of all designs, of one
+
+// What surveys cost, roughly [s].
+constexpr double kCell = 0.1e-9;    // counted many at a time
+constexpr double kSample = 0.1e-6;  // a pose whose numbers are asked for
+constexpr double kPlain = 2e-6;     // a pose by inverse kinematics with all its margins, or with its links' distances
+constexpr double kColumnNodes = 5000;
+constexpr double kQuantity = 20e-6;  // anything that reads no survey
+
+double cost(const Mechanism& mechanism, const SurveyPlan& plan, const Demand& demand) {
+  double poses = kColumnNodes;
+  if (const VoxelOptions* const voxels = plan.voxels()) {
+    poses = 1;
+    for (const std::int64_t cells : voxels->cells) poses *= static_cast<double>(cells);
+  }
+  for (const HeldCoordinate& held : plan.held)
+    poses *=
+        static_cast<double>(std::max({std::int64_t{1}, held.cells, static_cast<std::int64_t>(held.values.size())}));
+  const auto& limits = mechanism.info().limits;
+  bool clearance = false;
+  for (std::size_t i = 0; i < limits.size(); ++i)
+    clearance = clearance || (limits[i].group == "clearance" && asks_clearance(plan, i));
+  const bool plain = plan.voxels() && (!mechanism.voxels() || of_cells_only(demand));
+  return poses * (plain || clearance ? kPlain : demand.needs_samples() ? kSample : kCell);
+}
+
+}  // namespace
+
+std::size_t Probe::feasible() const {
+  return static_cast<std::size_t>(std::ranges::count(table.status, Status::feasible));
+}
+
+std::size_t probe_size(const DesignProblem& problem) {
+  const ProblemParts& parts = problem.parts();
+  double one = cost(*parts.mechanism, parts.plan, parts.demand);
+  for (const Region& region : parts.regions) one += cost(*parts.mechanism, region.plan, region.demand);
+  one += kQuantity * static_cast<double>(parts.design_margins.size());
+  if (one > kTooMuch) return 0;
+  return std::clamp(static_cast<std::size_t>(kBudget / one), kFewest, kMost);
+}
+
+Probe probe(const Study& study) {
+  const DesignProblem& problem = *study.problem;
+  const DesignSpace& space = problem.space();
+  Probe probe{EvaluationTable(problem.shape()), {}};
+  const std::size_t count = space.dimension() > 0 ? probe_size(problem) : 0;
+  if (count == 0) return probe;
+  const std::vector<double> points = start_points(Start::sobol, count, space.dimension(), study.seed);
+  probe.table.extend(count);
+  for (std::size_t row = 0; row < count; ++row)
+    for (std::size_t v = 0; v < space.dimension(); ++v)
+      probe.table.design(row)[v] = space.from_unit(v, points[row * space.dimension() + v]);
+  ParallelEvaluator().evaluate(problem, probe.table, 0);
+  probe.verdict = verdict_on({&probe.table}, problem.objectives(), problem.margins(), &problem);
+  return probe;
+}
+
+std::string words(const Probe& probe) {
+  if (probe.table.size() == 0) return "no designs were tried, because one takes too long";
+  return std::to_string(probe.feasible()) + " of " + std::to_string(probe.table.size()) +
+         " designs spread over the bounds are feasible";
+}
+
+}  // namespace pkm

@@ -1,0 +1,173 @@
+// Contradictions in studies, and verdicts on designs that came to nothing.
+#include "engine/problem/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "constraints/all.hpp"
+#include "engine/mechanisms/all.hpp"
+#include "engine/setup/study.hpp"
+#include "objectives/all.hpp"
+
+namespace pkm {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A study of a and b, whose text goes on with `more`.
+Study study(const std::string& more, const std::string& objective = "workspace-volume") {
+  return read_study_toml(
+      "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.3 }\nb = { min = 0.8, max = 1.0 }\n"
+      "[[objective]]\ntype = \"" +
+          objective + "\"\n[[stage]]\noptimiser = \"ga\"\n" + more,
+      "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
+}
+
+std::vector<std::string> found(const Study& study) {
+  std::vector<std::string> list;
+  for (const Reason& reason : contradictions(study.problem->parts())) list.push_back(reason.sentence);
+  return list;
+}
+std::vector<std::string> found(const std::string& more) { return found(study(more)); }
+
+TEST(Contradictions, NoneInAStudyThatHasNone) {
+  EXPECT_THAT(found(""), IsEmpty());
+  EXPECT_THAT(found("[workspace]\ny = 0.5\nlimits = { beta_min = 0.1, beta_max = 0.2 }\n"
+                    "[[constraint]]\ntype = \"conditioning\"\nmin = 0.9\n"),
+              IsEmpty());
+}
+
+TEST(Contradictions, ThresholdsThatLeaveNothing) {
+  EXPECT_THAT(found("[workspace]\nlimits = { beta_min = 0.9, beta_max = 0.5 }\n"),
+              ElementsAre("beta_min = 0.9 rad leaves nothing below beta_max = 0.5 rad: no pose keeps both"));
+  // derived from the bars: asin(2 R_d / d_d)
+  EXPECT_THAT(found("[workspace]\nlimits = { beta_max = 0.1 }\n[[constraint]]\ntype = \"interference\"\n"),
+              ElementsAre(HasSubstr("beta_min = 0.252")));
+}
+
+TEST(Contradictions, HeldCoordinatesOutOfReach) {
+  EXPECT_THAT(found("[workspace]\ny = 2.6\n"),
+              ElementsAre("workspace.y = 2.6 m lies outside what designs within the bounds reach, 0 .. 2.5 m"));
+  EXPECT_THAT(found("[workspace]\ny = 2.5\n"), IsEmpty());
+  const std::string region =
+      "[[region]]\nname = \"r\"\nmethod = \"voxels\"\ny = [-1, 1]\n"
+      "[[report]]\ntype = \"workspace-volume\"\nregion = \"r\"\n";
+  EXPECT_THAT(found(region), IsEmpty());
+  EXPECT_THAT(study(region).warnings,
+              ElementsAre("region r.y = -1 m lies outside what designs within the bounds reach, 0 .. 2.5 m"));
+}
+
+TEST(Contradictions, ABoxThatNoDesignReaches) {
+  const std::string box = "[workspace]\nmethod = \"voxels\"\ncells = { x = 4, z = 4, theta = 4 }\nbox = ";
+  EXPECT_THAT(found(box + "{ x = [5, 6], z = [-1, 0], theta = [-1, 1] }\n"),
+              ElementsAre("workspace.box.x = 5 .. 6 m lies outside what designs within the bounds reach, 0 .. 1 m"));
+  EXPECT_THAT(found(box + "{ x = [0.9, 6], z = [-1, 0], theta = [-1, 1] }\n"), IsEmpty());
+}
+
+TEST(Contradictions, BoundsOutOfTheRangeOfWhatTheyBound) {
+  const auto constraint = [](const std::string& text) { return "[[constraint]]\ntype = " + text + "\n"; };
+  EXPECT_THAT(found(constraint("\"conditioning\"\nmin = 1.2")),
+              ElementsAre("constraint conditioning >= 1.2 holds for no design, because its values are never above 1"));
+  EXPECT_THAT(found(constraint("\"dci\"\nmax = -0.1")),
+              ElementsAre("constraint dci <= -0.1 holds for no design, because its values are never below 0"));
+  EXPECT_THAT(found(constraint("\"dci\"\nstatistic = \"std\"\nmin = 0.6")), ElementsAre(HasSubstr("never above 0.5")));
+  EXPECT_THAT(found(constraint("\"workspace-ratio\"\nmax = \"-1 rad\"")), ElementsAre(HasSubstr("never below 0 rad")));
+  EXPECT_THAT(found("[workspace]\nmethod = \"voxels\"\ncells = { x = 4, z = 4, theta = 4 }\n"
+                    "box = { x = [0, 0.5], z = [-1, 0], theta = [-1, 1] }\n" +
+                    constraint("\"workspace-volume\"\nmin = 1.5")),
+              ElementsAre(HasSubstr("never above 1 m^2 rad")));
+  EXPECT_THAT(
+      study(constraint("\"conditioning\"\nmin = -1")).warnings,
+      ElementsAre("constraint conditioning >= -1 holds for every design, because its values are never below 0"));
+}
+
+TEST(Contradictions, ATargetOutOfRangeIsWarnedOf) {
+  const auto warnings = [](const std::string& target) {
+    return study("target = " + target + "\n", "conditioning").warnings;
+  };
+  EXPECT_THAT(
+      warnings("1.5"),
+      ElementsAre("stage 1: the target 1.5 is never reached, because values of conditioning are never above 1"));
+  EXPECT_THAT(warnings("0.5"), IsEmpty());
+}
+
+/// The verdict on designs at a = 0.2 + 0.02 i, b = 1 - 0.04 i.
+std::optional<Verdict> verdict(const Study& study, bool with_problem = true) {
+  const DesignProblem& problem = *study.problem;
+  EvaluationTable table(problem.shape());
+  table.extend(5);
+  Scratch scratch;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    table.design(i)[0] = 0.2 + 0.02 * static_cast<double>(i);
+    table.design(i)[1] = 1 - 0.04 * static_cast<double>(i);
+    problem.evaluate(table.design(i), scratch, table.slot(i));
+  }
+  return verdict_on({&table}, problem.objectives(), problem.margins(), with_problem ? &problem : nullptr);
+}
+
+TEST(Verdict, NoneWhereSomethingWasFound) {
+  EXPECT_FALSE(verdict(study("")));
+  const Study any = study("");
+  EXPECT_FALSE(verdict_on({}, any.problem->objectives(), any.problem->margins(), any.problem.get()));
+}
+
+TEST(Verdict, NamesTheConstraintThatNoDesignKeeps) {
+  const auto v = verdict(study("[[constraint]]\ntype = \"conditioning\"\nmin = 0.9\n"));
+  ASSERT_TRUE(v);
+  EXPECT_EQ(v->finding, "nothing feasible");
+  EXPECT_EQ(v->sentence, "none of 5 designs is feasible: 5 infeasible");
+  ASSERT_EQ(v->reasons.size(), 1u);
+  EXPECT_EQ(v->reasons[0].kind, "constraint");
+  EXPECT_THAT(v->reasons[0].names, ElementsAre("conditioning"));
+  EXPECT_THAT(one_line(*v), HasSubstr("; no design keeps conditioning: the nearest misses it by "));
+}
+
+TEST(Verdict, NamesConstraintsThatContradictEachOther) {
+  const auto v =
+      verdict(study("[[constraint]]\ntype = \"linear\"\nname = \"narrow\"\ncoefficients = { b = 1 }\n"
+                    "bound = 0.9\n[[constraint]]\ntype = \"linear\"\nname = \"wide\"\n"
+                    "coefficients = { b = -1 }\nbound = -0.95\n"));
+  ASSERT_TRUE(v);
+  ASSERT_EQ(v->reasons.size(), 1u);
+  EXPECT_EQ(v->reasons[0].sentence, "no design keeps both narrow (kept by 2 of 5) and wide (2 of 5)");
+}
+
+TEST(Verdict, NamesTheLimitThatEmptiesTheWorkspace) {
+  const auto v = verdict(study("[workspace]\nlimits = { h_min = 3 }\n"));
+  ASSERT_TRUE(v);
+  EXPECT_EQ(v->finding, "nothing found");
+  EXPECT_EQ(v->sentence, "workspace-volume is 0 for each of the 5 feasible designs");
+  ASSERT_FALSE(v->reasons.empty());
+  EXPECT_EQ(v->reasons[0].kind, "limit");
+  EXPECT_THAT(v->reasons[0].sentence, HasSubstr("no pose of the least bad design keeps h_min"));
+}
+
+TEST(Verdict, PutsContradictionsFirst) {
+  const auto v = verdict(study("[workspace]\nlimits = { beta_min = 0.9, beta_max = 0.5 }\n"));
+  ASSERT_TRUE(v);
+  ASSERT_GE(v->reasons.size(), 2u);
+  EXPECT_EQ(v->reasons[0].kind, "contradiction");
+  EXPECT_THAT(v->reasons[1].sentence, HasSubstr("no pose of the least bad design keeps beta_max"));
+}
+
+TEST(Verdict, AnEmptyWorkspacesCouplingSaysNothing) {
+  const Study empty = study("[workspace]\nlimits = { h_min = 3 }\n", "dci");
+  const auto v = verdict(empty);
+  ASSERT_TRUE(v);
+  EXPECT_EQ(v->sentence, "dci is what an empty workspace gives for each of the 5 feasible designs");
+  EXPECT_FALSE(verdict(empty, false)) << "nobody knows without the problem";
+}
+
+TEST(Verdict, TellsWhyDesignsCouldNotBeEvaluated) {
+  const auto v = verdict(study("[[constraint]]\ntype = \"expression\"\nname = \"root\"\nexpression = \"sqrt(-a)\"\n"));
+  ASSERT_TRUE(v);
+  EXPECT_EQ(v->sentence, "none of 5 designs is feasible: 5 failed");
+  ASSERT_EQ(v->reasons.size(), 1u);
+  EXPECT_EQ(v->reasons[0].kind, "failure");
+  EXPECT_THAT(v->reasons[0].sentence, HasSubstr("5 of 5 could not be evaluated; the first: "));
+}
+
+}  // namespace
+}  // namespace pkm
