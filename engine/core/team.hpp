@@ -59,6 +59,8 @@ bool has_team();
 
 /// How many workers share_pieces() has here, at most: what each needs of its own can be prepared.
 std::size_t workers();
+/// This thread's number among them, < workers().
+std::size_t worker();
 
 /// Has work(begin, end), or work(begin, end, worker) with worker < workers(), done for all of [0, pieces), each piece
 /// once, in any order and on any thread; returns when all are done. Whoever is free takes a share of what is left, so
@@ -66,5 +68,10 @@ std::size_t workers();
 /// several pieces there is no team. What the work throws is thrown here, once all are done or have failed; of several
 /// exceptions one. Without a team: work(0, pieces, 0) on this thread.
 void share_pieces(std::size_t pieces, WorkRef work);
+
+/// Has work(begin, end) done for all of [0, pieces), one piece at a time, for few pieces that take long: they are begun
+/// in their order, and threads that find none left help with what the others' pieces have shared out in turn. A single
+/// piece has the whole team. Throws as share_pieces() does.
+void share_long_pieces(std::size_t pieces, WorkRef work);
 
 }  // namespace pkm

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "engine/core/options.hpp"
 #include "engine/problem/evaluator.hpp"
 #include "engine/problem/front.hpp"
+#include "engine/problem/replay.hpp"
 #include "engine/problem/start_outcome.hpp"
 
 namespace pkm {
@@ -42,15 +44,19 @@ struct Generation {
   const std::vector<std::int64_t>* population;        ///< rows that form the population now
   std::int64_t best_row = -1;                         ///< best by `better`; -1 while nothing is evaluated
   const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: the starts that have ended
-  const Front* front = nullptr;                       ///< several objectives
+  /// Solvers: what is known of starts beyond the table, for a checkpoint.
+  std::function<std::vector<StartAhead>()> ahead = {};
+  const Front* front = nullptr;  ///< several objectives
 };
 
-/// Time limits, signals, checkpoints and the screen live behind this.
+/// Time limits, signals, checkpoints and the screen live behind this. Called by one thread at a time.
 class Monitor {
  public:
   virtual ~Monitor() = default;
   /// After each generation. False: stop now (the stage then ends with StopReason::interrupted).
   virtual bool generation(const Generation& generation) = 0;
+  /// Between generations: false as generation().
+  virtual bool goes_on() { return true; }
   /// Something that the user must be told, one sentence.
   virtual void warn(const std::string& sentence) = 0;
 };
@@ -59,6 +65,7 @@ struct StageResult {
   StopReason reason = StopReason::generations;
   std::int64_t best_row = -1;             ///< row of the stage's table
   std::vector<StartOutcome> starts = {};  ///< solvers only
+  std::vector<StartAhead> ahead = {};     ///< solvers that were interrupted
   std::optional<Front> front = {};        ///< several objectives
 };
 
@@ -81,9 +88,19 @@ struct StageInput {
   std::uint64_t seed = 1;
   std::vector<StartDesign> starts;  ///< designs to begin from; may be empty
   KnownFront known_front = {};      ///< several objectives
-  /// A resumed stage: the evaluations on record, which the evaluator serves, and the starts that had ended.
+  /// A resumed stage: the evaluations on record, of which those of recorded_starts, which had ended, come first, and
+  /// what was known of the starts beyond them.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};
+  std::vector<StartAhead> recorded_ahead = {};
+
+  /// Rows [first, table.size()) of the stage's table: from the record, where it has them, else by the evaluator.
+  void evaluate(EvaluationTable& table, std::size_t first) const {
+    if (recorded)
+      ReplayEvaluator(evaluator, *recorded).evaluate(problem, table, first);
+    else
+      evaluator.evaluate(problem, table, first);
+  }
 };
 
 class Optimiser {

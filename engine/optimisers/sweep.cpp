@@ -48,7 +48,7 @@ class Batches {
 
   /// Evaluates and reports the rows added since the last call. False: the monitor wants to stop.
   bool finish_generation() {
-    input_.evaluator.evaluate(input_.problem, table_, first_);
+    input_.evaluate(table_, first_);
     for (std::size_t row = first_; row < table_.size(); ++row) {
       const Ranked candidate = ranked(input_.problem.objectives(), table_, row);
       if (best_.row < 0 || candidate < best_) best_ = candidate;

@@ -1,5 +1,6 @@
 #include "engine/problem/evaluation.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace pkm {
@@ -8,6 +9,29 @@ std::size_t EvaluationTable::extend(std::size_t count) {
   const std::size_t first = size();
   resize(first + count);
   return first;
+}
+
+std::size_t EvaluationTable::append(const EvaluationTable& from, std::size_t row) {
+  const std::size_t here = extend(1);
+  std::ranges::copy(from.design(row), design(here).begin());
+  copy_results(here, from, row);
+  return here;
+}
+
+EvaluationTable EvaluationTable::slice(std::size_t first, std::size_t end) const {
+  EvaluationTable rows(shape_);
+  for (std::size_t row = first; row < end; ++row) rows.append(*this, row);
+  return rows;
+}
+
+void EvaluationTable::copy_results(std::size_t row, const EvaluationTable& from, std::size_t source) {
+  const EvaluationSlot to = slot(row);
+  std::ranges::copy(from.objective_row(source), to.objectives.begin());
+  std::ranges::copy(from.margin_row(source), to.margins.begin());
+  std::ranges::copy(from.report_row(source), to.reports.begin());
+  std::ranges::copy(from.slope_row(source), to.slopes.begin());
+  status[row] = from.status[source];
+  seconds[row] = from.seconds[source];
 }
 
 void EvaluationTable::resize(std::size_t rows) {

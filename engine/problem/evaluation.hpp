@@ -63,8 +63,12 @@ class EvaluationTable {
 
   /// Adds `count` rows (designs zero, results NaN, status failed) and returns the first one's index.
   std::size_t extend(std::size_t count);
-  /// Forgets all rows but the first `rows`.
-  void truncate(std::size_t rows) { resize(rows); }
+  /// Adds a copy of a row of a table of the same shape, and returns its index.
+  std::size_t append(const EvaluationTable& from, std::size_t row);
+  /// Copies of rows [first, end).
+  EvaluationTable slice(std::size_t first, std::size_t end) const;
+  /// Makes the results of a row, and its time, those of a row of a table of the same shape.
+  void copy_results(std::size_t row, const EvaluationTable& from, std::size_t source);
 
   std::span<double> design(std::size_t row) { return {&designs[row * shape_.variables], shape_.variables}; }
   std::span<const double> design(std::size_t row) const { return {&designs[row * shape_.variables], shape_.variables}; }

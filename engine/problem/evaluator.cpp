@@ -55,13 +55,13 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
   const double each = seconds_each(table, first);
   if (threads_ == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing)) {
     const WithoutTeam alone;
-    return evaluate_rows(problem, table, first, end, scratch_.front());
+    return evaluate_rows(problem, table, first, end, scratch_[worker()]);
   }
   with_team(threads_, [&] {
     const std::size_t team = workers(), rounds = (count + team - 1) / team;
     if (scratch_.size() < team) scratch_.resize(team);
     const bool uneven = 4 * count < 3 * rounds * team;  // shared out, a quarter of the threads' time would be waiting
-    if (uneven && each > kLong) return evaluate_rows(problem, table, first, end, scratch_.front());
+    if (uneven && each > kLong) return evaluate_rows(problem, table, first, end, scratch_[worker()]);
     share_pieces(count, [&](std::size_t begin, std::size_t stop, std::size_t worker) {  // of one design, what is within
       evaluate_rows(problem, table, first + begin, first + stop, scratch_[worker]);
     });

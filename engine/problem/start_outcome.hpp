@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include "engine/problem/evaluation.hpp"
 
 namespace pkm {
 
@@ -33,6 +35,14 @@ struct StartOutcome {
   std::string message;         ///< what the solver said
   /// Norm of the projected gradient at the end (see optimality.hpp); NaN where the stage has no derivatives.
   double optimality = 0;
+};
+
+/// What is known of a start of a solver whose evaluations cannot follow those before it yet: starts are at work side by
+/// side, and an earlier one has not ended.
+struct StartAhead {
+  std::int64_t number = 0;  ///< 0 is the stage's first start
+  EvaluationTable table;    ///< its evaluations so far
+  std::optional<StartOutcome> outcome;  ///< once it has ended; its rows count from 0
 };
 
 }  // namespace pkm

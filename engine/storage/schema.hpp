@@ -167,6 +167,28 @@ void describe_front(Archive& archive, const std::string& group, const Problem& p
   }
 }
 
+template <class Archive, class Problem, class Starts>
+void describe_ahead(Archive& archive, const std::string& group, const Problem& problem, Starts& ahead) {
+  bool there = !ahead.empty();
+  if constexpr (Archive::kReads) there = since(archive, 4) && archive.has(group);
+  if (!there) return;
+  archive.group(group, "What is known of starts whose evaluations cannot follow those of the starts before them yet");
+  if constexpr (Archive::kReads) ahead.resize(archive.members(group));
+  for (std::size_t i = 0; i < ahead.size(); ++i) {
+    const std::string start = group + "/" + std::to_string(i + 1);
+    archive.group(start, "One start");
+    archive.attribute(start, "number", ahead[i].number);
+    describe_evaluations(archive, start + "/evaluations", problem, ahead[i].table);
+    std::vector<StartOutcome> ends;
+    if (ahead[i].outcome) ends.push_back(*ahead[i].outcome);
+    describe_starts(archive, start + "/end", ends);
+    if constexpr (Archive::kReads) {
+      if (ends.size() > 1) throw ImageError(start + "/end: one start has " + std::to_string(ends.size()) + " ends");
+      if (!ends.empty()) ahead[i].outcome = ends.front();
+    }
+  }
+}
+
 template <class Archive, class Study>
 void describe_stages(Archive& archive, Study& study) {
   archive.group("/stages", "The optimisers, run one after the other");
@@ -192,6 +214,7 @@ void describe_stages(Archive& archive, Study& study) {
     bool has_starts = !stage.starts.empty();
     if constexpr (Archive::kReads) has_starts = archive.has(group + "/starts");
     if (has_starts) describe_starts(archive, group + "/starts", stage.starts);
+    describe_ahead(archive, group + "/ahead", study.problem, stage.ahead);
     if (present(archive, group + "/optimality", stage.optimality))
       describe_optimality(archive, group + "/optimality", *stage.optimality);
     if (present(archive, group + "/front", stage.front))

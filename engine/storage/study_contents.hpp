@@ -111,7 +111,8 @@ struct StageRecord {
   bool finished = false;
   std::string stop;  ///< why it ended, in words; "" while it runs
   std::int64_t best_row = -1;
-  std::vector<StartOutcome> starts;            ///< solvers: the starts that have ended
+  std::vector<StartOutcome> starts;            ///< solvers: the starts that have ended and are in the table
+  std::vector<StartAhead> ahead;               ///< solvers that are interrupted: what is known of other starts
   std::optional<OptimalityRecord> optimality;  ///< one objective, stages with derivatives, once finished
   std::optional<FrontRecord> front;            ///< several objectives
 

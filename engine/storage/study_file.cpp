@@ -71,6 +71,14 @@ void check_indices(const StudyContents& study) {
       next += start.rows;
       require(start.end_row >= start.first_row && start.end_row < next, group, "a start's end is not among its rows");
     }
+    for (const StartAhead& ahead : stage.ahead) {
+      const auto known = static_cast<std::int64_t>(ahead.table.size());
+      require(ahead.number >= static_cast<std::int64_t>(stage.starts.size()) && known > 0, group,
+              "a start ahead of the others is one of them, or has no evaluations");
+      require(!ahead.outcome || (ahead.outcome->first_row == 0 && ahead.outcome->rows == known &&
+                                 is_row(ahead.outcome->end_row, ahead.table.size())),
+              group, "the end of a start ahead of the others is not among its rows");
+    }
     if (stage.optimality) {
       require(study.problem.objectives.size() == 1, group, "optimality is there of studies with one objective only");
       require(stage.optimality->sensitivities.size() == study.problem.parameters.size(), group,

@@ -17,10 +17,10 @@ void check_limit(const Stage& stage, const std::string& limit, double value) {
 
 /// What a limit on evaluations counts: those of the stage, or of one start of a solver.
 double evaluations_done(const StageRecord& stage) {
-  const std::size_t all = stage.table.size();
-  if (stage.starts.empty()) return static_cast<double>(all);
-  std::int64_t most = static_cast<std::int64_t>(all) - stage.starts.back().first_row - stage.starts.back().rows;
+  auto most = static_cast<std::int64_t>(stage.table.size());  // less those of the starts that have ended
+  if (!stage.starts.empty()) most -= stage.starts.back().first_row + stage.starts.back().rows;
   for (const StartOutcome& start : stage.starts) most = std::max(most, start.rows);
+  for (const StartAhead& start : stage.ahead) most = std::max(most, static_cast<std::int64_t>(start.table.size()));
   return static_cast<double>(most);
 }
 

@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <mutex>
 
 #include "engine/problem/order.hpp"
 #include "engine/problem/replay.hpp"
@@ -118,6 +121,7 @@ class Run final : public Monitor {
     if (index < list.size()) truncate(stage, index);
     list.first_row.push_back(static_cast<std::int64_t>(g.first_row));
     if (g.starts && g.starts->size() != stage.starts.size()) stage.starts = *g.starts;
+    ahead_ = g.ahead;
     list.best_row.push_back(g.best_row);
     if (g.front) record_front(stage, *g.front);
     list.feasible_share.push_back(feasible_share(table, *g.population));
@@ -132,13 +136,17 @@ class Run final : public Monitor {
     if (g.front || study_.problem->objectives().size() < 2) take_best(table, g.best_row);
     report(g, stage.optimiser);
 
+    if (!goes_on()) return false;
+    if (!replaying_ && clock_.due()) clock_.checkpoint([&] { write(StudyState::running); });
+    return true;
+  }
+
+  bool goes_on() override {
     if (const int signal = StopRequest::signal())
       stopped_ = StopRequest::name(signal);
     else if (options_.time_limit && now() - start_ >= *options_.time_limit)
       stopped_ = "time limit";
-    if (!stopped_.empty()) return false;
-    if (!replaying_ && clock_.due()) clock_.checkpoint([&] { write(StudyState::running); });
-    return true;
+    return stopped_.empty();
   }
 
   void warn(const std::string& sentence) override {
@@ -153,18 +161,30 @@ class Run final : public Monitor {
    public:
     explicit TimedEvaluator(int threads) : inner_(threads) {}
     void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override {
-      const double begin = now();
+      count(1);
       inner_.evaluate(problem, table, first);
-      wall += now() - begin;
+      count(-1);
+      const std::lock_guard guard(mutex_);
       made += static_cast<std::int64_t>(table.size() - first);
       for (std::size_t row = first; row < table.size(); ++row) busy += static_cast<double>(table.seconds[row]);
     }
     int threads() const { return inner_.threads(); }
-    double wall = 0, busy = 0;
-    std::int64_t made = 0;  ///< evaluations
+    double wall = 0, busy = 0;           ///< s; wall: while anything was being evaluated
+    std::atomic<std::int64_t> made = 0;  ///< evaluations
 
    private:
+    /// Of the calls at work.
+    void count(int more) {
+      const std::lock_guard guard(mutex_);
+      if (calls_ == 0) begin_ = now();
+      calls_ += more;
+      if (calls_ == 0) wall += now() - begin_;
+    }
+
     ParallelEvaluator inner_;
+    std::mutex mutex_;
+    int calls_ = 0;
+    double begin_ = 0;
   };
 
   /// The front as it is now, and its indicators at the end of their series.
@@ -194,11 +214,8 @@ class Run final : public Monitor {
     stage_ = index;
     const Stage& stage = study_.stages[index];
     const bool again = index < recorded_.size();
-    std::optional<ReplayEvaluator> replay;
-    if (again) replay.emplace(evaluator_, recorded_[index].table);
-    Evaluator& evaluator = again ? static_cast<Evaluator&>(*replay) : evaluator_;
     StageInput input{.problem = *study_.problem,
-                     .evaluator = evaluator,
+                     .evaluator = evaluator_,
                      .monitor = *this,
                      .seed = stage_seed(index),
                      .starts = start_designs(study_, stage, contents_),
@@ -206,6 +223,7 @@ class Run final : public Monitor {
     if (again) {
       input.recorded = &recorded_[index].table;
       input.recorded_starts = recorded_[index].starts;
+      input.recorded_ahead = recorded_[index].ahead;
     }
     contents_.stages.push_back({stage.entry->name, option_lines(stage.options),
                                 EvaluationTable(study_.problem->shape(stage.optimiser->detail()))});
@@ -213,6 +231,8 @@ class Run final : public Monitor {
     limit_ = stage.optimiser->evaluation_limit(*study_.problem);
     const StageResult result = stage.optimiser->minimise(input, record.table);
     record.starts = result.starts;
+    record.ahead = result.ahead;
+    ahead_ = {};
     if (result.reason != StopReason::interrupted) take_best(record.table, result.best_row);
     if (result.reason == StopReason::interrupted) return false;
     const bool restarted = !warnings_.empty();  // a start that left its recorded path may have become shorter
@@ -278,6 +298,7 @@ class Run final : public Monitor {
   }
 
   void write(StudyState state) {
+    if (ahead_) contents_.stages.back().ahead = ahead_();
     contents_.state = state;
     contents_.seconds = seconds();
     contents_.updated = utc_now();
@@ -311,6 +332,7 @@ class Run final : public Monitor {
   std::size_t stage_ = 0;
   std::int64_t limit_ = 0;
   std::int64_t made_ = 0;
+  std::function<std::vector<StartAhead>()> ahead_;  ///< of the stage at work
   bool replaying_ = false;
   std::string stopped_;
   std::vector<std::string> warnings_;

@@ -23,7 +23,7 @@ class Run {
     breeder_.start(input_.starts, table_, room(), newcomers_);
     while (true) {
       const std::size_t first = evaluated_;
-      if (evaluated_ < table_.size()) input_.evaluator.evaluate(input_.problem, table_, evaluated_);
+      if (evaluated_ < table_.size()) input_.evaluate(table_, evaluated_);
       evaluated_ = table_.size();
       if (survivors_.take(newcomers_)) last_advance_ = generation_;
       const bool goes_on = report(first);

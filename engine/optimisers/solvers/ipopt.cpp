@@ -204,6 +204,7 @@ std::unique_ptr<Optimiser> make(const Options& options, const DesignSpace&) {
     solver->application();  // refuses what Ipopt does not take
   }
   plan.solver = solver;
+  plan.side_by_side = false;
   plan.detail = Detail::derivatives;
   return make_solver_stage(std::move(plan));
 }

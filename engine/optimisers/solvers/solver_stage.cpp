@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -18,128 +20,237 @@ constexpr double kSnap = 1e-6;  // in the unit cube: what lies so near to a boun
 constexpr double kOptimal = 1e-6;
 constexpr int kRounds = 4;  // of a solver from one start
 
-// One run of a stage.
-class Run {
+/// A start with what is known of it.
+struct StartRun {
+  StartDesign from;
+  EvaluationTable table;     ///< its evaluations so far, which a solver adds to
+  EvaluationTable recorded;  ///< those on record; they are not less than they were
+  bool ended = false;
+  StartOutcome outcome = {};  ///< rows from 0
+  std::string warning = {};
+
+  /// What a checkpoint should hold of it: the record until it has been overtaken.
+  const EvaluationTable& known() const { return !ended && recorded.size() > table.size() ? recorded : table; }
+};
+
+/// The stage's table, which starts join in their order.
+class Stage {
  public:
-  Run(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
-      : plan_(plan), stage_{input, table, plan.scalarisation}, input_(stage_.input), table_(table) {
+  Stage(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
+      : input_(input), table_(table), how_(plan.scalarisation) {
     const auto& objectives = input.problem.objectives();
     if (objectives.size() == 1) return;
-    stage_.how.extents = input.known_front.extents;
+    how_.extents = input.known_front.extents;
     FrontPlan front;
     for (std::size_t k = 0; k < objectives.size(); ++k) {
-      if (objectives[k].name == plan.objective) stage_.how.objective = k;
+      if (objectives[k].name == plan.objective) how_.objective = k;
       if (!input.known_front.reference.empty()) front.reference[objectives[k].name] = input.known_front.reference[k];
     }
     front_.emplace(front, input.problem, table);
   }
 
-  StageResult operator()() {
-    const std::vector<StartDesign> starts = all_starts();
-    for (std::size_t k = 0; k < starts.size(); ++k) {
-      const bool goes_on = on_record(k) ? repeat(input_.recorded_starts[k]) : begin(k, starts[k]);
-      if (!goes_on) return {StopReason::interrupted, stage_.best.row, stage_.finished};
-      if (front_) keep_end();
+  const Scalarisation& how() const { return how_; }
+  bool has_front() const { return front_.has_value(); }
+  std::vector<StartRun>& starts() { return starts_; }
+  const std::vector<StartOutcome>& finished() const { return finished_; }
+  bool stopped() const { return stopped_; }
+  void stop() { stopped_ = true; }
+  /// One thread at a time changes what is known of starts, and joins them.
+  std::mutex& mutex() { return mutex_; }
+
+  /// Adds to the table what is known next, and reports it. False: the monitor wants to stop.
+  bool join() {
+    while (!stopped_ && next_ < starts_.size()) {
+      StartRun& start = starts_[next_];
+      // A replay may leave the recorded path, and begin anew.
+      if (!start.ended && start.table.size() <= start.recorded.size()) break;
+      while (!stopped_ && joined_ < start.table.size()) stopped_ = !report(start.table, joined_++);
+      if (stopped_ || !start.ended) break;
+      end(start);
     }
-    StageResult result{reason(), stage_.best.row, stage_.finished};
-    if (front_) result.front = front_->front();
+    if (!stopped_ && !input_.monitor.goes_on()) stopped_ = true;
+    return !stopped_;
+  }
+
+  /// What is known beyond the table.
+  std::vector<StartAhead> ahead() const {
+    std::vector<StartAhead> known;
+    for (std::size_t k = next_; k < starts_.size(); ++k) {
+      const StartRun& start = starts_[k];
+      if (k == next_ && !start.ended && start.known().size() == joined_) continue;
+      if (start.known().size() == 0) continue;
+      known.push_back({static_cast<std::int64_t>(k), start.known(), {}});
+      if (start.ended) known.back().outcome = start.outcome;
+    }
+    return known;
+  }
+
+  StageResult result(StopReason reason) const {
+    StageResult result{reason, best_.row, finished_};
+    if (reason == StopReason::interrupted) result.ahead = ahead();
+    if (front_ && reason != StopReason::interrupted) result.front = front_->front();
     return result;
   }
 
  private:
-  /// The end of the start that has just ended becomes a point of the stage's front.
-  void keep_end() {
-    front_->add(std::array{stage_.finished.back().end_row});
-    if (front_->compromise_row() >= 0)
-      stage_.best = ranked(input_.problem.objectives(), table_, static_cast<std::size_t>(front_->compromise_row()));
+  /// One row of the start that is joining.
+  bool report(const EvaluationTable& start, std::size_t source) {
+    const std::size_t row = table_.append(start, source);
+    if (source == 0) {
+      goal_.emplace(how_, input_.problem, table_, row);
+      best_of_start_ = {};
+    }
+    const Ranked candidate = goal_->rank(row);
+    if (best_of_start_.row < 0 || candidate < best_of_start_) best_of_start_ = candidate;
+    // Of several objectives the stage's best is on its front, which knows the ends of starts.
+    if (best_.row < 0 || (how_.kind == Scalarisation::Kind::none && candidate < best_)) best_ = candidate;
+    population_ = {best_of_start_.row};
+    return input_.monitor.generation({.number = static_cast<std::int64_t>(row),
+                                      .first_row = row,
+                                      .table = &table_,
+                                      .population = &population_,
+                                      .best_row = best_.row,
+                                      .starts = &finished_,
+                                      .ahead = [this] { return ahead(); }});
   }
 
-  std::vector<StartDesign> all_starts() const {
-    std::vector<StartDesign> starts = input_.starts;
+  void end(StartRun& start) {
+    StartOutcome outcome = start.outcome;
+    outcome.first_row = static_cast<std::int64_t>(table_.size() - start.table.size());
+    outcome.end_row += outcome.first_row;
+    if (!start.warning.empty()) input_.monitor.warn(start.warning);
+    if (front_) {  // the end becomes a point of the stage's front
+      front_->add(std::array{outcome.end_row});
+      if (front_->compromise_row() >= 0)
+        best_ = ranked(input_.problem.objectives(), table_, static_cast<std::size_t>(front_->compromise_row()));
+    }
+    finished_.push_back(std::move(outcome));
+    start.table = EvaluationTable();  // the stage's table has it
+    ++next_;
+    joined_ = 0;
+  }
+
+  const StageInput& input_;
+  EvaluationTable& table_;
+  Scalarisation how_;
+  std::vector<StartRun> starts_;
+  std::mutex mutex_;
+  std::size_t next_ = 0;    ///< the start that is joining
+  std::size_t joined_ = 0;  ///< its rows that have
+  std::atomic<bool> stopped_ = false;
+  std::optional<Goal> goal_;  ///< of the start that is joining
+  Ranked best_, best_of_start_;
+  std::vector<StartOutcome> finished_;
+  std::vector<std::int64_t> population_;  ///< the best of the start that is joining
+  std::optional<FrontKeeper> front_;      ///< several objectives: of the ends
+};
+
+// One run of a stage.
+class Run {
+ public:
+  Run(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
+      : plan_(plan), input_(input), stage_(plan, input, table) {}
+
+  StageResult operator()() {
+    std::vector<std::size_t> open;
+    add_starts();
+    for (std::size_t k = 0; k < stage_.starts().size(); ++k)
+      if (!stage_.starts()[k].ended) open.push_back(k);
+    const auto work = [&](std::size_t first, std::size_t end) {
+      for (; first < end; ++first) run(open[first]);
+    };
+    if (open.size() < stage_.starts().size()) stage_.join();  // those that had ended
+    if (plan_.side_by_side)
+      share_long_pieces(open.size(), work);
+    else
+      work(0, open.size());
+    return stage_.result(stage_.stopped() ? StopReason::interrupted : reason());
+  }
+
+ private:
+  void add_starts() {
     const DesignSpace& space = input_.problem.space();
+    const EvaluationShape shape = input_.problem.shape(plan_.detail);
+    const auto add = [&](StartDesign from) {
+      stage_.starts().push_back({std::move(from), EvaluationTable(shape), EvaluationTable(shape)});
+    };
+    for (const StartDesign& from : input_.starts) add(from);
     const auto count = static_cast<std::size_t>(plan_.multistart);
     const auto units = start_points(Start::sobol, count, space.dimension(), input_.seed);
     for (std::size_t k = 0; k < count; ++k) {
-      StartDesign start{{}, "Sobol point " + std::to_string(k + 1)};
+      StartDesign from{{}, "Sobol point " + std::to_string(k + 1)};
       for (std::size_t i = 0; i < space.dimension(); ++i)
-        start.design.push_back(space.from_unit(i, units[k * space.dimension() + i]));
-      starts.push_back(std::move(start));
+        from.design.push_back(space.from_unit(i, units[k * space.dimension() + i]));
+      add(std::move(from));
     }
-    return starts;
+    if (input_.recorded) read_record();
   }
 
-  // Ended on record, and not by a limit that has been raised since.
-  bool on_record(std::size_t k) const {
-    if (k >= input_.recorded_starts.size()) return false;
-    const StartOutcome& outcome = input_.recorded_starts[k];
-    return outcome.stop != words(StopReason::evaluations) || outcome.rows >= plan_.limits.evaluations;
-  }
-
-  // Copies the start's rows; the evaluator serves their results. False: the monitor wants to stop.
-  bool repeat(const StartOutcome& outcome) {
-    const std::size_t first = table_.size();
-    input_.evaluator.follow(first, static_cast<std::size_t>(outcome.first_row),
-                            static_cast<std::size_t>(outcome.first_row + outcome.rows));
-    StartOutcome again = outcome;
-    again.first_row = static_cast<std::int64_t>(first);
-    again.end_row = outcome.end_row - outcome.first_row + again.first_row;
-    Ranked best;
-    std::optional<Goal> goal;
-    for (std::int64_t i = 0; i < outcome.rows; ++i) {
-      const std::size_t row = table_.extend(1);
-      std::ranges::copy(input_.recorded->design(static_cast<std::size_t>(outcome.first_row + i)),
-                        table_.design(row).begin());
-      input_.evaluator.evaluate(input_.problem, table_, row);
-      if (!goal) goal.emplace(stage_.how, input_.problem, table_, row);
-      if (!stage_.take(row, *goal, best)) return false;
+  void read_record() {
+    std::vector<StartRun>& starts = stage_.starts();
+    const EvaluationTable& record = *input_.recorded;
+    std::size_t next = 0;
+    const auto know = [&](std::size_t k, EvaluationTable table, const StartOutcome* outcome) {
+      if (k >= starts.size() || table.size() < starts[k].recorded.size()) return;
+      starts[k].recorded = std::move(table);
+      // Ended, and not by a limit that has been raised since.
+      if (!outcome || (outcome->stop == words(StopReason::evaluations) && outcome->rows < plan_.limits.evaluations))
+        return;
+      starts[k].ended = true;
+      starts[k].outcome = *outcome;
+      starts[k].table = std::move(starts[k].recorded);
+    };
+    for (std::size_t k = 0; k < input_.recorded_starts.size(); ++k) {
+      StartOutcome outcome = input_.recorded_starts[k];
+      outcome.end_row -= std::exchange(outcome.first_row, 0);
+      const std::size_t end = next + static_cast<std::size_t>(outcome.rows);
+      know(k, record.slice(next, end), &outcome);
+      next = end;
     }
-    stage_.finished.push_back(std::move(again));
-    return true;
+    know(input_.recorded_starts.size(), record.slice(next, record.size()), nullptr);
+    for (const StartAhead& ahead : input_.recorded_ahead)
+      know(static_cast<std::size_t>(ahead.number), ahead.table, ahead.outcome ? &*ahead.outcome : nullptr);
   }
 
-  bool begin(std::size_t k, const StartDesign& start) {
-    const std::size_t first = table_.size();
-    const std::int64_t generation = stage_.generation;
-    const Ranked best = stage_.best;
-    const auto [record_first, record_end] = record_of(k);
-    input_.evaluator.follow(first, record_first, record_end);
+  /// One start, on this thread.
+  void run(std::size_t k) {
+    if (stage_.stopped()) return;
+    StartRun& start = stage_.starts()[k];
     try {
-      return solve(k, start);
-    } catch (const ReplayMismatch&) {
-      input_.monitor.warn("Start " + std::to_string(k + 1) + " (" + start.origin +
-                          ") left the path on record, as solvers may on another processor; it began anew.");
-      table_.truncate(first);
-      stage_.generation = generation;
-      stage_.best = best;
-      input_.evaluator.follow(first, 0, 0);
-      return solve(k, start);
+      try {
+        ReplayEvaluator replay(input_.evaluator, start.recorded);
+        solve(k, start, replay);
+      } catch (const ReplayMismatch&) {
+        const std::lock_guard guard(stage_.mutex());
+        start.warning = "Start " + std::to_string(k + 1) + " (" + start.from.origin +
+                        ") left the path on record, as solvers may on another processor; it began anew.";
+        start.table = start.recorded = EvaluationTable(start.table.shape());
+      }
+      if (!start.warning.empty()) solve(k, start, input_.evaluator);
+    } catch (...) {
+      stage_.stop();  // the others need not go on
+      throw;
     }
   }
 
-  /// The recorded rows of start k: those after the starts before it, up to those of the next start that is on record.
-  std::pair<std::size_t, std::size_t> record_of(std::size_t k) const {
-    if (!input_.recorded) return {0, 0};
-    const auto& ended = input_.recorded_starts;
-    if (k < ended.size()) {
-      const auto first = static_cast<std::size_t>(ended[k].first_row);
-      return {first, first + static_cast<std::size_t>(ended[k].rows)};
-    }
-    if (k > ended.size()) return {0, 0};
-    const std::size_t first = ended.empty() ? 0 : static_cast<std::size_t>(ended.back().first_row + ended.back().rows);
-    return {first, input_.recorded->size()};
-  }
-
-  bool solve(std::size_t k, const StartDesign& start) {
-    Trials trials(stage_, plan_.limits, start.design);
+  void solve(std::size_t k, StartRun& start, Evaluator& evaluator) {
+    // The solver's table is its thread's; what others may read is a copy of it.
+    EvaluationTable table(start.table.shape());
+    const auto evaluated = [&] {
+      const std::lock_guard guard(stage_.mutex());
+      start.table.append(table, table.size() - 1);
+      return stage_.join();
+    };
+    Trials trials({input_.problem, evaluator, table, stage_.how(), evaluated}, plan_.limits, start.from.design);
     SolverEnd end;
     std::vector<double> from = trials.start();
-    const bool measurable = !front_ || table_.status[trials.first_row()] != Status::failed;
+    const bool measurable = !stage_.has_front() || table.status[0] != Status::failed;
     if (!measurable) end.message = "the start's evaluation failed, and several objectives are measured from it";
     for (int round = 0; measurable && round < kRounds && trials.stop() == Trials::Stop::none; ++round) {
       const std::int64_t before = trials.best().row;
       end = plan_.solver->solve(trials, from, input_.seed + k);
       trials.rethrow();
-      if (trials.stop() == Trials::Stop::none && !finish(trials, end.point))
+      if (trials.stop() == Trials::Stop::none && !finish(trials, table, end.point))
         end.message += "; ended worse than a design on the way, which is kept";
       trials.rethrow();
       // A solver that gave up short of the optimum (a line search that failed by rounding) begins anew where it stood.
@@ -148,11 +259,10 @@ class Run {
       if (!gained || !(trials.optimality(best) > kOptimal)) break;
       from = trials.recall(best);
     }
-    if (trials.stop() == Trials::Stop::interrupted) return false;
+    if (trials.stop() == Trials::Stop::interrupted) return;
     StartOutcome outcome;
-    outcome.origin = start.origin;
-    outcome.first_row = static_cast<std::int64_t>(trials.first_row());
-    outcome.rows = static_cast<std::int64_t>(table_.size() - trials.first_row());
+    outcome.origin = start.from.origin;
+    outcome.rows = static_cast<std::int64_t>(table.size());
     outcome.end_row = trials.best().row;
     outcome.message =
         trials.stop() == Trials::Stop::not_a_point ? "asked for a design that is not a number" : end.message;
@@ -163,8 +273,10 @@ class Run {
       outcome.message = "none of its designs could be evaluated";
       outcome.stop = words(StopReason::failed);
     }
-    stage_.finished.push_back(std::move(outcome));
-    return true;
+    const std::lock_guard guard(stage_.mutex());
+    start.outcome = std::move(outcome);
+    start.ended = true;
+    stage_.join();
   }
 
   // Solvers may fail by rounding at the very optimum: where the slopes say that it is one, it has converged.
@@ -178,7 +290,7 @@ class Run {
   // What a solver returns need not be its best point, nor one it has asked for (SLSQP may leave the optimum again).
   // And it ends a little inside of bounds and margins, so what lies on those that are active is tried too.
   // False: what is kept was on the way, and the solver ended elsewhere.
-  bool finish(Trials& trials, const std::vector<double>& returned) const {
+  static bool finish(Trials& trials, const EvaluationTable& table, const std::vector<double>& returned) {
     bool at_best = true;
     if (returned.size() == trials.dimension()) {
       const Trials::Point* at = trials.at(returned.data());
@@ -188,7 +300,7 @@ class Run {
       const double best = trials.point().objective;
       at_best = end <= best + kSnap * std::max(1.0, std::fabs(best));
     }
-    std::vector<double> point = trials.recall(most_stationary(trials));
+    std::vector<double> point = trials.recall(most_stationary(trials, table));
     for (double& u : point) u = u < kSnap ? 0 : u > 1 - kSnap ? 1 : u;
     const Trials::Point* at = trials.at(point.data());
     if (!at || !at->usable || at->gradient.empty()) return at_best;
@@ -198,15 +310,15 @@ class Run {
 
   // Of the start's evaluations whose objective and margins are the best one's but for a solver's rounding, the one with
   // the least first-order optimality; without derivatives, the best.
-  std::size_t most_stationary(const Trials& trials) const {
+  static std::size_t most_stationary(const Trials& trials, const EvaluationTable& table) {
     constexpr double kRounding = 1e-9;
     auto chosen = static_cast<std::size_t>(trials.best().row);
-    if (table_.shape().detail != Detail::derivatives || table_.status[chosen] == Status::failed) return chosen;
+    if (table.shape().detail != Detail::derivatives || table.status[chosen] == Status::failed) return chosen;
     const Goal& goal = trials.goal();
     const double best = goal.value(chosen);
     double least = trials.optimality(chosen);
-    for (std::size_t row = trials.first_row(); row < table_.size(); ++row) {
-      if (table_.status[row] == Status::failed || goal.violation(row) > kRounding) continue;
+    for (std::size_t row = 0; row < table.size(); ++row) {
+      if (table.status[row] == Status::failed || goal.violation(row) > kRounding) continue;
       if (!(std::fabs(goal.value(row) - best) <= kRounding * goal.size(best))) continue;
       if (const double here = trials.optimality(row); here < least) {
         least = here;
@@ -218,16 +330,14 @@ class Run {
 
   StopReason reason() const {
     for (const StopReason each : {StopReason::tolerance, StopReason::evaluations, StopReason::time, StopReason::failed})
-      if (std::ranges::all_of(stage_.finished, [&](const StartOutcome& o) { return o.stop == words(each); }))
+      if (std::ranges::all_of(stage_.finished(), [&](const StartOutcome& o) { return o.stop == words(each); }))
         return each;
     return StopReason::starts;
   }
 
   const SolverPlan& plan_;
-  Starts stage_;
   const StageInput& input_;
-  EvaluationTable& table_;
-  std::optional<FrontKeeper> front_;  ///< several objectives: of the ends
+  Stage stage_;
 };
 
 class SolverStage final : public Optimiser {

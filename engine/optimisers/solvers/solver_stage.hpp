@@ -1,9 +1,11 @@
-// What the stages of the solver libraries share: starts one after the other, each within its limits, the best of each
-// kept, resumed by replay.
+// What the stages of the solver libraries share: starts side by side, each within its limits, the best of each kept,
+// resumed by replay.
 //
-// A start that had ended when a run was killed is taken from the record as it is; the one at work is replayed through
-// the solver. Where the solver leaves the recorded path (another processor, another version of the library), that one
-// start begins anew, and the user is told.
+// A start depends on nothing but its design and its number, so it has a table of its own, and its rows join the stage's
+// table in the order of the starts: what the stage comes to is the same as one after the other. A start that had ended
+// when a run was killed is taken from the record as it is; those at work are replayed through the solver. Where a
+// solver leaves the recorded path (another processor, another version of the library), that one start begins anew, and
+// the user is told.
 #pragma once
 
 #include <memory>
@@ -33,6 +35,7 @@ struct SolverPlan {
   TrialLimits limits;  ///< of each start
   std::int64_t starts = 1;
   std::int64_t multistart = 0;  ///< Sobol points besides the designs given
+  bool side_by_side = true;     ///< the solver may work in several threads at once
   Detail detail = Detail::complete;
   Scalarisation scalarisation = {};  ///< of several objectives; its extents come with the stage's input
   std::string objective = {};        ///< epsilon-constraint: the one that is to gain; "": the first

@@ -8,28 +8,9 @@
 
 namespace pkm {
 
-bool Starts::take(std::size_t row, const Goal& goal, Ranked& best_of_start) {
-  const Ranked candidate = goal.rank(row);
-  if (best_of_start.row < 0 || candidate < best_of_start) best_of_start = candidate;
-  // Of several objectives the stage's best is on its front, which knows the ends of starts.
-  if (best.row < 0 || (how.kind == Scalarisation::Kind::none && candidate < best)) best = candidate;
-  population = {best_of_start.row};
-  return input.monitor.generation({.number = generation++,
-                                   .first_row = row,
-                                   .table = &table,
-                                   .population = &population,
-                                   .best_row = best.row,
-                                   .starts = &finished});
-}
-
-Trials::Trials(Starts& stage, const TrialLimits& limits, std::span<const double> start)
-    : stage_(stage),
-      input_(stage.input),
-      table_(stage.table),
-      limits_(limits),
-      first_row_(stage.table.size()),
-      start_design_(start.begin(), start.end()) {
-  const DesignSpace& space = input_.problem.space();
+Trials::Trials(const TrialRoom& room, const TrialLimits& limits, std::span<const double> start)
+    : room_(room), table_(room.table), limits_(limits), start_design_(start.begin(), start.end()) {
+  const DesignSpace& space = room_.problem.space();
   for (std::size_t i = 0; i < space.dimension(); ++i) start_unit_.push_back(space.to_unit(i, start[i]));
   evaluate(start_unit_);
   if (goal_->has_slack()) start_unit_.push_back(unit_.back());
@@ -43,7 +24,7 @@ const Trials::Point* Trials::at(const double* u) noexcept {
       if (!std::isfinite(x) && stop_ == Stop::none) stop_ = Stop::not_a_point;
       x = std::clamp(x, 0.0, 1.0);
     }
-    const std::size_t variables = input_.problem.space().dimension();
+    const std::size_t variables = room_.problem.space().dimension();
     if (!std::equal(unit_.begin(), unit_.begin() + static_cast<std::ptrdiff_t>(variables), inside.begin())) {
       if (stop_ != Stop::none) return nullptr;
       evaluate({inside.data(), variables});
@@ -62,28 +43,28 @@ const Trials::Point* Trials::at(const double* u) noexcept {
 }
 
 std::vector<double> Trials::recall(std::size_t row) {
-  const DesignSpace& space = input_.problem.space();
+  const DesignSpace& space = room_.problem.space();
   const auto design = std::as_const(table_).design(row);
-  for (std::size_t i = 0; i < design.size(); ++i)
-    unit_[i] = row == first_row_ ? start_unit_[i] : space.to_unit(i, design[i]);
+  for (std::size_t i = 0; i < design.size(); ++i) unit_[i] = row == 0 ? start_unit_[i] : space.to_unit(i, design[i]);
   set(row);
   return unit_;
 }
 
 void Trials::evaluate(std::span<const double> u) {
-  const DesignSpace& space = input_.problem.space();
+  const DesignSpace& space = room_.problem.space();
   const std::size_t row = table_.extend(1);
   const auto design = table_.design(row);
   for (std::size_t i = 0; i < design.size(); ++i)  // the start keeps its own bits
     design[i] = u[i] == start_unit_[i] ? start_design_[i] : space.from_unit(i, u[i]);
-  input_.evaluator.evaluate(input_.problem, table_, row);
-  if (!goal_) goal_.emplace(stage_.how, input_.problem, table_, row);
+  room_.evaluator.evaluate(room_.problem, table_, row);
+  if (!goal_) goal_.emplace(room_.how, room_.problem, table_, row);
   unit_.assign(u.begin(), u.end());
   if (goal_->has_slack()) unit_.push_back(0);
   set(row);
 
-  const bool goes_on = stage_.take(row, *goal_, best_);
-  const auto made = static_cast<std::int64_t>(table_.size() - first_row_);
+  if (const Ranked candidate = goal_->rank(row); best_.row < 0 || candidate < best_) best_ = candidate;
+  const bool goes_on = room_.evaluated();
+  const auto made = static_cast<std::int64_t>(table_.size());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (made >= limits_.evaluations)
     stop_ = Stop::evaluations;
@@ -113,7 +94,7 @@ double Trials::optimality(std::size_t row) const {
   goal_->read(row, goal_->slack(row), here);
   if (here.gradient.empty() || !here.usable) return std::numeric_limits<double>::quiet_NaN();
   std::vector<double> u;
-  const DesignSpace& space = input_.problem.space();
+  const DesignSpace& space = room_.problem.space();
   const auto design = std::as_const(table_).design(row);
   for (std::size_t i = 0; i < design.size(); ++i) u.push_back(space.to_unit(i, design[i]));
   if (goal_->has_slack()) u.push_back(goal_->slack(row));

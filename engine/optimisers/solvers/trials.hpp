@@ -1,7 +1,7 @@
 // A solver's view of a problem: points of the unit cube, an objective to be minimised, margins that must be >= 0.
 //
 // Solvers ask for objective, constraints and gradients one by one and often several times; one point is one evaluation,
-// with the slopes if the solver wants any. Every evaluation goes through the stage's evaluator into its table, so a
+// with the slopes if the solver wants any. Every evaluation goes through the start's evaluator into its table, so a
 // resumed run repeats it from the record. The objective is divided by its size at the start: tolerances are relative.
 // Of several objectives a goal makes one (see goal.hpp).
 #pragma once
@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -26,18 +27,13 @@ struct TrialLimits {
   std::optional<double> seconds;
 };
 
-/// What the starts of a stage share.
-struct Starts {
-  const StageInput& input;
-  EvaluationTable& table;
-  Scalarisation how = {};
-  std::int64_t generation = 0;  ///< evaluations so far
-  Ranked best = {};             ///< of the stage
-  std::vector<StartOutcome> finished = {};
-  std::vector<std::int64_t> population = {};  ///< the best of the start at work
-
-  /// Counts an evaluated row of the start at work, and reports it. False: the monitor wants to stop.
-  bool take(std::size_t row, const Goal& goal, Ranked& best_of_start);
+/// What one start works in.
+struct TrialRoom {
+  const Problem& problem;
+  Evaluator& evaluator;
+  EvaluationTable& table;  ///< of this start alone; empty
+  const Scalarisation& how;
+  std::function<bool()> evaluated;  ///< after each evaluation; false: stop
 };
 
 class Trials {
@@ -48,7 +44,7 @@ class Trials {
   using Point = GoalPoint;  ///< where the evaluation failed, its numbers stand for a bad design
 
   /// Evaluates the start and scales by it.
-  Trials(Starts& stage, const TrialLimits& limits, std::span<const double> start);
+  Trials(const TrialRoom& room, const TrialLimits& limits, std::span<const double> start);
 
   std::size_t dimension() const { return goal_->dimension(); }
   std::size_t margins() const { return goal_->margins(); }
@@ -74,18 +70,15 @@ class Trials {
 
   /// Best evaluation of this start.
   const Ranked& best() const { return best_; }
-  std::size_t first_row() const { return first_row_; }
 
  private:
   void evaluate(std::span<const double> u);
   void set(std::size_t row);
   void read(std::size_t row, double slack);
 
-  Starts& stage_;
-  const StageInput& input_;
+  TrialRoom room_;
   EvaluationTable& table_;
   TrialLimits limits_;
-  std::size_t first_row_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<double> start_design_, start_unit_, unit_;
   double start_size_ = 0;        ///< of the objective at the start; 0: not usable

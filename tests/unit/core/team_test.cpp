@@ -53,6 +53,62 @@ TEST(Team, GivesTheSameBitsWhateverTheThreads) {
   for (const int threads : {2, 3, 7}) EXPECT_EQ(results(threads), alone) << threads << " threads";
 }
 
+TEST(Team, DoesLongPiecesOnceAndWhatTheyShareOut) {
+  for (const int threads : {1, 2, 5})
+    with_team(threads, [&] {
+      for (const std::size_t pieces : {0, 1, 2, 7}) {
+        std::vector<std::vector<int>> times(pieces, std::vector<int>(100));
+        std::vector<std::atomic<int>> busy(workers());
+        std::atomic<int> clashes = 0;
+        share_long_pieces(pieces, [&](std::size_t piece, std::size_t end) {
+          ASSERT_EQ(end, piece + 1);
+          for (int job = 0; job < 50; ++job)
+            share_pieces(100, [&](std::size_t first, std::size_t last, std::size_t worker) {
+              ASSERT_LT(worker, busy.size());
+              for (; first < last; ++first) ++times[piece][first];
+            });
+          ASSERT_LT(worker(), busy.size());
+          clashes += busy[worker()]++;
+          --busy[worker()];
+        });
+        EXPECT_EQ(clashes, 0);
+        for (const auto& each : times) EXPECT_EQ(std::ranges::count(each, 50), 100);
+        EXPECT_EQ(has_team(), threads > 1);
+      }
+    });
+}
+
+TEST(Team, ThreadsWithoutALongPieceHelp) {
+  with_team(2, [] {
+    std::atomic<bool> both = false;
+    share_long_pieces(2, [&](std::size_t piece, std::size_t) {
+      if (piece == 0) return;
+      const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+      while (!both && std::chrono::steady_clock::now() < until) {
+        std::vector<std::atomic<int>> done_by(workers());
+        share_pieces(200, [&](std::size_t, std::size_t, std::size_t worker) {
+          ++done_by[worker];
+          std::this_thread::sleep_for(std::chrono::microseconds(50));
+        });
+        both = done_by[0] > 0 && done_by[1] > 0;
+      }
+    });
+    EXPECT_TRUE(both);
+  });
+}
+
+TEST(Team, ThrowsWhatALongPieceThrows) {
+  for (const int threads : {1, 3})
+    with_team(threads, [&] {
+      EXPECT_THROW(share_long_pieces(4,
+                                     [](std::size_t piece, std::size_t) {
+                                       if (piece == 2) throw std::invalid_argument("the third");
+                                     }),
+                   std::invalid_argument);
+      EXPECT_EQ(workers(), static_cast<std::size_t>(threads));
+    });
+}
+
 TEST(Team, GivesPiecesThatRunAtOnceDifferentWorkers) {
   with_team(3, [] {
     for (int job = 0; job < 200; ++job) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "engine/optimisers/optimiser.hpp"
-#include "engine/problem/replay.hpp"
 
 namespace pkm::test {
 
@@ -77,12 +76,12 @@ inline Outcome resume(const Optimiser& optimiser, const Problem& problem, std::u
                       std::int64_t last = std::numeric_limits<std::int64_t>::max(),
                       const std::vector<std::vector<double>>& starts = {}) {
   ParallelEvaluator serial(1);
-  ReplayEvaluator replay(serial, stopped.table);
   Outcome outcome{EvaluationTable(problem.shape(optimiser.detail())), Recorder(last), {}};
-  StageInput input{problem, replay, outcome.recorder, seed};
+  StageInput input{problem, serial, outcome.recorder, seed};
   for (const auto& design : starts) input.starts.push_back({design, "given"});
   input.recorded = &stopped.table;
   input.recorded_starts = stopped.recorder.starts;
+  input.recorded_ahead = stopped.result.ahead;
   outcome.result = optimiser.minimise(input, outcome.table);
   return outcome;
 }

@@ -104,6 +104,8 @@ inline StudyContents sample_study() {
   for (double& x : solver.table.slopes) x = slope = 3.9 * slope * (1 - slope);
   solver.starts = {{"best of stage 1", 0, 2, 1, "converged", "optimal solution found", 3e-8},
                    {"Sobol point 1", 2, 3, 2, "time limit", "", odd_nan()}};
+  solver.ahead = {{3, solver.table.slice(1, 4), {}},
+                  {4, solver.table.slice(0, 2), StartOutcome{"Sobol point 3", 0, 2, 1, "converged", "", 1e-9}}};
   solver.optimality = OptimalityRecord{3e-8,
                                        {{"rail-length", "constraint", 0.2, "m"}, {"a", "upper bound", 1.5, "m"}},
                                        {{"a", "m", 1.5, odd_nan()}, {"b", "m", -2, odd_nan()}, {"L0", "m", 0.1, 0.3}}};

@@ -67,6 +67,11 @@ TEST(StudyFile, KeepsEverything) {
   ASSERT_EQ(read.stages[2].starts.size(), 2u);
   EXPECT_EQ(read.stages[2].starts[1].origin, "Sobol point 1");
   EXPECT_EQ(read.stages[2].starts[1].stop, "time limit");
+  ASSERT_EQ(read.stages[2].ahead.size(), 2u);
+  EXPECT_EQ(read.stages[2].ahead[0].number, 3);
+  EXPECT_FALSE(read.stages[2].ahead[0].outcome);
+  EXPECT_TRUE(same_bits(read.stages[2].ahead[0].table.slopes, written.stages[2].ahead[0].table.slopes));
+  EXPECT_EQ(read.stages[2].ahead[1].outcome->origin, "Sobol point 3");
   ASSERT_TRUE(read.stages[2].optimality);
   EXPECT_EQ(read.stages[2].optimality->active[0].multiplier, 0.2);
   EXPECT_TRUE(std::isnan(read.stages[2].optimality->sensitivities[0].reoptimised));
@@ -123,6 +128,14 @@ TEST(StudyFile, StartsMustFollowOneAnother) {
   study.stages[2].starts[0].end_row = 2;
   EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
               HasSubstr("/stages/3: a start's end is not among its rows"));
+  study = test::sample_study();
+  study.stages[2].ahead[0].number = 1;
+  EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
+              HasSubstr("/stages/3: a start ahead of the others is one of them, or has no evaluations"));
+  study = test::sample_study();
+  study.stages[2].ahead[1].outcome->end_row = 2;
+  EXPECT_THAT(storage_error([&] { write_study(folder / "s.h5", study); }),
+              HasSubstr("/stages/3: the end of a start ahead of the others is not among its rows"));
 }
 
 TEST(StudyFile, KeepsPopulationsOfDifferentSizes) {

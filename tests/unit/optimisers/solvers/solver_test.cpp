@@ -215,6 +215,50 @@ TEST(Solvers, ALeftPathBeginsItsStartAnew) {
   }
 }
 
+TEST(Solvers, SideBySideIsTheSameAsOneAfterTheOther) {
+  const auto problem = welded_beam();
+  for (const std::string optimiser : {"nlopt", "ipopt"}) {
+    const auto stage = make(entry(optimiser), problem, {{"multistart", std::int64_t{6}}});
+    const Outcome straight = run(*stage, problem, 4, 1 << 30, nullptr, {kBeam});
+    for (const int threads : {2, 3, 7}) {
+      ParallelEvaluator parallel(threads);
+      with_team(threads, [&] {
+        EXPECT_TRUE(same_bits(straight, run(*stage, problem, 4, 1 << 30, &parallel, {kBeam})))
+            << optimiser << ", " << threads << " threads";
+      });
+    }
+  }
+}
+
+TEST(Solvers, WhatOtherStartsHadFoundIsNotLostByAStop) {
+  const auto problem = welded_beam();
+  const auto stage = make(entry("nlopt"), problem, {{"multistart", std::int64_t{6}}});
+  const Outcome straight = run(*stage, problem, 4, 1 << 30, nullptr, {kBeam});
+  std::size_t most_ahead = 0;
+  for (const std::int64_t last : {0, 5, 20, 60, 90}) {
+    ParallelEvaluator parallel(3);
+    Outcome stopped;
+    with_team(3, [&] { stopped = run(*stage, problem, 4, last, &parallel, {kBeam}); });
+    ASSERT_EQ(stopped.result.reason, StopReason::interrupted);
+    for (const StartAhead& start : stopped.result.ahead) {
+      most_ahead = std::max(most_ahead, start.table.size());
+      const StartOutcome& end = straight.result.starts[static_cast<std::size_t>(start.number)];
+      ASSERT_LE(static_cast<std::int64_t>(start.table.size()), end.rows);
+      EXPECT_TRUE(
+          same_bits(start.table, straight.table.slice(static_cast<std::size_t>(end.first_row),
+                                                      static_cast<std::size_t>(end.first_row) + start.table.size())));
+      if (start.outcome) EXPECT_EQ(start.outcome->rows, end.rows);
+    }
+    const Outcome again = resume(*stage, problem, 4, stopped, 1 << 30, {kBeam});
+    EXPECT_TRUE(same_bits(straight, again)) << "stopped after " << last;
+    // Stopped again before anything is new: what is known stays known.
+    const Outcome twice = resume(*stage, problem, 4, stopped, 0, {kBeam});
+    EXPECT_GE(twice.result.ahead.size(), stopped.result.ahead.size());
+    EXPECT_TRUE(same_bits(straight, resume(*stage, problem, 4, twice, 1 << 30, {kBeam})));
+  }
+  EXPECT_GT(most_ahead, 0u);
+}
+
 TEST(Solvers, EndedStartsAreTakenFromTheRecordAsTheyAre) {
   // A start that the clock ended cannot be repeated; what it came to is on record and stays.
   const auto problem = welded_beam();
