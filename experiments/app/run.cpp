@@ -151,7 +151,7 @@ struct SeedTable {
   int feasible_seeds = 0;
   std::vector<Row> rows = {{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
-  std::string note = {};  ///< the first
+  std::string note = {};                ///< the first
   std::optional<Verdict> verdict = {};  ///< of the first seed that found nothing
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
