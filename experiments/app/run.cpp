@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/core/printable.hpp"
+#include "engine/core/ranks.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
 #include "experiments/app/print.hpp"
@@ -25,7 +26,7 @@ struct RunArguments {
 };
 
 /// What the evaluations will cost at most, from a timed one in the middle of the design space.
-void print_estimate(const Study& study, int seeds, int threads) {
+void print_estimate(const Study& study, int seeds, int threads_of_rank) {
   const DesignProblem& problem = *study.problem;
   EvaluationTable table(problem.shape());
   table.extend(1);
@@ -40,11 +41,13 @@ void print_estimate(const Study& study, int seeds, int threads) {
   }
   std::int64_t limit = 0;
   for (const auto& stage : study.stages) limit += stage.optimiser->evaluation_limit(problem);
+  const int ranks = ranks::size(), threads = ranks * threads_of_rank;
   std::cout << printable(study.name) << ": at most " << limit << " evaluations";
   if (seeds > 1) std::cout << " for each of " << seeds << " seeds";
   std::cout << " of about " << duration_text(seconds) << ", together about "
-            << duration_text(seconds * static_cast<double>(limit) * seeds / threads) << " on " << threads
-            << (threads == 1 ? " thread" : " threads") << std::endl;  // at once, also into a pipe
+            << duration_text(seconds * static_cast<double>(limit) * seeds / threads) << " on "
+            << (ranks > 1 ? std::to_string(ranks) + " ranks x " : "") << threads_of_rank
+            << (threads_of_rank == 1 ? " thread" : " threads") << std::endl;  // at once, also into a pipe
 }
 
 /// A given voxel box that cuts the workspace makes it look smaller than it is.
@@ -62,9 +65,8 @@ bool exists(const std::string& file) {
   return std::filesystem::exists(file, unseen);
 }
 
-RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments, Session& session,
-                   Progress& progress) {
-  const RunOptions options = run_options(arguments.common);
+RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
+                   const RunOptions& options, Session& session, Progress& progress) {
   if (arguments.resume && exists(output)) {
     StudyContents contents = read_study(output);
     const std::string way_out =
@@ -155,8 +157,11 @@ struct SeedTable {
 };
 
 /// The same study over several seeds: a file and a line each, then the spread.
-void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, Session& session) {
+void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
+               Session& session) {
   const StopRequest listen;  // one for all, so that a signal between two seeds counts
+  const std::optional<double> time_limit = options.time_limit;  // of all
+  double seconds = 0;
   const std::uint64_t first = study.seed;
   if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(arguments.seeds))
     throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "one that leaves room for them");
@@ -173,7 +178,9 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   for (int i = 0; i < arguments.seeds && session.exit_code == kDone; ++i) {
     study.seed = first + static_cast<std::uint64_t>(i);
     progress.next();
-    const RunOutcome outcome = run_one(study, file_of(i), arguments, session, progress);
+    if (time_limit) options.time_limit = *time_limit - seconds;
+    const RunOutcome outcome = run_one(study, file_of(i), arguments, options, session, progress);
+    seconds += outcome.seconds;
     if (outcome.stopped.empty()) table.add(study, outcome.contents, file_of(i));
     const bool last = i == arguments.seeds - 1;
     if (!outcome.stopped.empty() || (StopRequest::signal() != 0 && !last)) session.exit_code = kStoppedEarly;
@@ -196,13 +203,14 @@ void run(const RunArguments& arguments, Session& session) {
   check_outputs({output}, {arguments.study}, Existing::replaced);
   for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
   warn_of_box(study, session.program);
-  if (!arguments.common.quiet) print_estimate(study, arguments.seeds, team_size(arguments.common.threads));
+  const RunOptions options = run_options(arguments.common, session);
+  if (!arguments.common.quiet) print_estimate(study, arguments.seeds, threads_of(arguments.common));
   if (arguments.seeds > 1) {
-    run_seeds(study, output, arguments, session);
+    run_seeds(study, output, arguments, options, session);
     return;
   }
   const auto progress = make_progress(arguments.common);
-  const RunOutcome outcome = run_one(study, output, arguments, session, *progress);
+  const RunOutcome outcome = run_one(study, output, arguments, options, session, *progress);
   progress->finish();
   print_outcome(outcome, study, output, arguments.common, session);
 }
