@@ -19,6 +19,8 @@ pkm_test_packages=(
   chromium                                    # looks at the pages of pkmopt report
   clang-14 libclang-rt-14-dev libomp-14-dev   # second compiler, its sanitizers and OpenMP
   clang-format-14
+  libopenmpi-dev openmpi-bin                  # several processes
+  slurm-wlm munge                             # and as a cluster starts them
 )
 # For the page of pkmopt report. By the command's name: where node comes from elsewhere, Debian's package does not install.
 command -v npm >/dev/null || pkm_build_packages+=(npm)

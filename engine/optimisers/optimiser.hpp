@@ -46,6 +46,7 @@ struct Generation {
   const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: the starts that have ended
   /// Solvers: what is known of starts beyond the table, for a checkpoint.
   std::function<std::vector<StartAhead>()> ahead = {};
+  bool alone = false;  ///< reported by a rank as its own work comes along: the ranks compare at the stage's end
   const Front* front = nullptr;  ///< several objectives
 };
 
@@ -110,6 +111,8 @@ class Optimiser {
   virtual StageResult minimise(const StageInput& input, EvaluationTable& table) const = 0;
   /// Evaluations the stage will make at most (for the estimate before a run).
   virtual std::int64_t evaluation_limit(const Problem& problem) const = 0;
+  /// How many evaluations it has under way at once, at most.
+  virtual std::int64_t at_once() const { return std::numeric_limits<std::int64_t>::max(); }
   /// What the stage's evaluations must hold.
   virtual Detail detail() const { return Detail::enough; }
 };

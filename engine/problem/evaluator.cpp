@@ -3,7 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <numeric>
+#include <string>
+
+#include "engine/core/error.hpp"
+#include "engine/core/ranks.hpp"
+#include "engine/problem/row_exchange.hpp"
 
 namespace pkm {
 namespace {
@@ -47,17 +55,39 @@ double seconds_each(const EvaluationTable& table, std::size_t first) {
   return sample > 0 ? sum / static_cast<double>(sample) : 0;
 }
 
+// Rows of a rank where `count` are shared by index.
+std::pair<std::size_t, std::size_t> share_of(std::size_t rank, std::size_t ranks, std::size_t first,
+                                             std::size_t count) {
+  return {first + rank * count / ranks, first + (rank + 1) * count / ranks};
+}
+
+// The beginning of a rank's message.
+struct Sender {
+  std::uint64_t threads, check;
+};
+
 }  // namespace
 
 void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
+  constexpr double kWorthMessages = 100e-6;  // s
+  constexpr std::size_t kOutdated = 100;     // batches
+  const std::size_t count = table.size() - first;
+  Experience& known = experience_.at(static_cast<std::size_t>(table.shape().detail));
+  const bool quick = known.each > 0 && known.each * static_cast<double>(count) < kWorthMessages;
+  if (ranks::size() == 1 || count < 2 || (quick && ++known.alone < kOutdated))
+    return evaluate_here(problem, table, {first, table.size()}, seconds_each(table, first));
+  evaluate_with_ranks(problem, table, first, known);
+}
+
+void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double each) {
   constexpr double kWorthSharing = 5e-6, kLong = 200e-6;  // s
-  const std::size_t end = table.size(), count = end - first;
-  const double each = seconds_each(table, first);
+  const auto [first, end] = rows;
+  const std::size_t count = end - first;
   if (threads_ == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing)) {
     const WithoutTeam alone;
     return evaluate_rows(problem, table, first, end, scratch_[worker()]);
   }
-  with_team(threads_, [&] {
+  with_team(threads_, [&, first = first, end = end] {
     const std::size_t team = workers(), rounds = (count + team - 1) / team;
     if (scratch_.size() < team) scratch_.resize(team);
     const bool uneven = 4 * count < 3 * rounds * team;  // shared out, a quarter of the threads' time would be waiting
@@ -66,6 +96,82 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
       evaluate_rows(problem, table, first + begin, first + stop, scratch_[worker]);
     });
   });
+}
+
+// Rows that nobody else takes, until none is left.
+std::vector<ParallelEvaluator::Rows> ParallelEvaluator::claim_chunks(const Problem& problem, EvaluationTable& table,
+                                                                     Rows rows, std::size_t chunk) {
+  ranks::Counter claimed;
+  std::vector<std::vector<Rows>> of_workers;
+  with_team(threads_, [&] {
+    const std::size_t team = workers();
+    if (scratch_.size() < team) scratch_.resize(team);
+    of_workers.resize(team);
+    share_pieces(team, [&](std::size_t, std::size_t, std::size_t worker) {
+      while (true) {
+        const std::size_t begin = rows.first + chunk * static_cast<std::size_t>(claimed.next());
+        if (begin >= rows.second) return;
+        const std::size_t end = std::min(rows.second, begin + chunk);
+        evaluate_rows(problem, table, begin, end, scratch_[worker]);
+        of_workers[worker].push_back({begin, end});
+      }
+    });
+  });
+  std::vector<Rows> all;
+  for (const auto& each : of_workers) all.insert(all.end(), each.begin(), each.end());
+  return all;
+}
+
+void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first,
+                                            Experience& known) {
+  const auto ranks = static_cast<std::size_t>(ranks::size()), own = static_cast<std::size_t>(ranks::rank());
+  Rows rows{first, table.size()};
+  Sender sender{static_cast<std::uint64_t>(threads_), 0};
+  if (known.each == 0) {  // the first row on every rank: whether they compute the same
+    evaluate_here(problem, table, {first, first + 1}, 0);
+    sender.check = hash_of_rows(table, first, ++rows.first);
+  }
+  const std::size_t count = rows.second - rows.first;
+  std::vector<Rows> done;
+  if (known.uneven) {
+    constexpr std::size_t kChunks = 8;  // for each thread: the last ones are short
+    done = claim_chunks(problem, table, rows, std::max<std::size_t>(1, count / (kChunks * known.threads)));
+  } else {
+    done = {share_of(own, ranks, rows.first, count)};
+    evaluate_here(problem, table, done.front(), known.each);
+  }
+  if (rows.first > first && own == 0) done.push_back({first, first + 1});
+
+  std::string message(reinterpret_cast<const char*>(&sender), sizeof sender);
+  for (const auto& [begin, end] : done) pack_rows(table, begin, end - begin, message);
+  std::size_t came = 0;
+  std::vector<double> threads;
+  std::uint64_t check = 0;
+  const std::vector<std::string> messages = ranks::all_gather(message);
+  for (std::size_t rank = 0; rank < ranks; ++rank) {
+    std::memcpy(&sender, messages[rank].data(), sizeof sender);
+    threads.push_back(static_cast<double>(sender.threads));
+    if (rank == 0) check = sender.check;
+    if (rank == own && sender.check != check)
+      ranks::abandon("the design that rank 0 on " + ranks::host(0) + " begins with has other results here: the same " +
+                     "program with the same libraries has to run on every host");
+    for (std::size_t at = sizeof sender; at < messages[rank].size();) came += unpack_rows(messages[rank], at, table);
+  }
+  PKM_EXPECTS(came == table.size() - first);
+
+  // The same on every rank from here on: the times have been exchanged.
+  const auto time_of = [&](Rows of) {
+    return std::accumulate(table.seconds.begin() + static_cast<std::ptrdiff_t>(of.first),
+                           table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);
+  };
+  constexpr double kWaiting = 1.05, kWorthClaiming = 1e-3;  // of a rank's time, s
+  double longest = 0;
+  for (std::size_t rank = 0; rank < ranks; ++rank)
+    longest = std::max(longest, time_of(share_of(rank, ranks, rows.first, count)) / threads[rank]);
+  const double all = time_of({first, table.size()}), team = std::accumulate(threads.begin(), threads.end(), 0.0);
+  known = {.each = std::max(all / static_cast<double>(table.size() - first), 1e-9),
+           .uneven = longest > kWaiting * all / team && longest > kWorthClaiming,
+           .threads = static_cast<std::size_t>(team)};
 }
 
 }  // namespace pkm

@@ -1,6 +1,10 @@
 // Batch evaluation: an optimiser hands over a list of designs and gets a list of evaluations.
 #pragma once
 
+#include <array>
+#include <utility>
+#include <vector>
+
 #include "engine/core/team.hpp"
 #include "engine/problem/problem.hpp"
 
@@ -18,6 +22,10 @@ class Evaluator {
 /// By a team of threads: it shares out the designs, or, where they are few and take long, what surveys have to share
 /// out within each. The team is the caller's; outside with_team() one is made for each call, which a run of many calls
 /// is better without. Threads of one team may call it at once, each with a table of its own.
+///
+/// Where there are several ranks, all of them hand over the same designs and get the same results. Each computes a
+/// share of the rows: by index, or, where that would leave ranks waiting, small chunks that are claimed in turn. One
+/// design, or some that take less than the messages would, each rank evaluates alone, without a message.
 class ParallelEvaluator final : public Evaluator {
  public:
   /// @param threads  as for team_size(); within with_team(), 1 or those of the team
@@ -27,8 +35,21 @@ class ParallelEvaluator final : public Evaluator {
   int threads() const { return threads_; }
 
  private:
+  /// What batches that were shared among ranks have shown: the same on every rank, so that all decide alike.
+  struct Experience {
+    double each = 0;                     ///< s, of a design; 0: there was none
+    bool uneven = false;                 ///< shares by index would have left ranks waiting
+    std::size_t threads = 0, alone = 0;  ///< of all ranks; batches since then that each evaluated alone
+  };
+  using Rows = std::pair<std::size_t, std::size_t>;  // first, end
+
+  void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double each);
+  void evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first, Experience& known);
+  std::vector<Rows> claim_chunks(const Problem& problem, EvaluationTable& table, Rows rows, std::size_t chunk);
+
   int threads_;
-  std::vector<Scratch> scratch_;  ///< of each worker
+  std::vector<Scratch> scratch_;          ///< of each worker
+  std::array<Experience, 3> experience_;  ///< with each Detail
 };
 
 }  // namespace pkm

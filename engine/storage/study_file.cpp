@@ -110,17 +110,22 @@ void check_indices(const StudyContents& study) {
 
 }  // namespace
 
+std::string pack_study(const StudyContents& contents) {
+  check_indices(contents);
+  ImageWriter image(kSealBytes);
+  schema::describe(image, contents);
+  std::string bytes = image.finish();
+  seal(bytes, kStudySchema);
+  return bytes;
+}
+
 void write_study(const std::string& path, const StudyContents& contents, Existing existing) {
   std::string bytes;
   try {
-    check_indices(contents);
-    ImageWriter image(kSealBytes);
-    schema::describe(image, contents);
-    bytes = image.finish();
+    bytes = pack_study(contents);
   } catch (const ImageError& error) {
     throw StorageError(path + ": cannot be written (" + error.what() + ")");
   }
-  seal(bytes, kStudySchema);
   write_file(path, bytes, existing);
 }
 

@@ -21,6 +21,9 @@ namespace pkm {
 /// limit (RLIMIT_FSIZE) is reported like a full disk provided that the process ignores SIGXFSZ.
 void write_study(const std::string& path, const StudyContents& contents, Existing existing = Existing::replaced);
 
+/// The bytes that write_study() writes. Throws ImageError where the contents contradict themselves.
+std::string pack_study(const StudyContents& contents);
+
 /// Reads and verifies a study file, without changing it. Throws StorageError with one sentence for a file that is
 /// missing, empty, truncated, damaged, no HDF5 file, another program's, or of a newer schema.
 /// Where use_file_checker() named a helper, it parses the file first.

@@ -6,12 +6,17 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <mutex>
 
+#include "engine/core/instruction_set.hpp"
+#include "engine/core/ranks.hpp"
 #include "engine/problem/order.hpp"
 #include "engine/problem/replay.hpp"
+#include "engine/problem/row_exchange.hpp"
 #include "engine/storage/checkpoint_clock.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/storage/study_lock.hpp"
@@ -53,7 +58,8 @@ double feasible_share(const EvaluationTable& table, const std::vector<std::int64
 class Run final : public Monitor {
  public:
   /// @param existing  what becomes of a file that is there at the first write
-  Run(const Study& study, StudyContents contents, std::string path, const StudyLock& lock, Existing existing,
+  /// @param lock  null on ranks that write nothing
+  Run(const Study& study, StudyContents contents, std::string path, const StudyLock* lock, Existing existing,
       const RunOptions& options, Progress& progress)
       : study_(study),
         path_(std::move(path)),
@@ -62,7 +68,7 @@ class Run final : public Monitor {
         options_(options),
         progress_(progress),
         clock_(study.checkpoint_every),
-        evaluator_(options.threads),
+        evaluator_(options.threads > 0 ? options.threads : ranks::threads()),
         contents_(std::move(contents)),
         recorded_(std::move(contents_.stages)),
         earlier_seconds_(contents_.seconds),
@@ -75,40 +81,27 @@ class Run final : public Monitor {
     contents_.algorithms = kAlgorithms;
   }
 
-  /// By one team for all stages.
-  RunOutcome run() {
-    RunOutcome outcome;
-    with_team(evaluator_.threads(), [&] { outcome = run_stages(); });
-    return outcome;
+  /// A new study's file precedes its first evaluation.
+  void begin() {
+    clock_.first([&] {
+      if (recorded_.empty()) write(StudyState::running);
+    });
   }
 
-  RunOutcome run_stages() {
-    clock_.first([&] {
-      if (recorded_.empty()) write(StudyState::running);  // a new study's file precedes its first evaluation
-    });
-    for (std::size_t i = 0; i < study_.stages.size(); ++i)
-      if (!run_stage(i)) break;
-    RunOutcome outcome;
-    std::optional<std::string> unwritten;
-    outcome.stopped = stopped_;
-    if (!stopped_.empty() && replaying_) {
-      contents_ = read_study(path_);  // stopped before it came to anything new: the file holds more than this run
-    } else {
-      if (stopped_.empty()) contents_.final = final_record(study_, contents_);
-      try {
-        write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);
-      } catch (const StorageError& failure) {
-        unwritten = failure.what();
-      }
+  /// By one team for all stages. Collective.
+  RunOutcome run() {
+    const std::vector<std::string> threads = ranks::all_gather(std::to_string(evaluator_.threads()));
+    for (const std::string& each : threads) threads_ += std::stoi(each);
+    try {
+      with_team(evaluator_.threads(), [&] { run_stages(); });
+    } catch (const ReplayMismatch&) {  // on every rank
+      throw;
+    } catch (const std::exception& error) {
+      if (ranks::size() == 1) throw;
+      ranks::abandon(message_of(error));
     }
-    outcome.contents = std::move(contents_);
-    outcome.seconds = now() - start_;
-    outcome.checkpoint_share = clock_.share();
-    outcome.evaluations = evaluator_.made;
-    outcome.warnings = warnings_;
-    outcome.parallel_efficiency = evaluator_.wall > 0 ? evaluator_.busy / (evaluator_.wall * evaluator_.threads()) : 0;
-    if (unwritten) throw UnwrittenOutcome(*unwritten, std::move(outcome));
-    return outcome;
+    if (failure_) std::rethrow_exception(failure_);
+    return ranks::rank() == 0 ? outcome() : RunOutcome();
   }
 
   bool generation(const Generation& g) override {
@@ -134,14 +127,20 @@ class Run final : public Monitor {
     made_ = evaluator_.made;
     // A solver's starts are points of a front: of them only the stage's end says which stands for all.
     if (g.front || study_.problem->objectives().size() < 2) take_best(table, g.best_row);
-    report(g, stage.optimiser);
-
-    if (!goes_on()) return false;
-    if (!replaying_ && clock_.due()) clock_.checkpoint([&] { write(StudyState::running); });
-    return true;
+    if (ranks::rank() == 0) {
+      try {
+        decide(g);
+      } catch (...) {  // told to the others before it is told to the user
+        if (ranks::size() == 1 || g.alone) throw;
+        failure_ = std::current_exception();
+      }
+    }
+    if (ranks::size() > 1 && !g.alone) agree(g);
+    return stopped_.empty() && !failed_;
   }
 
   bool goes_on() override {
+    if (ranks::rank() != 0) return true;
     if (const int signal = StopRequest::signal())
       stopped_ = StopRequest::name(signal);
     else if (options_.time_limit && now() - start_ >= *options_.time_limit)
@@ -156,6 +155,84 @@ class Run final : public Monitor {
   }
 
  private:
+  void run_stages() {
+    for (std::size_t i = 0; i < study_.stages.size(); ++i)
+      if (!run_stage(i)) break;
+  }
+
+  RunOutcome outcome() {
+    RunOutcome outcome;
+    std::optional<std::string> unwritten;
+    outcome.stopped = stopped_;
+    outcome.evaluations = evaluator_.made;
+    if (ranks::size() > 1) {  // starts of solvers were made elsewhere, too
+      outcome.evaluations = contents_.evaluations();
+      for (const StageRecord& stage : recorded_) outcome.evaluations -= static_cast<std::int64_t>(stage.table.size());
+    }
+    outcome.warnings = warnings_;
+    outcome.parallel_efficiency = evaluator_.wall > 0 ? evaluator_.busy / (evaluator_.wall * threads_) : 0;
+    outcome.exchange_share = ranks::size() > 1 ? (ranks::seconds_in_exchange() - exchanged_) / (now() - start_) : 0;
+    outcome.team = team();
+    if (!stopped_.empty() && replaying_) {
+      contents_ = read_study(path_);  // stopped before it came to anything new: the file holds more than this run
+    } else {
+      if (ranks::size() > 1 && outcome.evaluations > 0) note_ranks(outcome);
+      if (stopped_.empty()) contents_.final = final_record(study_, contents_);
+      try {
+        write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);
+      } catch (const StorageError& failure) {
+        unwritten = failure.what();
+      }
+    }
+    outcome.contents = std::move(contents_);
+    outcome.seconds = now() - start_;
+    outcome.checkpoint_share = clock_.share();
+    if (unwritten) throw UnwrittenOutcome(*unwritten, std::move(outcome));
+    return outcome;
+  }
+
+  /// Rank 0 alone.
+  void decide(const Generation& g) {
+    report(g, contents_.stages.back().optimiser);
+    if (goes_on() && !replaying_ && clock_.due()) clock_.checkpoint([&] { write(StudyState::running); });
+  }
+
+  /// What rank 0 has decided becomes everyone's, and everyone has what rank 0 has.
+  void agree(const Generation& g) {
+    constexpr char kDecision = 'd', kFailed = '!';
+    const std::uint64_t own = hash_of_rows(*g.table, g.first_row, g.table->size());
+    std::string message(1, kDecision);
+    message.append(reinterpret_cast<const char*>(&own), sizeof own) += failure_ ? std::string(1, kFailed) : stopped_;
+    ranks::broadcast(message);
+    std::uint64_t hash = 0;
+    if (message.size() > sizeof hash) std::memcpy(&hash, message.data() + 1, sizeof hash);
+    if (message.front() != kDecision || hash != own)
+      ranks::abandon("what was evaluated in generation " + std::to_string(g.number) + " of stage " +
+                     std::to_string(stage_ + 1) + " differs from that of rank 0 on " + ranks::host(0) +
+                     ": the same program with the same libraries has to run on every host");
+    stopped_ = message.substr(1 + sizeof hash);
+    failed_ = stopped_.starts_with(kFailed);
+  }
+
+  /// "2 threads", "4 ranks x 16 threads".
+  std::string team() const {
+    const int ranks = ranks::size(), own = evaluator_.threads();
+    const auto words = [](int threads) { return std::to_string(threads) + (threads == 1 ? " thread" : " threads"); };
+    if (ranks == 1) return words(own);
+    if (ranks * own == threads_) return std::to_string(ranks) + " ranks x " + words(own);
+    return std::to_string(ranks) + " ranks with " + words(threads_) + " in all";
+  }
+
+  void note_ranks(const RunOutcome& outcome) {
+    std::vector<std::string> hosts;
+    for (int rank = 0; rank < ranks::size(); ++rank)
+      if (std::ranges::find(hosts, ranks::host(rank)) == hosts.end()) hosts.push_back(ranks::host(rank));
+    const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
+    contents_.notes.push_back(std::to_string(outcome.evaluations) + " evaluations by " + outcome.team + " on " +
+                              join(hosts) + ": parallel efficiency " + percent(outcome.parallel_efficiency) + ", " +
+                              percent(outcome.exchange_share) + " of the time in messages between ranks");
+  }
+
   /// Adds up what parallel efficiency is made of.
   class TimedEvaluator final : public Evaluator {
    public:
@@ -166,7 +243,9 @@ class Run final : public Monitor {
       count(-1);
       const std::lock_guard guard(mutex_);
       made += static_cast<std::int64_t>(table.size() - first);
-      for (std::size_t row = first; row < table.size(); ++row) busy += static_cast<double>(table.seconds[row]);
+      // A single row is each rank's own work.
+      const int ranks = table.size() - first == 1 ? ranks::size() : 1;
+      for (std::size_t row = first; row < table.size(); ++row) busy += ranks * static_cast<double>(table.seconds[row]);
     }
     int threads() const { return inner_.threads(); }
     double wall = 0, busy = 0;           ///< s; wall: while anything was being evaluated
@@ -233,6 +312,7 @@ class Run final : public Monitor {
     record.starts = result.starts;
     record.ahead = result.ahead;
     ahead_ = {};
+    if (failed_) return false;
     if (result.reason != StopReason::interrupted) take_best(record.table, result.best_row);
     if (result.reason == StopReason::interrupted) return false;
     const bool restarted = !warnings_.empty();  // a start that left its recorded path may have become shorter
@@ -298,11 +378,12 @@ class Run final : public Monitor {
   }
 
   void write(StudyState state) {
+    if (!lock_) return;
     if (ahead_) contents_.stages.back().ahead = ahead_();
     contents_.state = state;
     contents_.seconds = seconds();
     contents_.updated = utc_now();
-    if (!lock_.held()) keep_elsewhere();
+    if (!lock_->held()) keep_elsewhere();
     write_study(path_, contents_, existing_);
     existing_ = Existing::replaced;
   }
@@ -319,7 +400,7 @@ class Run final : public Monitor {
 
   const Study& study_;
   std::string path_;
-  const StudyLock& lock_;
+  const StudyLock* lock_;
   Existing existing_;
   RunOptions options_;
   Progress& progress_;
@@ -335,10 +416,78 @@ class Run final : public Monitor {
   std::function<std::vector<StartAhead>()> ahead_;  ///< of the stage at work
   bool replaying_ = false;
   std::string stopped_;
+  std::exception_ptr failure_;  ///< of rank 0, which ends the run on all
+  bool failed_ = false;         ///< rank 0 has one
+  int threads_ = 0;             ///< of all ranks
+  double exchanged_ = ranks::seconds_in_exchange();
   std::vector<std::string> warnings_;
 };
 
+/// The first byte of what rank 0 broadcasts between runs.
+constexpr char kTakePart = 'r', kDismissed = 'q';
+
+/// What a rank has to know for a run: what follows the study is one number each.
+std::string invitation(const StudyContents& contents, const RunOptions& options) {
+  if (ranks::size() == 1) return "";
+  return kTakePart + options.program.version + '\n' + options.program.revision + '\n' +
+         std::to_string(options.threads) + '\n' + std::to_string(static_cast<int>(instruction_set())) + '\n' +
+         pack_study(contents);
+}
+
+/// Rank 0's part of a run; the others' is take_part().
+RunOutcome run_with_ranks(const Study& study, StudyContents contents, const std::string& path, const StudyLock& lock,
+                          Existing existing, const RunOptions& options, Progress& progress) {
+  std::string others = invitation(contents, options);
+  Run run(study, std::move(contents), path, &lock, existing, options, progress);
+  run.begin();
+  ranks::broadcast(others);
+  return run.run();
+}
+
 }  // namespace
+
+int take_part(const Catalogues& catalogues, const ProgramVersion& program) {
+  const StopRequest listen;  // rank 0 decides what a signal to all of them does
+  Progress silent;
+  while (true) {
+    std::string message;
+    ranks::broadcast(message);
+    const char kind = message.empty() ? '\0' : message.front();
+    if (kind == kDismissed) return std::stoi(message.substr(1));
+    if (kind != kTakePart)
+      ranks::abandon("this rank has ended a run in which rank 0 on " + ranks::host(0) +
+                     " goes on: the same program with the same libraries has to run on every host");
+    std::size_t at = 1;
+    const auto line = [&] {
+      const std::size_t begin = at, end = message.find('\n', at);
+      at = end + 1;
+      return message.substr(begin, end - begin);
+    };
+    RunOptions options;
+    options.program.version = line();
+    options.program.revision = line();
+    if (options.program.version != program.version || options.program.revision != program.revision)
+      ranks::abandon("pkmopt " + program.version + " (" + program.revision + ") here, but " + options.program.version +
+                     " (" + options.program.revision + ") as rank 0 on " + ranks::host(0) +
+                     ": the same program has to run on every host");
+    options.threads = std::stoi(line());
+    use_instruction_set(std::min(static_cast<InstructionSet>(std::stoi(line())), widest_instruction_set()));
+    try {
+      StudyContents contents = parse_study(message.substr(at), kStudySchema);
+      Study study = study_of(contents, catalogues);
+      apply_extensions(study, contents.extensions);
+      Run(study, std::move(contents), "", nullptr, Existing::refused, options, silent).run();
+    } catch (const ReplayMismatch&) {  // rank 0 tells
+    } catch (const std::exception& error) {
+      ranks::abandon(message_of(error));
+    }
+  }
+}
+
+void dismiss_ranks(int exit_code) {
+  std::string message = kDismissed + std::to_string(exit_code);
+  ranks::broadcast(message);
+}
 
 Study study_of(const StudyContents& contents, const Catalogues& catalogues) {
   Study study = read_study_toml(contents.toml, contents.toml_file, catalogues);
@@ -355,7 +504,7 @@ RunOutcome run_study(const Study& study, const std::string& path, bool overwrite
   std::error_code unseen;  // the attempt to write tells
   if (!overwrite && std::filesystem::exists(path, unseen))
     throw StorageError(path + " exists already; resume it with --resume, or overwrite it with --force");
-  return Run(study, new_contents(study), path, lock, if_forced(overwrite), options, progress).run();
+  return run_with_ranks(study, new_contents(study), path, lock, if_forced(overwrite), options, progress);
 }
 
 namespace {
@@ -396,7 +545,7 @@ RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, c
   apply_extensions(study, contents.extensions);
   note_processor(contents);
   try {
-    return Run(study, std::move(contents), path, lock, Existing::replaced, options, progress).run();
+    return run_with_ranks(study, std::move(contents), path, lock, Existing::replaced, options, progress);
   } catch (const ReplayMismatch& mismatch) {
     throw StorageError(path + " cannot be continued: " + mismatch.what());
   }

@@ -1,6 +1,9 @@
 // Runs a study: its stages one after the other, checkpoints on the way, and what is worked out at the end. New studies,
 // interrupted ones and finished ones that are to be extended take the same path: a stage always starts from nothing,
 // and recorded evaluations are served before new ones are made.
+//
+// Of several ranks (engine/core/ranks.hpp) each runs the same stages on the same table; only evaluations are shared
+// out. Rank 0 alone reads, locks and writes the study, talks, and decides after each generation whether to go on.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +29,7 @@ struct ProgramVersion {
 };
 
 struct RunOptions {
-  int threads = 0;                   ///< as for team_size()
+  int threads = 0;                   ///< of each rank, as for team_size(); 0: as ranks::threads() says
   std::optional<double> time_limit;  ///< [s] of this run; the study then stops early with a checkpoint
   ProgramVersion program;
 };
@@ -39,6 +42,8 @@ struct RunOutcome {
   std::int64_t evaluations = 0;       ///< made by this run, replayed ones not counted
   double checkpoint_share = 0;        ///< of the run time, first and final write not counted
   double parallel_efficiency = 0;     ///< evaluation time over threads times wall time of the evaluations
+  std::string team;                   ///< "2 threads", "4 ranks x 16 threads"
+  double exchange_share = 0;          ///< of the run time, spent by rank 0 in messages, waiting included; one rank: 0
   std::vector<std::string> warnings;  ///< sentences for the user; also in the file
 };
 
@@ -58,6 +63,12 @@ RunOutcome run_study(const Study& study, const std::string& path, bool overwrite
 /// does not fit.
 RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
                         const RunOptions& options, Progress& progress);
+
+/// What the ranks after the first do in a program of several: they take part in the runs that rank 0 begins, print and
+/// write nothing, and return the exit code that it dismisses them with.
+int take_part(const Catalogues& catalogues, const ProgramVersion& program);
+/// Rank 0, at the program's end: the others end too.
+void dismiss_ranks(int exit_code);
 
 /// The study that a file holds, with its seed.
 Study study_of(const StudyContents& contents, const Catalogues& catalogues);

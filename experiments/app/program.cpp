@@ -15,8 +15,10 @@
 #include "constraints/all.hpp"
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/printable.hpp"
+#include "engine/core/ranks.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/storage/contained_reading.hpp"
+#include "engine/study/run_study.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/printable_stream.hpp"
@@ -87,20 +89,31 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
     std::cerr << excerpt(session.program, kLongestProgram) << ": " << sentence << '\n';
     return exit_code;
   };
+  const auto work = [&] {
+    try {
+      run({argv + std::min(argc, 1), argv + argc}, session);
+      return session.exit_code;
+    } catch (const ConfigError& error) {
+      return complain(error.what(), kBadInput);
+    } catch (const std::bad_alloc&) {
+      return complain("out of memory", kFailure);
+    } catch (const std::filesystem::filesystem_error& error) {
+      return complain(StorageError(error.path1().string() + ": " + error.code().message()).what(), kFailure);
+    } catch (const std::system_error& error) {
+      return complain(error.code().message(), kFailure);
+    } catch (const std::exception& error) {
+      return complain(message_of(error), kFailure);
+    }
+  };
   std::signal(SIGXFSZ, SIG_IGN);  // so that a limit of file sizes is an error that can be told
   try {
-    run({argv + std::min(argc, 1), argv + argc}, session);
-    return session.exit_code;
-  } catch (const ConfigError& error) {
-    return complain(error.what(), kBadInput);
-  } catch (const std::bad_alloc&) {
-    return complain("out of memory", kFailure);
-  } catch (const std::filesystem::filesystem_error& error) {
-    return complain(StorageError(error.path1().string() + ": " + error.code().message()).what(), kFailure);
-  } catch (const std::system_error& error) {
-    return complain(error.code().message(), kFailure);
-  } catch (const std::exception& error) {
-    return complain(message_of(error), kFailure);
+    const ranks::Group group;
+    if (ranks::rank() > 0) return take_part(catalogues, {program_version(), program_revision()});
+    const int exit_code = work();
+    if (ranks::size() > 1) dismiss_ranks(exit_code);
+    return exit_code;
+  } catch (const std::exception& error) {  // the processes that were started do not find one another
+    return ranks::launched_first() ? complain(message_of(error), kFailure) : kFailure;
   }
 }
 

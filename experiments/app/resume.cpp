@@ -2,7 +2,6 @@
 
 #include <iostream>
 
-#include "engine/core/unit.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/running.hpp"
@@ -14,19 +13,11 @@ namespace {
 struct ResumeArguments {
   std::string file;
   ExtensionRequest extension;
-  std::string time;
   RunningArguments common;
 };
 
-double time_limit(const std::string& text) {
-  const auto seconds = parse_quantity(text, "s");
-  if (seconds && *seconds > 0) return *seconds;
-  throw ConfigError({"", 0, "--time"}, "'" + text + "'", "a time > 0 s, such as 90, \"10 min\" or \"2 h\"");
-}
-
 void resume(const ResumeArguments& arguments, Session& session) {
-  RunOptions options = run_options(arguments.common);
-  if (!arguments.time.empty()) options.time_limit = time_limit(arguments.time);
+  const RunOptions options = run_options(arguments.common, session);
   const auto& extension = arguments.extension;
   if (!extension.generations && !extension.evaluations) {
     const StudyContents contents = read_study(arguments.file);
@@ -60,7 +51,6 @@ void add_resume(CLI::App& app, Session& session) {
   const std::string meaning = "New limit of the last stage, in all";
   add_integer(command, "--generations N", arguments.extension.generations, 1, kMost, meaning);
   add_integer(command, "--evaluations N", arguments.extension.evaluations, 1, kMost, meaning);
-  add_option(command, "--time T", arguments.time, "Stop with a checkpoint after this time: 90, \"10 min\"");
   add_running_options(command, arguments.common);
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/core/printable.hpp"
+#include "engine/core/ranks.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
@@ -51,17 +52,18 @@ double seconds_of_one(const Study& study, Detail detail) {
   return longest;
 }
 
-/// What the evaluations will cost at most, from timed ones. Optimisers that are told all of every design, such as
-/// solvers, ask for one after the other; those to whom a broken design-level margin is enough, for many at a time.
-void print_estimate(const Study& study, int seeds, int threads) {
-  std::int64_t plain = 0, with_derivatives = 0, in_turn = 0;
+/// What the evaluations will cost at most, from timed ones.
+void print_estimate(const Study& study, int seeds, int threads_of_rank) {
+  const int ranks = ranks::size(), threads = ranks * threads_of_rank;
+  std::int64_t plain = 0, with_derivatives = 0;
+  double plain_rounds = 0, derivative_rounds = 0;  // of evaluations side by side
   for (const auto& stage : study.stages) {
-    const Detail detail = stage.optimiser->detail();
+    const bool slopes = stage.optimiser->detail() == Detail::derivatives;
     const std::int64_t limit = stage.optimiser->evaluation_limit(*study.problem);
-    (detail == Detail::derivatives ? with_derivatives : plain) += limit;
-    if (detail == Detail::complete) in_turn += limit;
+    const auto at_once = std::min<std::int64_t>(threads, stage.optimiser->at_once());
+    (slopes ? with_derivatives : plain) += limit;
+    (slopes ? derivative_rounds : plain_rounds) += static_cast<double>(limit) / static_cast<double>(at_once);
   }
-  const auto all = static_cast<double>(plain), turn = static_cast<double>(in_turn);
   double together = 0;
   std::vector<std::string> parts;
   const auto add = [&](std::int64_t limit, const char* what, double seconds, double rounds) {
@@ -69,14 +71,15 @@ void print_estimate(const Study& study, int seeds, int threads) {
     together += seconds * rounds;
   };
   if (plain > 0 || with_derivatives == 0)
-    add(plain, " evaluations", seconds_of_one(study, Detail::complete), (all - turn) / threads + turn);
+    add(plain, " evaluations", seconds_of_one(study, Detail::complete), plain_rounds);
   if (with_derivatives > 0)
     add(with_derivatives, plain > 0 ? " with derivatives" : " evaluations with derivatives",
-        seconds_of_one(study, Detail::derivatives), static_cast<double>(with_derivatives));
+        seconds_of_one(study, Detail::derivatives), derivative_rounds);
   std::cout << printable(study.name) << ": at most " << join(parts, " and ");
   if (seeds > 1) std::cout << ", for each of " << seeds << " seeds";
-  std::cout << ", together about " << duration_text(together * seeds) << " on " << threads
-            << (threads == 1 ? " thread" : " threads") << std::endl;  // at once, also into a pipe
+  std::cout << ", together about " << duration_text(together * seeds) << " on "
+            << (ranks > 1 ? std::to_string(ranks) + " ranks x " : "") << threads_of_rank
+            << (threads_of_rank == 1 ? " thread" : " threads") << std::endl;  // at once, also into a pipe
 }
 
 /// A given voxel box that cuts the workspace makes it look smaller than it is.
@@ -94,9 +97,8 @@ bool exists(const std::string& file) {
   return std::filesystem::exists(file, unseen);
 }
 
-RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments, Session& session,
-                   Progress& progress) {
-  const RunOptions options = run_options(arguments.common);
+RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
+                   const RunOptions& options, Session& session, Progress& progress) {
   if (arguments.resume && exists(output)) {
     StudyContents contents = read_study(output);
     const std::string way_out =
@@ -193,8 +195,11 @@ struct SeedTable {
 };
 
 /// The same study over several seeds: a file and a line each, then the spread.
-void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, Session& session) {
+void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
+               Session& session) {
   const StopRequest listen;  // one for all, so that a signal between two seeds counts
+  const std::optional<double> time_limit = options.time_limit;  // of all
+  double seconds = 0;
   const std::uint64_t first = study.seed;
   if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(arguments.seeds))
     throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "one that leaves room for them");
@@ -212,15 +217,17 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   for (int i = 0; i < arguments.seeds && session.exit_code == kDone; ++i) {
     study.seed = first + static_cast<std::uint64_t>(i);
     progress.next();
+    if (time_limit) options.time_limit = *time_limit - seconds;
     RunEnd end;
     try {
-      end = end_of_run([&] { return run_one(study, file_of(i), arguments, session, progress); });
+      end = end_of_run([&] { return run_one(study, file_of(i), arguments, options, session, progress); });
     } catch (const StorageError& failure) {
       if (table.seconds.empty()) throw;
       unwritten = failure.what();
       break;
     }
     const RunOutcome& outcome = end.outcome;
+    seconds += outcome.seconds;
     if (outcome.stopped.empty()) table.add(study, outcome.contents, end.unwritten ? "not written" : file_of(i));
     unwritten = end.unwritten;
     if (unwritten) break;
@@ -255,13 +262,14 @@ void run(const RunArguments& arguments, Session& session) {
   for (const Reason& reason : contradictions(study.problem->parts()))
     std::cerr << session.program << ": warning: " << reason.sentence << '\n';
   warn_of_box(study, session.program);
-  if (!arguments.common.quiet) print_estimate(study, arguments.seeds, team_size(arguments.common.threads));
+  const RunOptions options = run_options(arguments.common, session);
+  if (!arguments.common.quiet) print_estimate(study, arguments.seeds, threads_of(arguments.common));
   if (arguments.seeds > 1) {
-    run_seeds(study, output, arguments, session);
+    run_seeds(study, output, arguments, options, session);
     return;
   }
   const auto progress = make_progress(arguments.common);
-  const RunEnd end = end_of_run([&] { return run_one(study, output, arguments, session, *progress); });
+  const RunEnd end = end_of_run([&] { return run_one(study, output, arguments, options, session, *progress); });
   progress->finish();
   print_end(end, study, output, arguments.common, session);
 }

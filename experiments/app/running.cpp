@@ -5,7 +5,11 @@
 #include <cstring>
 #include <iostream>
 
+#include "engine/core/ranks.hpp"
+#include "engine/core/team.hpp"
+#include "engine/core/unit.hpp"
 #include "engine/report/standing.hpp"
+#include "experiments/app/print.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/version.hpp"
 
@@ -16,13 +20,32 @@ void add_threads(CLI::App& command, int& threads) {
               "Number of threads (default: OMP_NUM_THREADS, else one per core)");
 }
 
+namespace {
+
+double time_limit(const std::string& text) {
+  const auto seconds = parse_quantity(text, "s");
+  if (seconds && *seconds > 0) return *seconds;
+  throw ConfigError({"", 0, "--time"}, "'" + text + "'", "a time > 0 s, such as 90, \"10 min\" or \"2 h\"");
+}
+
+}  // namespace
+
 void add_running_options(CLI::App& command, RunningArguments& arguments) {
   add_threads(command, arguments.threads);
+  add_option(command, "--time T", arguments.time, "Stop with a checkpoint after this time: 90, \"10 min\"");
   command.add_flag("--quiet", arguments.quiet, "Print nothing but errors and warnings");
 }
 
-RunOptions run_options(const RunningArguments& arguments) {
-  return {.threads = arguments.threads, .program = {program_version(), program_revision()}};
+int threads_of(const RunningArguments& arguments) {
+  return team_size(arguments.threads > 0 ? arguments.threads : ranks::threads());
+}
+
+RunOptions run_options(const RunningArguments& arguments, const Session& session) {
+  if (const auto warning = ranks::crowded(threads_of(arguments)))
+    std::cerr << session.program << ": warning: " << *warning << '\n';
+  RunOptions options{.threads = arguments.threads, .program = {program_version(), program_revision()}};
+  if (!arguments.time.empty()) options.time_limit = time_limit(arguments.time);
+  return options;
 }
 
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments) {
@@ -64,12 +87,15 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
     std::cout << '\n';
     session.exit_code = kStoppedEarly;
   } else if (!arguments.quiet) {
-    char line[200];
+    const std::string exchange =
+        ranks::size() > 1 ? formatted("messages between ranks %.1f %% and ", 100 * outcome.exchange_share) : "";
+    char line[300];
     std::snprintf(line, sizeof line,
-                  "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %d threads, checkpoints %.1f %% of "
+                  "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %s, %scheckpoints %.1f %% of "
                   "the time\n",
                   static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
-                  100 * outcome.parallel_efficiency, team_size(arguments.threads), 100 * outcome.checkpoint_share);
+                  100 * outcome.parallel_efficiency, outcome.team.c_str(), exchange.c_str(),
+                  100 * outcome.checkpoint_share);
     std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
     if (!end.unwritten) std::cout << "written to " << file << '\n';
   }

@@ -14,15 +14,19 @@ namespace pkm {
 
 struct RunningArguments {
   int threads = 0;
+  std::string time;
   bool quiet = false;
 };
 
 /// Declares --threads.
 void add_threads(CLI::App& command, int& threads);
-/// Declares --threads and --quiet.
+/// Declares --threads, --time and --quiet.
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 
-RunOptions run_options(const RunningArguments& arguments);
+/// Threads of this rank.
+int threads_of(const RunningArguments& arguments);
+/// Warns of more threads than cores.
+RunOptions run_options(const RunningArguments& arguments, const Session& session);
 /// A bar or lines on stderr; nothing when quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 

@@ -19,14 +19,19 @@ struct Library {
   Words folders;
 };
 const std::vector<Library> kLibraries = {
-    {"hdf5.h", {"engine/storage"}},     {"xxhash.h", {"engine/storage"}},
-    {"Random123/", {"engine/math"}},    {"toml++/", {"engine/setup"}},
-    {"nlopt.h", {"engine/optimisers"}}, {"omp.h", {"engine/core"}},
-    {"Ip", {"engine/optimisers"}},      {"nlohmann/", {"engine/report", "experiments/app"}},
+    {"hdf5.h", {"engine/storage"}},
+    {"xxhash.h", {"engine/storage"}},
+    {"Random123/", {"engine/math"}},
+    {"toml++/", {"engine/setup"}},
+    {"nlopt.h", {"engine/optimisers"}},
+    {"omp.h", {"engine/core"}},
+    {"mpi.h", {"engine/core"}},
+    {"Ip", {"engine/optimisers"}},
+    {"nlohmann/", {"engine/report", "experiments/app"}},
     {"CLI/", {"experiments/app"}},
 };
 // May be included everywhere.
-const Words kSystem = {"Eigen/", "sys/", "unistd.h", "fcntl.h", "signal.h", "spawn.h"};
+const Words kSystem = {"Eigen/", "sys/", "unistd.h", "fcntl.h", "sched.h", "signal.h", "spawn.h"};
 
 // Not although the order would allow it, and why.
 struct Ban {

@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "engine/core/ranks.hpp"
 #include "engine/optimisers/front_keeper.hpp"
 #include "engine/optimisers/solvers/optimality.hpp"
 #include "engine/optimisers/start.hpp"
 #include "engine/problem/replay.hpp"
+#include "engine/problem/row_exchange.hpp"
 
 namespace pkm {
 namespace {
@@ -26,6 +30,7 @@ struct StartRun {
   EvaluationTable table;     ///< its evaluations so far, which a solver adds to
   EvaluationTable recorded;  ///< those on record; they are not less than they were
   bool ended = false;
+  bool here = false;          ///< this rank works on it
   StartOutcome outcome = {};  ///< rows from 0
   std::string warning = {};
 
@@ -58,7 +63,8 @@ class Stage {
   /// One thread at a time changes what is known of starts, and joins them.
   std::mutex& mutex() { return mutex_; }
 
-  /// Adds to the table what is known next, and reports it. False: the monitor wants to stop.
+  /// Adds to the table what is known next, and reports it. False: the monitor wants to stop. Ranks after the first do
+  /// so at the stage's end.
   bool join() {
     while (!stopped_ && next_ < starts_.size()) {
       StartRun& start = starts_[next_];
@@ -72,16 +78,29 @@ class Stage {
     return !stopped_;
   }
 
+  /// What another rank knows of a start.
+  void know(StartAhead&& of) {
+    StartRun& start = starts_.at(static_cast<std::size_t>(of.number));
+    if (start.ended) return;
+    start.ended = of.outcome.has_value();
+    if (start.ended) start.outcome = std::move(*of.outcome);
+    (start.ended ? start.table : start.recorded) = std::move(of.table);
+  }
+
   /// What is known beyond the table.
   std::vector<StartAhead> ahead() const {
     std::vector<StartAhead> known;
     for (std::size_t k = next_; k < starts_.size(); ++k) {
       const StartRun& start = starts_[k];
       if (k == next_ && !start.ended && start.known().size() == joined_) continue;
-      if (start.known().size() == 0) continue;
-      known.push_back({static_cast<std::int64_t>(k), start.known(), {}});
-      if (start.ended) known.back().outcome = start.outcome;
+      if (start.known().size() > 0) known.push_back(known_of(k));
     }
+    return known;
+  }
+  StartAhead known_of(std::size_t k) const {
+    const StartRun& start = starts_[k];
+    StartAhead known{static_cast<std::int64_t>(k), start.known(), {}};
+    if (start.ended) known.outcome = start.outcome;
     return known;
   }
 
@@ -111,7 +130,8 @@ class Stage {
                                       .population = &population_,
                                       .best_row = best_.row,
                                       .starts = &finished_,
-                                      .ahead = [this] { return ahead(); }});
+                                      .ahead = [this] { return ahead(); },
+                                      .alone = true});
   }
 
   void end(StartRun& start) {
@@ -149,25 +169,70 @@ class Stage {
 class Run {
  public:
   Run(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
-      : plan_(plan), input_(input), stage_(plan, input, table) {}
+      : plan_(plan), input_(input), table_(table), stage_(plan, input, table) {}
 
   StageResult operator()() {
     std::vector<std::size_t> open;
     add_starts();
     for (std::size_t k = 0; k < stage_.starts().size(); ++k)
       if (!stage_.starts()[k].ended) open.push_back(k);
-    const auto work = [&](std::size_t first, std::size_t end) {
-      for (; first < end; ++first) run(open[first]);
+    if (open.size() < stage_.starts().size() && leads()) stage_.join();  // those that had ended
+    ranks::Counter claims;
+    const auto work = [&] {
+      for (auto k = claims.next(); k < std::ssize(open) && !stage_.stopped(); k = claims.next())
+        run(open[static_cast<std::size_t>(k)]);
     };
-    if (open.size() < stage_.starts().size()) stage_.join();  // those that had ended
-    if (plan_.side_by_side)
-      share_long_pieces(open.size(), work);
-    else
-      work(0, open.size());
+    share_long_pieces(plan_.side_by_side ? std::min(workers(), open.size()) : 1, work);
+    if (ranks::size() > 1) agree();
     return stage_.result(stage_.stopped() ? StopReason::interrupted : reason());
   }
 
  private:
+  static bool leads() { return ranks::rank() == 0; }
+
+  /// Every rank has what all have found, or knows that the stage was stopped.
+  void agree() {
+    std::string mine;
+    for (std::size_t k = 0; k < stage_.starts().size(); ++k)
+      if (stage_.starts()[k].here && !leads()) pack_start(stage_.known_of(k), mine);
+    for (const std::string& bytes : ranks::all_gather(mine)) know(bytes, 0);
+    if (leads()) stage_.join();
+    std::string state(1, stage_.stopped() ? kStopped : kDone);
+    if (leads()) state += std::to_string(hash_of_rows(table_, 0, table_.size()));
+    ranks::broadcast(state);
+    if (state.front() == kStopped) return stage_.stop();
+    if (leads()) return;
+    stage_.join();
+    if (state.substr(1) != std::to_string(hash_of_rows(table_, 0, table_.size())))
+      ranks::abandon("what the solver's starts have come to differs from what rank 0 on " + ranks::host(0) +
+                     " has: the same program with the same libraries has to run on every host");
+  }
+
+  void know(const std::string& bytes, std::size_t at) {
+    while (at < bytes.size()) stage_.know(unpack_start(bytes, at, table_.shape()));
+  }
+
+  /// After each evaluation, with the stage's mutex. False: stop.
+  bool joined() {
+    if (ranks::size() > 1) {
+      if (!leads()) {
+        // Rank 0 says when to stop; to ask it costs a message.
+        const auto now = std::chrono::steady_clock::now();
+        if (now - asked_ < std::chrono::milliseconds(100)) return !stage_.stopped();
+        asked_ = now;
+        if (stops_.next(0) > 0) stage_.stop();
+        return !stage_.stopped();
+      }
+      while (const auto message = ranks::poll()) {
+        std::uint64_t stage = 0;  // messages may outlive the stage that they were sent in
+        std::memcpy(&stage, message->data(), sizeof stage);
+        if (stage == input_.seed) know(*message, sizeof stage);
+      }
+    }
+    if (!stage_.join()) stops_.next();
+    return !stage_.stopped();
+  }
+
   void add_starts() {
     const DesignSpace& space = input_.problem.space();
     const EvaluationShape shape = input_.problem.shape(plan_.detail);
@@ -216,6 +281,7 @@ class Run {
   void run(std::size_t k) {
     if (stage_.stopped()) return;
     StartRun& start = stage_.starts()[k];
+    start.here = true;
     try {
       try {
         ReplayEvaluator replay(input_.evaluator, start.recorded);
@@ -239,7 +305,7 @@ class Run {
     const auto evaluated = [&] {
       const std::lock_guard guard(stage_.mutex());
       start.table.append(table, table.size() - 1);
-      return stage_.join();
+      return joined();
     };
     Trials trials({input_.problem, evaluator, table, stage_.how(), evaluated}, plan_.limits, start.from.design);
     SolverEnd end;
@@ -276,7 +342,12 @@ class Run {
     const std::lock_guard guard(stage_.mutex());
     start.outcome = std::move(outcome);
     start.ended = true;
-    stage_.join();
+    if (!leads()) {
+      std::string message(reinterpret_cast<const char*>(&input_.seed), sizeof input_.seed);
+      pack_start(stage_.known_of(k), message);
+      ranks::post(message);
+    }
+    joined();
   }
 
   // Solvers may fail by rounding at the very optimum: where the slopes say that it is one, it has converged.
@@ -335,9 +406,14 @@ class Run {
     return StopReason::starts;
   }
 
+  static constexpr char kStopped = 's', kDone = 'd';
+
   const SolverPlan& plan_;
   const StageInput& input_;
+  EvaluationTable& table_;
   Stage stage_;
+  ranks::Counter stops_;  ///< above 0: rank 0 has stopped
+  std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
 class SolverStage final : public Optimiser {
@@ -350,6 +426,7 @@ class SolverStage final : public Optimiser {
   std::int64_t evaluation_limit(const Problem&) const override {
     return (plan_.starts + plan_.multistart) * plan_.limits.evaluations;
   }
+  std::int64_t at_once() const override { return plan_.side_by_side ? plan_.starts + plan_.multistart : 1; }
   Detail detail() const override { return plan_.detail; }
 
  private:

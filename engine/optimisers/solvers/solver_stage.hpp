@@ -6,6 +6,9 @@
 // when a run was killed is taken from the record as it is; those at work are replayed through the solver. Where a
 // solver leaves the recorded path (another processor, another version of the library), that one start begins anew, and
 // the user is told.
+//
+// Of several ranks each takes the next start that nobody has, and posts to rank 0 what it came to; at the stage's end
+// all have everything. Rank 0 alone reports, and says when to stop.
 #pragma once
 
 #include <memory>

@@ -1,0 +1,240 @@
+// One study by several processes: the same file whatever their number, killed and gone on with, refused where they do
+// not find one another.
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "tests/cli/study_program.hpp"
+
+#ifndef PKM_MPIRUN
+#define PKM_MPIRUN ""
+#endif
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kHead = R"([study]
+name = "ranks"
+seed = 7
+[mechanism]
+type = "4ppa-2par"
+[variables]
+a   = { min = 0.15, max = 0.95 }
+b   = { min = 0.35, max = 1.55 }
+l_u = { min = 0.25, max = 1.5 }
+l_d = { min = 0.25, max = 1.5, step = 0.001 }
+[workspace]
+method = "columns"
+limits = { alpha_min = 0.1, h_min = 0.06, beta_min = 0.1, beta_max = 1.3, sin_par_min = 0.1, cos_theta_min = 0.1 }
+[[constraint]]
+type = "workspace-shape"
+)";
+constexpr const char* kRatio = "[[objective]]\ntype = \"workspace-ratio\"\n";
+constexpr const char* kVolume = "[[objective]]\ntype = \"workspace-volume\"\n";
+constexpr const char* kGa = "[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 12\n";
+
+class Ranks : public StudyProgram {
+ protected:
+  void SetUp() override {
+    StudyProgram::SetUp();
+    if (!fs::exists(PKM_MPIRUN)) GTEST_SKIP() << "there is no mpirun, or the program was built without MPI";
+    // What an Open MPI would ask of a machine that it has to itself.
+    for (const char* given :
+         {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "OMPI_MCA_rmaps_base_oversubscribe"})
+      setenv(given, "1", 1);
+    setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 1);
+  }
+
+  void write_toml(const std::string& rest, const std::string& head = kHead) const {
+    std::ofstream(path("study.toml")) << head << rest;
+  }
+  static std::vector<std::string> on(int ranks, std::vector<std::string> arguments,
+                                     const std::string& program = PKM_PROGRAM) {
+    const std::vector<std::string> words = {PKM_MPIRUN, "-n", std::to_string(ranks), "--bind-to", "none", program};
+    arguments.insert(arguments.begin(), words.begin(), words.end());
+    return arguments;
+  }
+  int run_on(int ranks, const std::vector<std::string>& arguments, const std::string& program = PKM_PROGRAM) {
+    ChildProcess child(on(ranks, arguments, program), folder_);
+    const int code = child.wait();
+    output_ = child.output();
+    return code;
+  }
+  /// study.toml into a file for each number of ranks and threads: all like that of one process.
+  void expect_the_same(const std::set<int>& ranks, const std::string& program = PKM_PROGRAM) {
+    ChildProcess alone({program, "run", "study.toml", "--output", "alone.h5", "--quiet", "--threads", "1"}, folder_);
+    ASSERT_EQ(alone.wait(), 0) << alone.output();
+    for (const int count : ranks)
+      for (const char* threads : {"1", "2"}) {
+        const std::string file = std::to_string(count) + "x" + threads + ".h5";
+        ASSERT_EQ(run_on(count, {"run", "study.toml", "--output", file, "--quiet", "--threads", threads}, program), 0)
+            << output_;
+        EXPECT_EQ(first_difference(read("alone.h5"), read(file)), "") << file;
+      }
+  }
+  /// Those of our ranks that write the file.
+  static std::vector<pid_t> ranks_with(const std::string& word) {
+    std::vector<pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+      const std::string name = entry.path().filename();
+      if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+      std::ifstream file(entry.path() / "cmdline");
+      const std::string line{std::istreambuf_iterator<char>(file), {}};
+      if (line.starts_with(PKM_PROGRAM) && line.find(word) != std::string::npos) found.push_back(std::stoi(name));
+    }
+    return found;
+  }
+};
+
+TEST_F(Ranks, ExchangeMessages) {
+  for (const int ranks : {1, 2, 3}) {
+    EXPECT_EQ(run_on(ranks, {"--exchange"}, PKM_RANK_PROGRAM), 0) << output_;
+    EXPECT_THAT(output_, HasSubstr(std::to_string(ranks) + " ranks exchange"));
+  }
+}
+
+TEST_F(Ranks, OfAGeneticAlgorithmEndTheSame) {
+  write_toml(std::string(kRatio) + kGa);
+  expect_the_same({1, 2, 3, 7});
+}
+
+TEST_F(Ranks, OfNsga2EndTheSame) {
+  write_toml(std::string(kRatio) + kVolume + "[[stage]]\noptimiser = \"nsga2\"\npopulation = 40\ngenerations = 8\n");
+  expect_the_same({1, 2, 3, 7});
+}
+
+TEST_F(Ranks, OfSweepsAndSolversEndTheSame) {
+  write_toml(std::string(kRatio) +
+             "[[stage]]\noptimiser = \"sweep\"\ndesign = \"full-factorial\"\npoints = 4\n"
+             "[[stage]]\noptimiser = \"sweep\"\npoints = 9\n"
+             "[[stage]]\noptimiser = \"nlopt\"\nstart = \"best-of-basins\"\nstarts = 2\n");
+  std::ifstream file(path("study.toml"));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text.erase(text.find(", step = 0.001"), 14);  // solvers take no steps
+  write_toml(text, "");
+  expect_the_same({1, 2, 3, 7});
+}
+
+TEST_F(Ranks, RunIpopt) {  // whose sequential linear solver has an MPI_Init of its own
+  write_toml(std::string(kRatio) + "[[stage]]\noptimiser = \"ipopt\"\nstart = \"none\"\nmultistart = 2\n");
+  std::ifstream file(path("study.toml"));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text.erase(text.find(", step = 0.001"), 14);
+  write_toml(text, "");
+  expect_the_same({2});
+}
+
+TEST_F(Ranks, ClaimDesignsInTurnWhereTheyTakeUnevenTimes) {
+  write_toml(
+      "[[objective]]\ntype = \"slow\"\n[[stage]]\noptimiser = \"sweep\"\ndesign = \"full-factorial\"\npoints = 20\n"
+      "[[stage]]\noptimiser = \"ga\"\npopulation = 60\ngenerations = 3\n",
+      "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.15, max = 0.95 }\nb = { min = 0.5, max = 1 }\n");
+  expect_the_same({2, 3}, PKM_RANK_PROGRAM);
+}
+
+TEST_F(Ranks, TellWhatTheyWere) {
+  write_toml(std::string(kRatio) + kGa);
+  ASSERT_EQ(run_on(2, {"run", "study.toml", "--output", "two.h5", "--threads", "1"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr(" on 2 ranks x 1 thread, messages between ranks "));
+  EXPECT_EQ(output_.find("this run:"), output_.rfind("this run:")) << "one rank talks";
+  const StudyContents two = read("two.h5");
+  ASSERT_EQ(two.notes.size(), 1u);
+  EXPECT_THAT(two.notes[0], HasSubstr("520 evaluations by 2 ranks x 1 thread on "));
+}
+
+TEST_F(Ranks, WarnOfMoreThreadsThanCores) {
+  write_toml(std::string(kRatio) + kGa);
+  const std::string cores = std::to_string(std::thread::hardware_concurrency());
+  ASSERT_EQ(run_on(2, {"run", "study.toml", "--quiet", "--threads", cores}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("pkmopt: warning: "));
+  EXPECT_THAT(output_, HasSubstr(" has 2 ranks of " + cores + " thread"));
+}
+
+TEST_F(Ranks, RunSeedsOneAfterTheOther) {
+  write_toml(std::string(kRatio) + kGa);
+  ASSERT_EQ(run({"run", "study.toml", "--seeds", "2", "--output", "alone.h5", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run_on(2, {"run", "study.toml", "--seeds", "2", "--output", "two.h5", "--quiet"}), 0) << output_;
+  for (const char* seed : {"-seed-7.h5", "-seed-8.h5"})
+    EXPECT_EQ(first_difference(read(std::string("alone") + seed), read(std::string("two") + seed)), "");
+}
+
+TEST_F(Ranks, KilledAtRandomInstantsAndResumedByAnotherNumberEndTheSame) {
+  write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 400\n[checkpoint]\nevery = 0\n",
+             std::string(kHead) + kRatio);
+  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
+  std::mt19937 engine(22);
+  int killed = 0;
+  const std::vector<int> others = {1, 3, 2};
+  for (const int other : others) {
+    const std::string file = "by-" + std::to_string(other) + ".h5";
+    {
+      ChildProcess child(on(2, {"run", "study.toml", "--output", file, "--quiet", "--threads", "1"}), folder_);
+      while (!fs::exists(path(file))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::this_thread::sleep_for(std::chrono::milliseconds(20 + engine() % 200));
+      const std::vector<pid_t> ranks = ranks_with(file);
+      if (!ranks.empty()) kill(ranks[engine() % ranks.size()], SIGKILL);
+      killed += child.wait() != 0;
+    }
+    const StudyContents left = read(file);
+    ASSERT_EQ(run_on(other, {"resume", file, "--quiet", "--threads", "1"}), 0) << output_;
+    EXPECT_EQ(first_difference(read("straight.h5"), read(file)), "");
+  }
+  EXPECT_GT(killed, 0) << "the study ended before every kill";
+}
+
+TEST_F(Ranks, StopTogetherByASignalToRank0OrByTime) {
+  write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 100000\n", std::string(kHead) + kRatio);
+  EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "time.h5", "--quiet", "--time", "300ms"}), 3) << output_;
+  EXPECT_THAT(output_, HasSubstr("stopped by time limit after "));
+  EXPECT_EQ(read("time.h5").state, StudyState::interrupted);
+  ChildProcess child(on(2, {"run", "study.toml", "--output", "signal.h5", "--quiet"}), folder_);
+  while (!fs::exists(path("signal.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  for (const pid_t rank : ranks_with("signal.h5")) kill(rank, SIGTERM);
+  EXPECT_EQ(child.wait(), 3) << child.output();
+  EXPECT_THAT(child.output(), HasSubstr("stopped by SIGTERM after "));
+}
+
+TEST_F(Ranks, AreNamedWhereTheyComputeOtherNumbers) {
+  write_toml("[[objective]]\ntype = \"odd\"\n" + std::string(kGa), kHead);
+  EXPECT_NE(run_on(3, {"run", "study.toml", "--quiet"}, PKM_RANK_PROGRAM), 0);
+  EXPECT_THAT(output_, HasSubstr("rank 1 on "));
+  EXPECT_THAT(output_, HasSubstr("has other results here: the same program with the same libraries has to run"));
+  EXPECT_THAT(output_, Not(HasSubstr("rank 2 on ")));
+}
+
+TEST_F(Ranks, EndTogetherWhereRank0CannotBegin) {
+  write_toml("[[stage]]\noptimiser = \"gaa\"\n", std::string(kHead) + kRatio);
+  EXPECT_EQ(run_on(3, {"run", "study.toml", "--quiet"}), 2);
+  EXPECT_THAT(output_, HasSubstr("gaa"));
+  EXPECT_EQ(output_.find("pkmopt: "), output_.rfind("pkmopt: ")) << output_;
+  write_toml(std::string(kRatio) + kGa);
+  EXPECT_EQ(run_on(2, {"run", "study.toml", "--quiet", "--output", "no/folder.h5"}), 1) << output_;
+  EXPECT_THAT(output_, Not(HasSubstr("MPI_ABORT"))) << output_;
+}
+
+TEST_F(Ranks, LeaveOtherCommandsToTheFirst) {
+  EXPECT_EQ(run_on(2, {"list", "optimisers"}), 0) << output_;
+  EXPECT_EQ(output_.find("  sweep"), output_.rfind("  sweep")) << output_;
+}
+
+// A launcher whose messages are not those that the program was built with starts N times a program that is alone.
+TEST_F(StudyProgram, OneOfSeveralProcessesThatIsAloneIsRefused) {
+  setenv("PMI_SIZE", "3", 1);
+  for (const char* rank : {"0", "1"}) {
+    setenv("PMI_RANK", rank, 1);
+    EXPECT_EQ(run({"list"}), 1);
+    if (*rank == '0')
+      EXPECT_THAT(output_, ::testing::StartsWith("pkmopt: mpiexec has started 3 processes, but "));
+    else
+      EXPECT_EQ(output_, "");
+  }
+  unsetenv("PMI_SIZE");
+  unsetenv("PMI_RANK");
+}
+
+}  // namespace
+}  // namespace pkm::testing
