@@ -151,7 +151,7 @@ int check_standard_input() {
   } catch (const std::bad_alloc&) {
     return kOutOfMemory;
   } catch (const std::exception& error) {
-    std::fputs(error.what(), stdout);
+    std::fputs(message_of(error).c_str(), stdout);
     return kRefused;
   }
 }

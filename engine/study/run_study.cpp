@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <new>
 
 #include "engine/problem/order.hpp"
 #include "engine/problem/replay.hpp"
@@ -75,7 +76,11 @@ class Run final : public Monitor {
   /// By one team for all stages.
   RunOutcome run() {
     RunOutcome outcome;
-    with_team(evaluator_.threads(), [&] { outcome = run_stages(); });
+    try {
+      with_team(evaluator_.threads(), [&] { outcome = run_stages(); });
+    } catch (const std::bad_alloc&) {
+      keep_what_is_whole();
+    }
     return outcome;
   }
 
@@ -103,6 +108,7 @@ class Run final : public Monitor {
   }
 
   bool generation(const Generation& g) override {
+    whole_rows_.reset();
     const EvaluationTable& table = *g.table;
     StageRecord& stage = contents_.stages.back();
     const std::size_t index = static_cast<std::size_t>(g.number);
@@ -122,6 +128,7 @@ class Run final : public Monitor {
     const bool timed = replaying_ && index < record->generations.size();
     list.seconds.push_back(timed ? record->generations.seconds[index] : seconds());
     made_ = evaluator_.made;
+    whole_rows_ = table.size();
     // A solver's starts are points of a front: of them only the stage's end says which stands for all.
     if (g.front || study_.problem->objectives().size() < 2) take_best(table, g.best_row);
     report(g, stage.optimiser);
@@ -154,6 +161,8 @@ class Run final : public Monitor {
       for (std::size_t row = first; row < table.size(); ++row) busy += static_cast<double>(table.seconds[row]);
     }
     int threads() const { return inner_.threads(); }
+    /// Gives back what it has reserved for evaluations.
+    void forget() { inner_ = ParallelEvaluator(inner_.threads()); }
     double wall = 0, busy = 0;
     std::int64_t made = 0;  ///< evaluations
 
@@ -186,6 +195,7 @@ class Run final : public Monitor {
   /// False when the run has to stop.
   bool run_stage(std::size_t index) {
     stage_ = index;
+    whole_rows_ = 0;
     const Stage& stage = study_.stages[index];
     const bool again = index < recorded_.size();
     std::optional<ReplayEvaluator> replay;
@@ -280,6 +290,26 @@ class Run final : public Monitor {
     existing_ = Existing::replaced;
   }
 
+  /// Out of memory: the generations that are complete become a checkpoint, in the memory that the run gives back.
+  [[noreturn]] void keep_what_is_whole() {
+    evaluator_.forget();
+    recorded_ = {};
+    std::string kept = "what it held before";
+    if (!replaying_ && whole_rows_) try {
+        if (!contents_.stages.empty()) {
+          StageRecord& stage = contents_.stages.back();
+          if (!stage.finished) stage.table.truncate(*whole_rows_);
+          if (stage.table.size() == 0) contents_.stages.pop_back();
+        }
+        contents_.final.reset();
+        write(StudyState::interrupted);
+        kept = "what is complete, " + std::to_string(contents_.evaluations()) + " evaluations,";
+      } catch (const std::bad_alloc&) {  // then the last checkpoint stands
+      }
+    throw StorageError(path_ + ": out of memory in stage " + std::to_string(stage_ + 1) + "; the file keeps " + kept +
+                       " and can be resumed, with fewer threads or more memory");
+  }
+
   /// Another process may have the study by now: its file is left alone, and nothing of this run is lost.
   [[noreturn]] void keep_elsewhere() {
     const std::filesystem::path path(path_);
@@ -305,7 +335,8 @@ class Run final : public Monitor {
   std::size_t stage_ = 0;
   std::int64_t limit_ = 0;
   std::int64_t made_ = 0;
-  bool replaying_ = false;
+  bool replaying_ = !recorded_.empty();    ///< nothing that the file does not hold is there yet
+  std::optional<std::size_t> whole_rows_;  ///< of the stage at work, up to its last generation; none while it is taken
   std::string stopped_;
   std::vector<std::string> warnings_;
 };

@@ -5,11 +5,9 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "constraints/all.hpp"
@@ -92,12 +90,6 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
     return session.exit_code;
   } catch (const ConfigError& error) {
     return complain(error.what(), kBadInput);
-  } catch (const std::bad_alloc&) {
-    return complain("out of memory", kFailure);
-  } catch (const std::filesystem::filesystem_error& error) {
-    return complain(StorageError(error.path1().string() + ": " + error.code().message()).what(), kFailure);
-  } catch (const std::system_error& error) {
-    return complain(error.code().message(), kFailure);
   } catch (const std::exception& error) {
     return complain(message_of(error), kFailure);
   }

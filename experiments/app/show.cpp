@@ -1,6 +1,7 @@
 // pkmopt show: what a study found, from its file.
 
 #include <iostream>
+#include <new>
 
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
@@ -48,9 +49,10 @@ std::string text(const StudyContents& contents, const Catalogues& catalogues) {
   std::string note;
   try {
     study = study_of(contents, catalogues);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
-    note = "note: this program cannot read the study's text, so references are left out (" + std::string(error.what()) +
-           ")\n";
+    note = "note: this program cannot read the study's text, so references are left out (" + message_of(error) + ")\n";
   }
   return summary_text(contents, study) + history(contents) + note;
 }
