@@ -30,9 +30,9 @@ PageStudy page_study(const std::string& file, const Session& session) {
     throw;
   } catch (const std::exception& error) {
     page.unreadable = message_of(error);
-    std::cerr << session.program << ": note: " << file
-              << ": this program cannot read the study's text, so what would have to be "
-              << "evaluated again is left out (" << page.unreadable << ")\n";
+    const StorageError note(file + ": this program cannot read the study's text, so what would have to be evaluated " +
+                            "again is left out (" + page.unreadable + ")");
+    std::cerr << session.program << ": note: " << note.what() << '\n';
   }
   return page;
 }
