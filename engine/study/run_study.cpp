@@ -11,12 +11,9 @@
 #include "engine/problem/order.hpp"
 #include "engine/problem/replay.hpp"
 #include "engine/storage/checkpoint_clock.hpp"
-#include "engine/storage/study_file.hpp"
-#include "engine/storage/study_lock.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/study/records.hpp"
 #include "engine/study/starts.hpp"
-#include "engine/study/stop_request.hpp"
 
 namespace pkm {
 namespace {
@@ -375,11 +372,10 @@ void note_processor(StudyContents& contents) {
 
 }  // namespace
 
-RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
+RunOutcome resume_study(HeldStudy& held, const Catalogues& catalogues, const ExtensionRequest& extension,
                         const RunOptions& options, Progress& progress) {
-  const StopRequest listen;
-  const StudyLock lock(path);
-  StudyContents contents = read_study(path);
+  const std::string& path = held.path;
+  StudyContents& contents = held.contents;
   if (contents.algorithms != kAlgorithms)
     throw StorageError(path + " was written by pkmopt " + contents.program_version + " (" + contents.program_revision +
                        "), whose algorithms have version " + std::to_string(contents.algorithms) +
@@ -399,7 +395,7 @@ RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, c
   apply_extensions(study, contents.extensions);
   note_processor(contents);
   try {
-    return Run(study, std::move(contents), path, lock, Existing::replaced, options, progress).run();
+    return Run(study, std::move(contents), path, held.lock, Existing::replaced, options, progress).run();
   } catch (const ReplayMismatch& mismatch) {
     throw StorageError(path + " cannot be continued: " + mismatch.what());
   }

@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "engine/core/unit.hpp"
-#include "engine/storage/study_file.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
 
@@ -27,17 +26,15 @@ void resume(const ResumeArguments& arguments, Session& session) {
   RunOptions options = run_options(arguments.common);
   if (!arguments.time.empty()) options.time_limit = time_limit(arguments.time);
   const auto& extension = arguments.extension;
-  if (!extension.generations && !extension.evaluations) {
-    const StudyContents contents = read_study(arguments.file);
-    if (contents.state == StudyState::finished) {
-      if (!arguments.common.quiet)
-        std::cout << summary_text(contents, study_of(contents, session.catalogues))
-                  << "nothing is left to do; --generations or --evaluations extend the last stage\n";
-      return;
-    }
+  HeldStudy held(arguments.file);
+  if (!extension.generations && !extension.evaluations && held.contents.state == StudyState::finished) {
+    if (!arguments.common.quiet)
+      std::cout << summary_text(held.contents, study_of(held.contents, session.catalogues))
+                << "nothing is left to do; --generations or --evaluations extend the last stage\n";
+    return;
   }
   const auto progress = make_progress(arguments.common);
-  const RunOutcome outcome = resume_study(arguments.file, session.catalogues, extension, options, *progress);
+  const RunOutcome outcome = resume_study(held, session.catalogues, extension, options, *progress);
   progress->finish();
   print_outcome(outcome, study_of(outcome.contents, session.catalogues), arguments.file, arguments.common, session);
 }

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "engine/core/printable.hpp"
-#include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
@@ -66,7 +65,8 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
                    Progress& progress) {
   const RunOptions options = run_options(arguments.common);
   if (arguments.resume && exists(output)) {
-    StudyContents contents = read_study(output);
+    HeldStudy held(output);
+    StudyContents& contents = held.contents;
     const std::string way_out =
         "; go on with it by '" + session.program + " resume " + quoted(output) + "', or overwrite it with --force";
     if (contents.toml != study.text)
@@ -75,7 +75,7 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
       throw StorageError(output + " holds the study with seed " + std::to_string(contents.seed) + ", not " +
                          std::to_string(study.seed) + way_out);
     if (contents.state == StudyState::finished) return {.contents = std::move(contents)};
-    return resume_study(output, session.catalogues, {}, options, progress);
+    return resume_study(held, session.catalogues, {}, options, progress);
   }
   return run_study(study, output, arguments.force, options, progress);
 }
