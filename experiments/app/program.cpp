@@ -1,6 +1,7 @@
 #include "experiments/app/program.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <exception>
 #include <filesystem>
@@ -76,7 +77,9 @@ Catalogues all_catalogues() { return {all_mechanisms(), all_objectives(), all_co
 
 int program_main(int argc, char** argv, const Catalogues& catalogues) {
   if (argc == 2 && std::string_view(argv[1]) == kCheckFile) return check_standard_input();
-  use_file_checker({"/proc/self/exe", kCheckFile});
+  // Within another program (a test, a fuzzer) this file is not one that could be called so: it would run that one
+  // again.
+  if (argc > 0 && argv[0] == program_invocation_name) use_file_checker({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   Session session{catalogues, name.empty() ? "pkmopt" : name};
   const PrintableStream out(std::cout), err(std::cerr);
