@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <new>
 #include <numeric>
+#include <system_error>
 
 #include "engine/core/printable.hpp"
 
@@ -58,7 +61,19 @@ ConfigError::ConfigError(SourcePlace place, std::string_view sentence)
 StorageError::StorageError(std::string_view sentence)
     : std::runtime_error(shown(sentence, kLongestFile + kLongestSentence)) {}
 
-std::string message_of(const std::exception& error) { return shown(error.what(), kLongestMessage); }
+std::string message_of(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error))
+    return "out of memory: this takes more than the program may have; fewer threads, cells or rows take less";
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
+    return shown(file->path1().string(), kLongestFile) + ": " + file->code().message();
+  if (const auto* system = dynamic_cast<const std::system_error*>(&error)) return system->code().message();
+  const bool ours = dynamic_cast<const std::runtime_error*>(&error) ||
+                    dynamic_cast<const std::invalid_argument*>(&error) ||
+                    dynamic_cast<const std::domain_error*>(&error);
+  if (ours) return shown(error.what(), kLongestMessage);
+  return "internal error: the program has asked itself for something that is not there; please report it with the "
+         "command line and the files that it was given";
+}
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   std::string best;

@@ -36,7 +36,7 @@ class StorageError : public std::runtime_error {
   explicit StorageError(std::string_view sentence);
 };
 
-/// what() of any exception, as short and as printable.
+/// What any exception has to say to a user, as short and as printable; the standard library's words are not in it.
 std::string message_of(const std::exception& error);
 
 /// The known name nearest to `name` by edit distance, or "" when none is near enough to be meant.

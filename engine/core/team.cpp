@@ -114,7 +114,10 @@ class Helpers {
   std::atomic<int> waiting_ = 0;
 };
 
-/// OpenMP ends the program where it cannot start a thread, so whether so many can be is tried before.
+/// OpenMP ends the program where it cannot start a thread, so whether so many can be is tried before, by threads that
+/// do nothing and have ended when a region begins: all that work are OpenMP's. No limit would tell instead: how much of
+/// RLIMIT_NPROC or of a container's tasks is left depends on what else runs, and what a thread takes of RLIMIT_AS on
+/// its stack, its arena and what is mapped already; and OpenMP, which exits, leaves nothing to be caught.
 void expect_threads(int size) {
   static std::atomic<int> known = 1;  // so many could be started
   if (size <= known.load(std::memory_order_relaxed)) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "engine/survey/survey_set.hpp"
 
@@ -161,6 +162,8 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
     all.assign(parts_.parameters.begin(), parts_.parameters.end());
     for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
     result.status = compute(all, scratch, result);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     result.status = Status::failed;
   }
@@ -194,9 +197,11 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
                             {report.objectives, report.margins, report.reports, report.status, Detail::complete});
     if (auto& surveys = scratch.get<Room>().surveys; !surveys.empty()) report.survey = std::move(surveys.front());
     if (report.status == Status::failed) report.reason = why_failed(report);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     report.status = Status::failed;
-    report.reason = error.what();
+    report.reason = message_of(error);
   }
   return report;
 }

@@ -63,6 +63,8 @@ class EvaluationTable {
 
   /// Adds `count` rows (designs zero, results NaN, status failed) and returns the first one's index.
   std::size_t extend(std::size_t count);
+  /// Forgets all rows but the first `rows`.
+  void truncate(std::size_t rows) { resize(rows); }
   /// Adds a copy of a row of a table of the same shape, and returns its index.
   std::size_t append(const EvaluationTable& from, std::size_t row);
   /// Copies of rows [first, end).

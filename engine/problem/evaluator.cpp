@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <string>
 
@@ -36,7 +37,9 @@ void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t f
     try {
       problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, slot);
       if (contradicts(slot)) slot.status = Status::failed;
-    } catch (...) {  // whatever went wrong belongs to this design alone
+    } catch (const std::bad_alloc&) {  // of the machine, not of this design
+      throw;
+    } catch (...) {  // whatever else went wrong belongs to this design alone
       constexpr double nan = std::numeric_limits<double>::quiet_NaN();
       for (const auto part : {slot.objectives, slot.margins, slot.reports}) std::ranges::fill(part, nan);
       slot.status = Status::failed;

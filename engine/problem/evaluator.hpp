@@ -14,8 +14,8 @@ class Evaluator {
  public:
   virtual ~Evaluator() = default;
 
-  /// Evaluates rows [first, table.size()) of `table`, whose designs are set. The result does not depend on how the rows
-  /// are shared out. An exception in one design marks that row failed and leaves the others intact.
+  /// Evaluates rows [first, table.size()), whose designs are set; how they are shared out does not show in the result.
+  /// An exception in one design marks its row failed; std::bad_alloc, which says nothing of a design, passes through.
   virtual void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) = 0;
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numbers>
 #include <stdexcept>
 
+#include "engine/core/error.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/report/thinning.hpp"
 #include "engine/survey/picture_plan.hpp"
@@ -72,9 +74,11 @@ void add_view(Views& views, const std::string& name, const std::vector<double>& 
       view.workspace.reset();
       view.problem = "it has no feasible pose";
     }
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {  // not a mechanism, a mass that is not positive, ...
     view.workspace.reset();
-    view.problem = error.what();
+    view.problem = message_of(error);
   }
   views.designs.push_back(std::move(view));
 }

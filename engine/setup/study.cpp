@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <new>
 
 #include "engine/core/unit.hpp"
 #include "engine/problem/verdict.hpp"
@@ -74,6 +75,8 @@ void warn_of_empty_workspace(Study& study) {
   if (parts.mechanism->refuse(design)) return;
   try {
     if (study.problem->workspace(design).volume > 0) return;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     return;  // a mass that is not positive has a message of its own when the design is evaluated
   }

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -96,6 +97,12 @@ int wait_for(pid_t child) {
   return status;
 }
 
+/// Not one that came from outside, such as Ctrl-C.
+bool is_crash(int signal) {
+  constexpr int kCrashes[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
+  return std::ranges::find(kCrashes, signal) != std::end(kCrashes);
+}
+
 void limit(decltype(RLIMIT_AS) resource, rlim_t most) {
   rlimit now{};
   if (::getrlimit(resource, &now) != 0) return;
@@ -137,6 +144,8 @@ void check_contained(const std::string& bytes, const std::string& path) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
     throw StorageError(path + ": is damaged or forged: reading it does not end within " + std::to_string(kSeconds) +
                        " s");
+  if (WIFSIGNALED(status) && !is_crash(WTERMSIG(status)))
+    throw StorageError(path + ": its check was ended by a signal (" + ::strsignal(WTERMSIG(status)) + ")");
   throw StorageError(path + ": is damaged or forged: the HDF5 library crashes on it");
 }
 
@@ -151,7 +160,7 @@ int check_standard_input() {
   } catch (const std::bad_alloc&) {
     return kOutOfMemory;
   } catch (const std::exception& error) {
-    std::fputs(error.what(), stdout);
+    std::fputs(message_of(error).c_str(), stdout);
     return kRefused;
   }
 }

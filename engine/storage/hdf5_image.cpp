@@ -309,18 +309,6 @@ std::string ImageWriter::finish() {
 
 namespace {
 
-/// Every step of the path lies in this file: a soft link may go round in circles, an external one shows another file.
-void refuse_links(hid_t file, const std::string& path) {
-  for (std::size_t end = 0; end != std::string::npos;) {
-    end = path.find('/', end + 1);
-    const std::string step = path.substr(0, end);
-    if (step == "/") return;
-    H5L_info_t link;
-    check(H5Lget_info(file, step.c_str(), &link, H5P_DEFAULT), step);
-    if (link.type != H5L_TYPE_HARD) throw ImageError(step + ": is a link to another place");
-  }
-}
-
 /// The values lie in this file, as ImageWriter leaves them: chunked or one value, deflated at most.
 void refuse_storage(hid_t dataset, const std::string& what) {
   const Handle properties(H5Dget_create_plist(dataset), H5Pclose, what);
@@ -357,10 +345,37 @@ void refuse_type(hid_t stored, hid_t expected, const std::string& what) {
   if (H5Tget_class(stored) != H5Tget_class(expected)) throw ImageError(what + ": has values of another type");
 }
 
+/// All of the file lies in the file, also what only other programs read: a soft link may go round in circles, an
+/// external one shows another file.
+void refuse_what_lies_elsewhere(hid_t file) {
+  struct Found {
+    std::vector<std::string> paths;
+    std::string link;
+  } found;
+  const auto look = [](hid_t, const char* name, const H5L_info_t* info, void* data) -> herr_t {
+    const bool is_here = info->type == H5L_TYPE_HARD;
+    try {
+      Found& here = *static_cast<Found*>(data);
+      (is_here ? here.paths.emplace_back() : here.link) = std::string("/") + name;
+    } catch (...) {  // none may pass through C
+      return -1;
+    }
+    return is_here ? 0 : 1;
+  };
+  check(H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, look, &found), "/");
+  if (!found.link.empty()) throw ImageError(found.link + ": is a link to another place");
+  for (const std::string& path : found.paths) {
+    H5O_info_t object;
+    check(H5Oget_info_by_name(file, path.c_str(), &object, H5P_DEFAULT), path);
+    if (object.type == H5O_TYPE_DATASET)
+      refuse_storage(Handle(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, path).get(), path);
+  }
+}
+
 }  // namespace
 
 struct ImageReader::Parts {
-  explicit Parts(const std::string& bytes) : file(open_image(bytes)) {}
+  explicit Parts(const std::string& bytes) : file(open_image(bytes)) { refuse_what_lies_elsewhere(file.get()); }
   QuietErrors quiet;
   Handle file;
 };
@@ -370,7 +385,6 @@ ImageReader::ImageReader(const std::string& file, int schema)
 ImageReader::~ImageReader() = default;
 
 void ImageReader::group(const std::string& path, const std::string&) const {
-  refuse_links(parts_->file.get(), path);
   const Handle group(H5Gopen2(parts_->file.get(), path.c_str(), H5P_DEFAULT), H5Gclose, path);
 }
 
@@ -404,9 +418,7 @@ void ImageReader::attribute(const std::string& group, const std::string& name, T
 
 template <class T>
 void ImageReader::array(const Leaf& leaf, std::vector<T>& values, const Extent& extent) const {
-  refuse_links(parts_->file.get(), leaf.path);
   const Handle dataset(H5Dopen2(parts_->file.get(), leaf.path.c_str(), H5P_DEFAULT), H5Dclose, leaf.path);
-  refuse_storage(dataset.get(), leaf.path);
   const Handle type(H5Dget_type(dataset.get()), H5Tclose, leaf.path);
   const Handle space(H5Dget_space(dataset.get()), H5Sclose, leaf.path);
   const int rank = H5Sget_simple_extent_ndims(space.get());

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <new>
 
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/ranks.hpp"
@@ -18,12 +19,9 @@
 #include "engine/problem/replay.hpp"
 #include "engine/problem/row_exchange.hpp"
 #include "engine/storage/checkpoint_clock.hpp"
-#include "engine/storage/study_file.hpp"
-#include "engine/storage/study_lock.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/study/records.hpp"
 #include "engine/study/starts.hpp"
-#include "engine/study/stop_request.hpp"
 
 namespace pkm {
 namespace {
@@ -97,14 +95,16 @@ class Run final : public Monitor {
     } catch (const ReplayMismatch&) {  // on every rank
       throw;
     } catch (const std::exception& error) {
-      if (ranks::size() == 1) throw;
-      ranks::abandon(message_of(error));
+      if (ranks::size() > 1) ranks::abandon(message_of(error));
+      if (dynamic_cast<const std::bad_alloc*>(&error)) keep_what_is_whole();
+      throw;
     }
     if (failure_) std::rethrow_exception(failure_);
     return ranks::rank() == 0 ? outcome() : RunOutcome();
   }
 
   bool generation(const Generation& g) override {
+    whole_rows_.reset();
     const EvaluationTable& table = *g.table;
     StageRecord& stage = contents_.stages.back();
     const std::size_t index = static_cast<std::size_t>(g.number);
@@ -125,6 +125,7 @@ class Run final : public Monitor {
     const bool timed = replaying_ && index < record->generations.size();
     list.seconds.push_back(timed ? record->generations.seconds[index] : seconds());
     made_ = evaluator_.made;
+    whole_rows_ = table.size();
     // A solver's starts are points of a front: of them only the stage's end says which stands for all.
     if (g.front || study_.problem->objectives().size() < 2) take_best(table, g.best_row);
     if (ranks::rank() == 0) {
@@ -248,6 +249,8 @@ class Run final : public Monitor {
       for (std::size_t row = first; row < table.size(); ++row) busy += ranks * static_cast<double>(table.seconds[row]);
     }
     int threads() const { return inner_.threads(); }
+    /// Gives back what it has reserved for evaluations.
+    void forget() { inner_ = ParallelEvaluator(inner_.threads()); }
     double wall = 0, busy = 0;           ///< s; wall: while anything was being evaluated
     std::atomic<std::int64_t> made = 0;  ///< evaluations
 
@@ -291,6 +294,7 @@ class Run final : public Monitor {
   /// False when the run has to stop.
   bool run_stage(std::size_t index) {
     stage_ = index;
+    whole_rows_ = 0;
     const Stage& stage = study_.stages[index];
     const bool again = index < recorded_.size();
     StageInput input{.problem = *study_.problem,
@@ -388,6 +392,28 @@ class Run final : public Monitor {
     existing_ = Existing::replaced;
   }
 
+  /// Out of memory: the generations that are complete become a checkpoint, in the memory that the run gives back.
+  [[noreturn]] void keep_what_is_whole() {
+    evaluator_.forget();
+    recorded_ = {};
+    ahead_ = {};
+    std::string kept = "what it held before";
+    if (!replaying_ && whole_rows_) try {
+        if (!contents_.stages.empty()) {
+          StageRecord& stage = contents_.stages.back();
+          if (!stage.finished) stage.table.truncate(*whole_rows_);
+          stage.ahead.clear();
+          if (stage.table.size() == 0) contents_.stages.pop_back();
+        }
+        contents_.final.reset();
+        write(StudyState::interrupted);
+        kept = "what is complete, " + std::to_string(contents_.evaluations()) + " evaluations,";
+      } catch (const std::bad_alloc&) {  // then the last checkpoint stands
+      }
+    throw StorageError(path_ + ": out of memory in stage " + std::to_string(stage_ + 1) + "; the file keeps " + kept +
+                       " and can be resumed, with fewer threads or more memory");
+  }
+
   /// Another process may have the study by now: its file is left alone, and nothing of this run is lost.
   [[noreturn]] void keep_elsewhere() {
     const std::filesystem::path path(path_);
@@ -414,7 +440,8 @@ class Run final : public Monitor {
   std::int64_t limit_ = 0;
   std::int64_t made_ = 0;
   std::function<std::vector<StartAhead>()> ahead_;  ///< of the stage at work
-  bool replaying_ = false;
+  bool replaying_ = !recorded_.empty();             ///< nothing that the file does not hold is there yet
+  std::optional<std::size_t> whole_rows_;  ///< of the stage at work, up to its last generation; none while it is taken
   std::string stopped_;
   std::exception_ptr failure_;  ///< of rank 0, which ends the run on all
   bool failed_ = false;         ///< rank 0 has one
@@ -521,11 +548,10 @@ void note_processor(StudyContents& contents) {
 
 }  // namespace
 
-RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
+RunOutcome resume_study(HeldStudy& held, const Catalogues& catalogues, const ExtensionRequest& extension,
                         const RunOptions& options, Progress& progress) {
-  const StopRequest listen;
-  const StudyLock lock(path);
-  StudyContents contents = read_study(path);
+  const std::string& path = held.path;
+  StudyContents& contents = held.contents;
   if (contents.algorithms != kAlgorithms)
     throw StorageError(path + " was written by pkmopt " + contents.program_version + " (" + contents.program_revision +
                        "), whose algorithms have version " + std::to_string(contents.algorithms) +
@@ -545,7 +571,7 @@ RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, c
   apply_extensions(study, contents.extensions);
   note_processor(contents);
   try {
-    return run_with_ranks(study, std::move(contents), path, lock, Existing::replaced, options, progress);
+    return run_with_ranks(study, std::move(contents), path, held.lock, Existing::replaced, options, progress);
   } catch (const ReplayMismatch& mismatch) {
     throw StorageError(path + " cannot be continued: " + mismatch.what());
   }

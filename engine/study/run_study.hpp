@@ -14,9 +14,11 @@
 
 #include "engine/core/error.hpp"
 #include "engine/setup/study.hpp"
-#include "engine/storage/study_contents.hpp"
+#include "engine/storage/study_file.hpp"
+#include "engine/storage/study_lock.hpp"
 #include "engine/study/extension.hpp"
 #include "engine/study/progress.hpp"
+#include "engine/study/stop_request.hpp"
 
 namespace pkm {
 
@@ -58,11 +60,27 @@ class UnwrittenOutcome : public StorageError {
 RunOutcome run_study(const Study& study, const std::string& path, bool overwrite, const RunOptions& options,
                      Progress& progress);
 
-/// Goes on with the study in `path`. Throws StorageError, also when the file was written by a program whose algorithms
-/// differ or its recorded evaluations do not repeat, and ConfigError when its problem cannot be built or the extension
-/// does not fit.
-RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
+/// A study file that this process may go on with: locked, then read, once. Signals ask for a stop from then on.
+struct HeldStudy {
+  /// Throws StorageError.
+  explicit HeldStudy(std::string file) : path(std::move(file)), lock(path), contents(read_study(path)) {}
+
+  const StopRequest listen = {};
+  std::string path;
+  StudyLock lock;
+  StudyContents contents;
+};
+
+/// Goes on with a study, whose contents become the outcome's. Throws StorageError, also when the file was written by a
+/// program whose algorithms differ or its recorded evaluations do not repeat, and ConfigError when its problem cannot
+/// be built or the extension does not fit.
+RunOutcome resume_study(HeldStudy& held, const Catalogues& catalogues, const ExtensionRequest& extension,
                         const RunOptions& options, Progress& progress);
+inline RunOutcome resume_study(const std::string& path, const Catalogues& catalogues, const ExtensionRequest& extension,
+                               const RunOptions& options, Progress& progress) {
+  HeldStudy held(path);
+  return resume_study(held, catalogues, extension, options, progress);
+}
 
 /// What the ranks after the first do in a program of several: they take part in the runs that rank 0 begins, print and
 /// write nothing, and return the exit code that it dismisses them with.

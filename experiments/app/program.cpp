@@ -1,15 +1,14 @@
 #include "experiments/app/program.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "constraints/all.hpp"
@@ -81,7 +80,9 @@ Catalogues all_catalogues() { return {all_mechanisms(), all_objectives(), all_co
 
 int program_main(int argc, char** argv, const Catalogues& catalogues) {
   if (argc == 2 && std::string_view(argv[1]) == kCheckFile) return check_standard_input();
-  use_file_checker({"/proc/self/exe", kCheckFile});
+  // Within another program (a test, a fuzzer) this file is not one that could be called so: it would run that one
+  // again.
+  if (argc > 0 && argv[0] == program_invocation_name) use_file_checker({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   Session session{catalogues, name.empty() ? "pkmopt" : name};
   const PrintableStream out(std::cout), err(std::cerr);
@@ -95,12 +96,6 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
       return session.exit_code;
     } catch (const ConfigError& error) {
       return complain(error.what(), kBadInput);
-    } catch (const std::bad_alloc&) {
-      return complain("out of memory", kFailure);
-    } catch (const std::filesystem::filesystem_error& error) {
-      return complain(StorageError(error.path1().string() + ": " + error.code().message()).what(), kFailure);
-    } catch (const std::system_error& error) {
-      return complain(error.code().message(), kFailure);
     } catch (const std::exception& error) {
       return complain(message_of(error), kFailure);
     }

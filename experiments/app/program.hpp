@@ -14,7 +14,9 @@ namespace pkm {
 /// Everything that is built in.
 Catalogues all_catalogues();
 
-/// What `pkmopt` does with these arguments, under the name by which the program was called. Returns the exit code.
+/// What `pkmopt` does with these arguments, under the name by which the program was called. Returns the exit code. They
+/// are those that main() was given where study files of others are to be read by a process of their own first: see
+/// use_file_checker().
 int program_main(int argc, char** argv, const Catalogues& catalogues);
 
 }  // namespace pkm

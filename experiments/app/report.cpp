@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <new>
 
 #include "engine/core/team.hpp"
 #include "engine/report/html_page.hpp"
@@ -25,11 +26,13 @@ PageStudy page_study(const std::string& file, const Session& session) {
   PageStudy page{std::filesystem::path(file).filename().string(), read_study(file), {}};
   try {
     page.study = study_of(page.contents, session.catalogues);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
-    page.unreadable = error.what();
-    std::cerr << session.program << ": note: " << file
-              << ": this program cannot read the study's text, so what would have to be "
-              << "evaluated again is left out (" << error.what() << ")\n";
+    page.unreadable = message_of(error);
+    const StorageError note(file + ": this program cannot read the study's text, so what would have to be evaluated " +
+                            "again is left out (" + page.unreadable + ")");
+    std::cerr << session.program << ": note: " << note.what() << '\n';
   }
   return page;
 }

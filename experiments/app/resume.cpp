@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "engine/report/standing.hpp"
-#include "engine/storage/study_file.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
 
@@ -19,21 +18,18 @@ struct ResumeArguments {
 void resume(const ResumeArguments& arguments, Session& session) {
   const RunOptions options = run_options(arguments.common, session);
   const auto& extension = arguments.extension;
-  if (!extension.generations && !extension.evaluations) {
-    const StudyContents contents = read_study(arguments.file);
-    if (contents.state == StudyState::finished) {
-      const Study study = study_of(contents, session.catalogues);
-      const auto verdict = verdict_on(contents, study.problem.get());
-      if (!arguments.common.quiet)
-        std::cout << summary_text(contents, study, verdict)
-                  << "nothing is left to do; --generations or --evaluations extend the last stage\n";
-      conclude(verdict, arguments.common, session);
-      return;
-    }
+  HeldStudy held(arguments.file);
+  if (!extension.generations && !extension.evaluations && held.contents.state == StudyState::finished) {
+    const Study study = study_of(held.contents, session.catalogues);
+    const auto verdict = verdict_on(held.contents, study.problem.get());
+    if (!arguments.common.quiet)
+      std::cout << summary_text(held.contents, study, verdict)
+                << "nothing is left to do; --generations or --evaluations extend the last stage\n";
+    conclude(verdict, arguments.common, session);
+    return;
   }
   const auto progress = make_progress(arguments.common);
-  const RunEnd end =
-      end_of_run([&] { return resume_study(arguments.file, session.catalogues, extension, options, *progress); });
+  const RunEnd end = end_of_run([&] { return resume_study(held, session.catalogues, extension, options, *progress); });
   progress->finish();
   print_end(end, study_of(end.outcome.contents, session.catalogues), arguments.file, arguments.common, session);
 }

@@ -10,7 +10,6 @@
 #include "engine/core/printable.hpp"
 #include "engine/core/ranks.hpp"
 #include "engine/report/standing.hpp"
-#include "engine/storage/study_file.hpp"
 #include "engine/study/stop_request.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
@@ -100,7 +99,8 @@ bool exists(const std::string& file) {
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
                    const RunOptions& options, Session& session, Progress& progress) {
   if (arguments.resume && exists(output)) {
-    StudyContents contents = read_study(output);
+    HeldStudy held(output);
+    StudyContents& contents = held.contents;
     const std::string way_out =
         "; go on with it by '" + session.program + " resume " + quoted(output) + "', or overwrite it with --force";
     if (contents.toml != study.text)
@@ -109,7 +109,7 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
       throw StorageError(output + " holds the study with seed " + std::to_string(contents.seed) + ", not " +
                          std::to_string(study.seed) + way_out);
     if (contents.state == StudyState::finished) return {.contents = std::move(contents)};
-    return resume_study(output, session.catalogues, {}, options, progress);
+    return resume_study(held, session.catalogues, {}, options, progress);
   }
   return run_study(study, output, arguments.force, options, progress);
 }

@@ -1,6 +1,7 @@
 // pkmopt show: what a study found, from its file.
 
 #include <iostream>
+#include <new>
 
 #include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
@@ -50,9 +51,10 @@ void show(const StudyContents& contents, bool json, const Catalogues& catalogues
   std::string note;
   try {
     study = study_of(contents, catalogues);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
-    note = "note: this program cannot read the study's text, so references are left out (" + std::string(error.what()) +
-           ")\n";
+    note = "note: this program cannot read the study's text, so references are left out (" + message_of(error) + ")\n";
   }
   const auto verdict = verdict_on(contents, study.problem.get());
   if (json)

@@ -1,6 +1,6 @@
 // What a study file says is text, wherever the page shows it.
 import assert from "node:assert/strict";
-import { copyFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { folderOf, Page, pkmopt, reportOf } from "./page.mjs";
 
@@ -8,7 +8,12 @@ const folder = folderOf("escaping"),
   toml = path.join(folder, "escaping.toml");
 const evil = "<script>alert(1)</script>",
   image = "<img src=x onerror=alert(2)>",
-  bold = "<b>%{y} &amp; 50%</b>";
+  bold = "<b>%{y} &amp; 50%</b>",
+  attribute = `"><img src=x onerror=alert(4)> ' onmouseover='alert(5)`,
+  ending = "</script></style></textarea><svg onload=alert(6)>",
+  formula = "=cmd|' /C calc'!A0",
+  steering = "\u001b[31mred\u001b]0;title\u0007";
+const quoted = (text) => JSON.stringify(text); // TOML has JSON's escapes
 writeFileSync(
   toml,
   `# </script><script>alert(3)</script> <!-- <script> \u2028 \u2029
@@ -33,6 +38,14 @@ type = "rail-length"
 [[reference]]
 name = "${bold}"
 design = { a = 0.2 }
+${[attribute, ending, formula, steering]
+  .map((name) => `[[reference]]\nname = ${quoted(name)}\ndesign = { a = 0.2 }\nvalues = { workspace-ratio = 0.1 }`)
+  .join("\n")}
+[[motion]]
+name = ${quoted(attribute + ending + formula + steering)}
+type = "points"
+points = [{ x = 0.4, y = 1.25, z = -1.0, theta = 0 }, { z = -0.9 }]
+time = 0.5
 [[stage]]
 optimiser = "ga"
 population = 8
@@ -50,7 +63,7 @@ assert.equal(await page.page.title(), `${evil}, ${evil} – pkmopt`);
 assert.equal(await page.text("h1"), evil);
 assert.equal(await page.page.locator("main script, main img, header script, header img").count(), 0);
 const everything = await page.text();
-for (const text of [evil, image, bold]) assert.ok(everything.includes(text), text);
+for (const text of [evil, image, bold, attribute, ending, formula, "red"]) assert.ok(everything.includes(text), text);
 assert.ok((await page.text("#comparison")).includes(evil));
 const {
   studies: [study],
@@ -60,6 +73,19 @@ const legend = await page.page.locator("#comparison .plot .legendtext").first().
 assert.equal(legend, evil);
 const hover = await page.hover("comparison");
 assert.ok(hover.includes(evil), `hover: ${hover}`);
+// Nothing of a name has become an element or an attribute, however the page is used.
+const planted = await page.page.evaluate(() =>
+  [...document.querySelectorAll("*")]
+    .filter(
+      (element) =>
+        /^(iframe|object|embed|base)$/i.test(element.localName) ||
+        element.getAttribute("src") === "x" ||
+        element.getAttributeNames().some((name) => /^on/i.test(name)),
+    )
+    .map((element) => element.outerHTML),
+);
+assert.deepEqual(planted, []);
+assert.ok(!readFileSync(html, "utf8").includes("\u001b"), "no control characters in the file");
 await page.screenshots(folder, "1280-light", ["comparison", "summary"]);
 await page.close();
 console.log("names of a study are shown as text");

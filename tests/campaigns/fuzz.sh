@@ -1,16 +1,21 @@
 #!/usr/bin/env bash
-# fuzz.sh [SECONDS | --runs N]: builds all fuzzers and runs each for SECONDS (default 60), or until it has executed N
-# inputs. What leads somewhere new is kept in build/fuzz/corpus/TARGET and serves the next run; inputs that crash, hang
-# or break what must hold are kept in build/fuzz/crashes. Prints a table; exit code 1 if there were any.
-# TARGETS="formula motion" chooses among the fuzzers.
+# fuzz.sh [--built FOLDER] [SECONDS | --runs N]: builds all fuzzers, unless they are built in FOLDER, and runs each for
+# SECONDS (default 60), or until it has executed N inputs. What leads somewhere new is kept in build/fuzz/corpus/TARGET
+# and serves the next run; inputs that crash, hang or break what must hold are kept in build/fuzz/crashes. Prints a
+# table; exit code 1 if there were any. TARGETS="formula motion" chooses among the fuzzers.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 
+root=$PWD build=$PWD/build/fuzz
+if [[ ${1-} == --built ]]; then
+  build=$2
+  shift 2
+else
+  [[ -f $build/build.ninja ]] || cmake --preset fuzz --log-level=WARNING
+  cmake --build --preset fuzz --parallel "$(nproc)"
+fi
 by=max_total_time amount=${1:-60}
 [[ ${1-} == --runs ]] && by=runs amount=$2
-root=$PWD build=$PWD/build/fuzz
-[[ -f $build/build.ninja ]] || cmake --preset fuzz --log-level=WARNING
-cmake --build --preset fuzz --parallel "$(nproc)"
 export LSAN_OPTIONS="suppressions=$root/tests/leaks.txt:print_suppressions=0"
 mkdir -p "$build/crashes" "$build/empty"
 cd "$build/empty"  # files that arguments name are not there
@@ -33,6 +38,7 @@ for target in ${TARGETS:-study_toml motion formula quantity command_line study_f
     ((code)) || break
     crashes=$((crashes + 1))
     cp "$log" "$build/crashes/$target-$crashes.log"
+    grep -m1 -A20 -E 'expected: |ERROR: |runtime error: ' "$log" || tail -n 20 "$log"
     ((crashes < 20)) || break
     if [[ $by == runs ]]; then left=$((amount - executed)); else left=$((amount - SECONDS + begin)); fi
   done

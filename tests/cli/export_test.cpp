@@ -107,6 +107,22 @@ TEST_F(ExportProgram, SurfacesOfAnyMechanismsWorkspaceAreClosed) {
   }
 }
 
+TEST_F(ExportProgram, MoreCellsThanAFileShouldHoldAreRefusedBeforeAnyIsEvaluated) {
+  run_study();
+  StudyContents contents = read("study.h5");
+  const auto at = contents.toml.find("x = 12, z = 14, theta = 16");
+  contents.toml.replace(at, 26, "x = 800, z = 800, theta = 20");
+  write_study(path("study.h5"), contents);
+  for (const char* const option : {"--vtk", "--stl"}) {
+    EXPECT_EQ(run({"export", "study.h5", option, "w"}), 2);
+    EXPECT_EQ(output_,
+              "pkmopt: [workspace] cells: found 12800000 cells; expected at most 1e+07 to write; 'pkmopt workspace "
+              "--cells' takes others\n");
+    EXPECT_FALSE(fs::exists(path("w")));
+  }
+  EXPECT_EQ(run({"export", "study.h5", "--csv", "tables"}), 0) << output_;
+}
+
 TEST_F(ExportProgram, WorkspaceSaysWhatEvaluateSays) {
   run_study();
   ASSERT_EQ(run({"evaluate", "study.toml", "--set", "a=0.25", "--json"}), 0) << output_;

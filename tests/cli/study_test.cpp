@@ -1,5 +1,9 @@
 // Studies through the built program: killed at random instants and resumed, stopped by signals, on any number of
 // threads, extended, locked, refused, on a full disk.
+#include <sys/inotify.h>
+
+#include <array>
+
 #include "tests/cli/study_program.hpp"
 
 namespace pkm::testing {
@@ -257,6 +261,27 @@ TEST_F(GaProgram, ASecondProcessIsTurnedAway) {
   EXPECT_NE(second.output().find("in use by process"), std::string::npos) << second.output();
   first.signal(SIGTERM);
   EXPECT_EQ(first.wait(), 3);
+}
+
+TEST_F(GaProgram, AStudyFileIsReadOnceToGoOnWithIt) {
+  write_toml(3, "");
+  ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
+  StudyContents unfinished = read("study.h5");
+  unfinished.state = StudyState::interrupted;
+  unfinished.final.reset();
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"resume", "study.h5", "--quiet"}, {"run", "study.toml", "--resume", "--quiet"}}) {
+    write_study(path("study.h5"), unfinished);
+    const int watch = inotify_init1(IN_NONBLOCK);
+    ASSERT_GE(inotify_add_watch(watch, path("study.h5").c_str(), IN_OPEN), 0);
+    EXPECT_EQ(run(arguments), 0) << output_;
+    std::array<inotify_event, 64> events;  // without names: of a file itself
+    const ssize_t bytes = ::read(watch, events.data(), sizeof events);
+    ::close(watch);
+    // Its first 64 KiB, and all of it.
+    EXPECT_EQ(bytes, static_cast<ssize_t>((fs::file_size(path("study.h5")) < 65536 ? 1 : 2) * sizeof(inotify_event)));
+    EXPECT_EQ(read("study.h5").state, StudyState::finished);
+  }
 }
 
 TEST_F(GaProgram, AFullDiskIsAnErrorAndTheLastCheckpointStays) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -186,6 +187,7 @@ class IpoptSolver final : public Solver {
     const auto app = application();
     const Ipopt::SmartPtr<Program> program = new Program(trials, from, options_.number("tighten"));
     const Ipopt::ApplicationReturnStatus status = app->OptimizeTNLP(program);
+    if (status == Ipopt::Insufficient_Memory) throw std::bad_alloc();
     return {status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level, text(status),
             program->solution()};
   }

@@ -3,6 +3,7 @@
 // at the true optimum. COBYLA is left out: its inner loop can hang with every limit ignored.
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 #include <nlopt.h>
@@ -100,6 +101,9 @@ class NloptSolver final : public Solver {
     const double first_step = options_.number("initial_step"), tighten = options_.number("tighten");
     const Handle opt(nlopt_create(outer.id, n), nlopt_destroy);
     if (!opt) throw std::bad_alloc();
+    const auto made = [](nlopt_result result) {
+      if (result == NLOPT_OUT_OF_MEMORY) throw std::bad_alloc();
+    };
     std::vector<double> u = from;
     nlopt_set_lower_bounds1(opt.get(), 0);
     nlopt_set_upper_bounds1(opt.get(), 1);
@@ -111,7 +115,7 @@ class NloptSolver final : public Solver {
       if (!inner) throw std::bad_alloc();
       set_stops(inner.get());  // the inner one knows no others
       if (!local.gradient) nlopt_set_initial_step1(inner.get(), first_step);
-      nlopt_set_local_optimizer(opt.get(), inner.get());  // copies it
+      made(nlopt_set_local_optimizer(opt.get(), inner.get()));  // copies it
     }
     Callback goal{trials, opt.get(), 0, 0};
     nlopt_set_min_objective(opt.get(), objective, &goal);
@@ -119,10 +123,11 @@ class NloptSolver final : public Solver {
     callbacks.reserve(trials.margins());
     for (std::size_t m = 0; m < trials.margins(); ++m) {
       callbacks.push_back({trials, opt.get(), m, tighten});
-      nlopt_add_inequality_constraint(opt.get(), constraint, &callbacks.back(), 0);
+      made(nlopt_add_inequality_constraint(opt.get(), constraint, &callbacks.back(), 0));
     }
     double value = 0;
     const nlopt_result result = nlopt_optimize(opt.get(), u.data(), &value);
+    made(result);
     const char* detail = nlopt_get_errmsg(opt.get());
     SolverEnd end{result > 0, nlopt_result_to_string(result), std::move(u)};
     if (detail) end.message += std::string(": ") + detail;

@@ -16,6 +16,7 @@
 #include "tests/campaigns/fuzz/capture.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"
 #include "tests/campaigns/fuzz/study_mutator.hpp"
+#include "tests/unit/storage/first_difference.hpp"
 
 namespace pkm::fuzz {
 namespace {

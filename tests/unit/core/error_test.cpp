@@ -1,11 +1,20 @@
 #include "engine/core/error.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <new>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <tuple>
+#include <vector>
 
 namespace pkm {
 namespace {
+
+using ::testing::StartsWith;
 
 TEST(ConfigErrorText, NamesPlaceFoundExpectedAndNearest) {
   EXPECT_STREQ(ConfigError({"s.toml", 3, "study.sed"}, "an unknown key", "one of seed", "seed").what(),
@@ -36,6 +45,26 @@ TEST(ConfigErrorText, IsShortAndPrintableWhateverTheInput) {
   EXPECT_STREQ(StorageError("a\nb.h5: gone").what(), "a\\x0ab.h5: gone");
   EXPECT_EQ(message_of(std::runtime_error("a\rb")), "a\\x0db");
   EXPECT_LT(message_of(std::runtime_error(much)).size(), 2000u);
+}
+
+TEST(MessageOf, SaysWhatHasHappenedAndNotTheLibrarysWords) {
+  const auto words_of = [](const auto& cause) -> std::string {
+    try {
+      cause();
+    } catch (const std::exception& error) {
+      return message_of(error);
+    }
+    return "nothing";
+  };
+  const std::vector<int> none;
+  EXPECT_THAT(words_of([] { throw std::bad_alloc(); }), StartsWith("out of memory: "));
+  EXPECT_THAT(words_of([] { std::string().resize(std::string::npos); }), StartsWith("internal error: "));
+  EXPECT_THAT(words_of([&none] { std::ignore = none.at(3); }), StartsWith("internal error: "));
+  EXPECT_THAT(words_of([] { std::ignore = std::optional<int>().value(); }), StartsWith("internal error: "));
+  EXPECT_EQ(words_of([] { std::filesystem::create_directory("/proc/x"); }), "/proc/x: No such file or directory");
+  EXPECT_EQ(words_of([] { throw std::system_error(std::make_error_code(std::errc::file_too_large), "open"); }),
+            "File too large");
+  EXPECT_EQ(words_of([] { throw std::domain_error("a rod without mass"); }), "a rod without mass");
 }
 
 TEST(NearestName, TakesNoTimeForNamesThatAreNoNames) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <new>
 #include <stdexcept>
 
 #include "tests/unit/optimisers/known_problems.hpp"
@@ -57,6 +58,17 @@ TEST(Evaluator, AnExceptionFailsItsOwnRowOnly) {
         EXPECT_EQ(table.objectives[row], table.designs[row]);
       }
     }
+  }
+}
+
+TEST(Evaluator, OutOfMemoryIsNoPropertyOfADesign) {
+  const FunctionProblem problem(box(1, 0, 1), 0, [](std::span<const double> x, std::span<double>) {
+    if (x[0] > 0.0125 && x[0] < 0.0135) throw std::bad_alloc();
+    return x[0];
+  });
+  for (const int threads : {1, 2, 7}) {
+    EvaluationTable table = numbered(problem, 100);
+    EXPECT_THROW(ParallelEvaluator(threads).evaluate(problem, table, 0), std::bad_alloc);
   }
 }
 

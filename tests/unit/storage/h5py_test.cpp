@@ -132,6 +132,7 @@ TEST_F(H5py, WhatPkmoptNeverWritesIsRefused) {
   const std::string rows = "/stages/1/evaluations/objective: ";
   for (const auto& [kind, reason] : {std::pair<std::string, std::string>{"soft", rows + "is a link to another place"},
                                      {"link", rows + "is a link to another place"},
+                                     {"unread", "/best/design: is a link to another place"},
                                      {"external", rows + "has its values in another file"},
                                      {"virtual", rows + "is a view of other datasets"},
                                      {"filter", rows + "is packed by a filter that pkmopt does not use"},
