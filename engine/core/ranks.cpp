@@ -5,14 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <deque>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <set>
@@ -199,14 +195,11 @@ std::vector<std::string> all_gather(const std::string& mine) {
 
 double seconds_in_exchange() { return exchanging; }
 
-Counter::Counter() : exceptions_(std::uncaught_exceptions()) {
+Counter::Counter() {
   if (group) shared_ = group->counter();
 }
 
-Counter::~Counter() {
-  // A rank that an exception leads away leaves alone: it would wait here for the others, and is about to tell them.
-  if (std::uncaught_exceptions() > exceptions_) static_cast<void>(shared_.release());
-}
+Counter::~Counter() = default;
 
 std::int64_t Counter::next(std::int64_t count) { return shared_ ? shared_->next(count) : own_.fetch_add(count); }
 

@@ -41,7 +41,7 @@ std::vector<std::string> all_gather(const std::string& mine);
 /// Seconds that this rank has spent in the two above, waiting for others included.
 double seconds_in_exchange();
 
-/// A number that all ranks and threads count up together. Made and destroyed collectively.
+/// A number that all ranks and threads count up together. Made and destroyed collectively; at most 16 at a time.
 class Counter {
  public:
   Counter();
@@ -61,7 +61,6 @@ class Counter {
  private:
   std::atomic<std::int64_t> own_ = 0;  ///< of a rank that is alone
   std::unique_ptr<Shared> shared_;
-  int exceptions_;  ///< under way when it was made
 };
 
 /// Sends a message to rank 0 without waiting for it. On any thread.
