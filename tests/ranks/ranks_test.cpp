@@ -164,7 +164,7 @@ TEST_F(Ranks, RunSeedsOneAfterTheOther) {
 }
 
 TEST_F(Ranks, KilledAtRandomInstantsAndResumedByAnotherNumberEndTheSame) {
-  write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 120\n[checkpoint]\nevery = 0\n",
+  write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 60\n[checkpoint]\nevery = 0\n",
              std::string(kHead) + kRatio);
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   std::mt19937 engine(22);
@@ -175,7 +175,7 @@ TEST_F(Ranks, KilledAtRandomInstantsAndResumedByAnotherNumberEndTheSame) {
     {
       ChildProcess child(on(2, {"run", "study.toml", "--output", file, "--quiet", "--threads", "1"}), folder_);
       while (!fs::exists(path(file))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      std::this_thread::sleep_for(std::chrono::milliseconds(20 + engine() % 400));
+      std::this_thread::sleep_for(std::chrono::milliseconds(20 + engine() % 1000));
       const std::vector<pid_t> ranks = ranks_with(file);
       if (!ranks.empty()) kill(ranks[engine() % ranks.size()], SIGKILL);
       killed += child.wait() != 0;
