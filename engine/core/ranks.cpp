@@ -245,10 +245,9 @@ std::optional<std::string> crowded(int threads) {
   }
   for (const auto& [host, has] : hosts) {
     const auto& [ranks, cores] = has;
-    const int each = std::max(1, threads);
-    if (ranks * each > std::ssize(cores))
+    if (ranks * threads > std::ssize(cores))
       return host + " has " + std::to_string(ranks) + (ranks == 1 ? " rank" : " ranks") + " of " +
-             std::to_string(each) + (each == 1 ? " thread" : " threads") + " on " + std::to_string(cores.size()) +
+             std::to_string(threads) + (threads == 1 ? " thread" : " threads") + " on " + std::to_string(cores.size()) +
              (cores.size() == 1 ? " core" : " cores") + ", which are slower than fewer";
   }
   return {};

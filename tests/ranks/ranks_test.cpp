@@ -206,6 +206,11 @@ TEST_F(Ranks, AreNamedWhereTheyComputeOtherNumbers) {
   EXPECT_THAT(output_, HasSubstr("rank 1 on "));
   EXPECT_THAT(output_, HasSubstr("has other results here: the same program with the same libraries has to run"));
   EXPECT_THAT(output_, Not(HasSubstr("rank 2 on ")));
+  // One design, which every rank evaluates alone.
+  write_toml("[[objective]]\ntype = \"odd\"\n[[stage]]\noptimiser = \"sweep\"\n", kHead);
+  EXPECT_NE(run_on(3, {"run", "study.toml", "--quiet", "--force"}, PKM_RANK_PROGRAM), 0);
+  EXPECT_THAT(output_, HasSubstr("rank 1 on "));
+  EXPECT_THAT(output_, HasSubstr("what was evaluated in generation 0 of stage 1 differs from that of rank 0 on "));
 }
 
 TEST_F(Ranks, EndTogetherWhereRank0CannotBegin) {
@@ -225,6 +230,7 @@ TEST_F(Ranks, LeaveOtherCommandsToTheFirst) {
 
 // A launcher whose messages are not those that the program was built with starts N times a program that is alone.
 TEST_F(StudyProgram, OneOfSeveralProcessesThatIsAloneIsRefused) {
+  setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // as above
   setenv("PMI_SIZE", "3", 1);
   for (const char* rank : {"0", "1"}) {
     setenv("PMI_RANK", rank, 1);
