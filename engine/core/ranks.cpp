@@ -5,14 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <deque>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <set>
@@ -199,14 +195,11 @@ std::vector<std::string> all_gather(const std::string& mine) {
 
 double seconds_in_exchange() { return exchanging; }
 
-Counter::Counter() : exceptions_(std::uncaught_exceptions()) {
+Counter::Counter() {
   if (group) shared_ = group->counter();
 }
 
-Counter::~Counter() {
-  // A rank that an exception leads away leaves alone: it would wait here for the others, and is about to tell them.
-  if (std::uncaught_exceptions() > exceptions_) static_cast<void>(shared_.release());
-}
+Counter::~Counter() = default;
 
 std::int64_t Counter::next(std::int64_t count) { return shared_ ? shared_->next(count) : own_.fetch_add(count); }
 
@@ -252,10 +245,9 @@ std::optional<std::string> crowded(int threads) {
   }
   for (const auto& [host, has] : hosts) {
     const auto& [ranks, cores] = has;
-    const int each = std::max(1, threads);
-    if (ranks * each > std::ssize(cores))
+    if (ranks * threads > std::ssize(cores))
       return host + " has " + std::to_string(ranks) + (ranks == 1 ? " rank" : " ranks") + " of " +
-             std::to_string(each) + (each == 1 ? " thread" : " threads") + " on " + std::to_string(cores.size()) +
+             std::to_string(threads) + (threads == 1 ? " thread" : " threads") + " on " + std::to_string(cores.size()) +
              (cores.size() == 1 ? " core" : " cores") + ", which are slower than fewer";
   }
   return {};

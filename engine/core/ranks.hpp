@@ -41,7 +41,7 @@ std::vector<std::string> all_gather(const std::string& mine);
 /// Seconds that this rank has spent in the two above, waiting for others included.
 double seconds_in_exchange();
 
-/// A number that all ranks and threads count up together. Made and destroyed collectively.
+/// A number that all ranks and threads count up together. Made collectively; at most 16 at a time.
 class Counter {
  public:
   Counter();
@@ -61,7 +61,6 @@ class Counter {
  private:
   std::atomic<std::int64_t> own_ = 0;  ///< of a rank that is alone
   std::unique_ptr<Shared> shared_;
-  int exceptions_;  ///< under way when it was made
 };
 
 /// Sends a message to rank 0 without waiting for it. On any thread.
@@ -76,7 +75,7 @@ std::string name(int rank);
 /// How many threads this rank has to itself, as for team_size(): the cores that it may use, shared with the other ranks
 /// that may use them. 0, which leaves it to OpenMP, for a rank that is alone, or where OMP_NUM_THREADS says it.
 int threads();
-/// Where ranks of so many threads each (0: as threads() says) have more threads than cores: a sentence on it.
+/// Where ranks of so many threads each have more threads than cores: a sentence on it.
 std::optional<std::string> crowded(int threads);
 
 /// Ends all ranks at once, because this one cannot go on and the others would wait for it. Tells the sentence.

@@ -20,22 +20,52 @@ constexpr std::size_t kMost = std::size_t{1} << 30;  // bytes of one message: MP
 /// MPI is asked for threads that come one after the other, which is what every library for it can do.
 std::mutex in_mpi;
 
-/// A number in rank 0's memory.
+/// Numbers in rank 0's memory: made once, because that takes MPI long, and used in turn.
+class Numbers {
+ public:
+  explicit Numbers(MPI_Comm group, int rank) : group_(group) {
+    const std::lock_guard lock(in_mpi);
+    std::int64_t* first = nullptr;
+    MPI_Win_allocate(rank == 0 ? MPI_Aint{kNumbers * sizeof *first} : 0, sizeof *first, MPI_INFO_NULL, group, &first,
+                     &window_);
+    MPI_Win_lock_all(0, window_);
+  }
+  ~Numbers() {
+    MPI_Win_unlock_all(window_);
+    MPI_Win_free(&window_);
+  }
+  Numbers(const Numbers&) = delete;
+  Numbers& operator=(const Numbers&) = delete;
+
+  /// A number that is 0 on all ranks when they have it: its place. Collective.
+  MPI_Aint take(int rank) {
+    place_ = (place_ + 1) % kNumbers;
+    if (rank == 0) change(place_, 0, MPI_REPLACE);
+    const std::lock_guard lock(in_mpi);
+    MPI_Barrier(group_);
+    return place_;
+  }
+  std::int64_t change(MPI_Aint place, std::int64_t by, MPI_Op how) {
+    const std::lock_guard lock(in_mpi);
+    std::int64_t before = 0;
+    MPI_Fetch_and_op(&by, &before, MPI_INT64_T, 0, place, how, window_);
+    MPI_Win_flush(0, window_);
+    return before;
+  }
+
+ private:
+  static constexpr MPI_Aint kNumbers = 16;
+  MPI_Comm group_;
+  MPI_Win window_ = MPI_WIN_NULL;
+  MPI_Aint place_ = 0;
+};
+
 class SharedCounter final : public Counter::Shared {
  public:
-  /// @param tended  others reach rank 0's memory only while rank 0 is in MPI, so a thread of it looks in
-  SharedCounter(MPI_Comm group, int rank, bool tended) {
-    const std::lock_guard lock(in_mpi);
-    std::int64_t* number = nullptr;
-    MPI_Win_allocate(rank == 0 ? MPI_Aint{sizeof *number} : 0, sizeof *number, MPI_INFO_NULL, group, &number, &window_);
-    if (rank == 0) {
-      MPI_Win_lock(MPI_LOCK_EXCLUSIVE, 0, 0, window_);
-      *number = 0;
-      MPI_Win_unlock(0, window_);
-    }
-    MPI_Barrier(group);
-    MPI_Win_lock_all(0, window_);
-    if (rank == 0 && tended)
+  /// @param tended  others reach this rank's memory only while it is in MPI, so a thread of it looks in
+  SharedCounter(Numbers& numbers, MPI_Comm group, int rank, bool tended)
+      : numbers_(numbers), place_(numbers.take(rank)) {
+    if (tended)
       tender_ = std::jthread([group](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
           std::this_thread::sleep_for(std::chrono::microseconds(200));
@@ -45,25 +75,11 @@ class SharedCounter final : public Counter::Shared {
         }
       });
   }
-  ~SharedCounter() override {
-    tender_ = {};
-    const std::lock_guard lock(in_mpi);
-    MPI_Win_unlock_all(window_);
-    MPI_Win_free(&window_);
-  }
-  SharedCounter(const SharedCounter&) = delete;
-  SharedCounter& operator=(const SharedCounter&) = delete;
-
-  std::int64_t next(std::int64_t count) override {
-    const std::lock_guard lock(in_mpi);
-    std::int64_t first = 0;
-    MPI_Fetch_and_op(&count, &first, MPI_INT64_T, 0, 0, MPI_SUM, window_);
-    MPI_Win_flush(0, window_);
-    return first;
-  }
+  std::int64_t next(std::int64_t count) override { return numbers_.change(place_, count, MPI_SUM); }
 
  private:
-  MPI_Win window_ = MPI_WIN_NULL;
+  Numbers& numbers_;
+  MPI_Aint place_;
   std::jthread tender_;
 };
 
@@ -105,6 +121,7 @@ class Mpi final : public Backend {
       if (rank == 0) poll();
       MPI_Test(&all_sent, &there, MPI_STATUS_IGNORE);
     }
+    numbers_.reset();
     MPI_Comm_free(&mail_);
     MPI_Comm_free(&group_);
     if (ours_) MPI_Finalize();
@@ -141,7 +158,8 @@ class Mpi final : public Backend {
   }
 
   std::unique_ptr<Counter::Shared> counter() override {
-    return std::make_unique<SharedCounter>(group_, rank, several_hosts_);
+    if (!numbers_) numbers_.emplace(group_, rank);
+    return std::make_unique<SharedCounter>(*numbers_, group_, rank, several_hosts_ && rank == 0);
   }
 
   void post(const std::string& message) override {
@@ -194,6 +212,7 @@ class Mpi final : public Backend {
 
   bool ours_ = true, several_hosts_ = false;
   MPI_Comm group_ = MPI_COMM_NULL, mail_ = MPI_COMM_NULL;
+  std::optional<Numbers> numbers_;
   std::list<Sent> sent_;  ///< whose bytes MPI may still read
 };
 

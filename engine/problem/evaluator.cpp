@@ -167,13 +167,13 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
     return std::accumulate(table.seconds.begin() + static_cast<std::ptrdiff_t>(of.first),
                            table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);
   };
-  constexpr double kWaiting = 1.05, kWorthClaiming = 1e-3;  // of a rank's time, s
+  constexpr double kWaiting = 0.05, kWorthClaiming = 1e-3;  // of all ranks' time; s
   double longest = 0;
   for (std::size_t rank = 0; rank < ranks; ++rank)
     longest = std::max(longest, time_of(share_of(rank, ranks, rows.first, count)) / threads[rank]);
   const double all = time_of({first, table.size()}), team = std::accumulate(threads.begin(), threads.end(), 0.0);
   known = {.each = std::max(all / static_cast<double>(table.size() - first), 1e-9),
-           .uneven = longest > kWaiting * all / team && longest > kWorthClaiming,
+           .uneven = longest - all / team > std::max(kWaiting * all / team, kWorthClaiming),
            .threads = static_cast<std::size_t>(team)};
 }
 
