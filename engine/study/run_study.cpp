@@ -90,17 +90,18 @@ class Run final : public Monitor {
   RunOutcome run() {
     const std::vector<std::string> threads = ranks::all_gather(std::to_string(evaluator_.threads()));
     for (const std::string& each : threads) threads_ += std::stoi(each);
+    RunOutcome result;
     try {
-      with_team(evaluator_.threads(), [&] { run_stages(); });
-    } catch (const ReplayMismatch&) {  // on every rank
-      throw;
-    } catch (const std::exception& error) {
-      if (ranks::size() > 1) ranks::abandon(message_of(error));
-      if (dynamic_cast<const std::bad_alloc*>(&error)) keep_what_is_whole();
-      throw;
+      with_team(evaluator_.threads(), [&] {
+        run_stages();
+        if (failure_) std::rethrow_exception(failure_);
+        if (ranks::rank() == 0) result = outcome();
+      });
+    } catch (const std::bad_alloc&) {
+      if (ranks::size() == 1) keep_what_is_whole();
+      ranks::abandon("out of memory");
     }
-    if (failure_) std::rethrow_exception(failure_);
-    return ranks::rank() == 0 ? outcome() : RunOutcome();
+    return result;
   }
 
   bool generation(const Generation& g) override {
@@ -157,8 +158,15 @@ class Run final : public Monitor {
 
  private:
   void run_stages() {
-    for (std::size_t i = 0; i < study_.stages.size(); ++i)
-      if (!run_stage(i)) break;
+    try {
+      for (std::size_t i = 0; i < study_.stages.size(); ++i)
+        if (!run_stage(i)) break;
+    } catch (const ReplayMismatch&) {  // on every rank
+      throw;
+    } catch (const std::exception& error) {  // the others would wait for this one
+      if (ranks::size() > 1) ranks::abandon(message_of(error));
+      throw;
+    }
   }
 
   RunOutcome outcome() {

@@ -145,7 +145,7 @@ class Stage {
         best_ = ranked(input_.problem.objectives(), table_, static_cast<std::size_t>(front_->compromise_row()));
     }
     finished_.push_back(std::move(outcome));
-    start.table = EvaluationTable();  // the stage's table has it
+    if (ranks::size() == 1) start.table = EvaluationTable();  // the stage's table has it; other ranks do not
     ++next_;
     joined_ = 0;
   }
@@ -194,7 +194,7 @@ class Run {
   void agree() {
     std::string mine;
     for (std::size_t k = 0; k < stage_.starts().size(); ++k)
-      if (stage_.starts()[k].here && !leads()) pack_start(stage_.known_of(k), mine);
+      if (stage_.starts()[k].here) pack_start(stage_.known_of(k), mine);
     for (const std::string& bytes : ranks::all_gather(mine)) know(bytes, 0);
     if (leads()) stage_.join();
     std::string state(1, stage_.stopped() ? kStopped : kDone);
