@@ -247,7 +247,9 @@ TEST(Solvers, WhatOtherStartsHadFoundIsNotLostByAStop) {
       EXPECT_TRUE(
           same_bits(start.table, straight.table.slice(static_cast<std::size_t>(end.first_row),
                                                       static_cast<std::size_t>(end.first_row) + start.table.size())));
-      if (start.outcome) EXPECT_EQ(start.outcome->rows, end.rows);
+      if (start.outcome) {
+        EXPECT_EQ(start.outcome->rows, end.rows);
+      }
     }
     const Outcome again = resume(*stage, problem, 4, stopped, 1 << 30, {kBeam});
     EXPECT_TRUE(same_bits(straight, again)) << "stopped after " << last;
