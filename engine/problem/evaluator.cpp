@@ -87,8 +87,9 @@ void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& t
   const auto [first, end] = rows;
   const std::size_t count = end - first;
   if (threads_ == 1 || (each > 0 && each * static_cast<double>(count) < kWorthSharing)) {
+    Scratch& own = scratch_[worker()];
     const WithoutTeam alone;
-    return evaluate_rows(problem, table, first, end, scratch_[worker()]);
+    return evaluate_rows(problem, table, first, end, own);
   }
   with_team(threads_, [&, first = first, end = end] {
     const std::size_t team = workers(), rounds = (count + team - 1) / team;

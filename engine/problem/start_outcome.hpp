@@ -40,8 +40,8 @@ struct StartOutcome {
 /// What is known of a start of a solver whose evaluations cannot follow those before it yet: starts are at work side by
 /// side, and an earlier one has not ended.
 struct StartAhead {
-  std::int64_t number = 0;  ///< 0 is the stage's first start
-  EvaluationTable table;    ///< its evaluations so far
+  std::int64_t number = 0;              ///< 0 is the stage's first start
+  EvaluationTable table;                ///< its evaluations so far
   std::optional<StartOutcome> outcome;  ///< once it has ended; its rows count from 0
 };
 

@@ -41,7 +41,7 @@ def watch(folder, arguments, progress):
             bytes_ = resident(child.pid)
             if bytes_:
                 pairs.append((progress(), bytes_))
-            time.sleep(0.05)
+            time.sleep(0.005)
         out.write(child.communicate()[0])
     if child.returncode != 0:
         with open(log, encoding="utf-8") as text:
@@ -83,7 +83,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
     parser.add_argument("--evaluations", type=int, default=300_000)
-    parser.add_argument("--runs", type=int, default=20)
+    parser.add_argument("--runs", type=int, default=60)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="pkmopt-soak-") as path:
         folder = campaign.Folder(path, arguments.program)

@@ -112,6 +112,17 @@ TEST_F(SolverStudy, ResumedAtAnyEvaluationEqualsTheStraightRun) {
   }
 }
 
+// Evaluations of some microseconds, so that those of several starts are often under way at once.
+TEST_F(SolverStudy, StartsOnSeveralThreadsAreThoseOfOne) {
+  const Study study = study_of_text(wide(kSlsqp + "multistart = 7\n"));
+  Progress silent;
+  const auto alone = run_study(study, path("alone.h5"), false, {.threads = 1}, silent);
+  for (int i = 0; i < 6; ++i) {
+    const auto team = run_study(study, path("team.h5"), true, {.threads = 2 + i % 3}, silent);
+    ASSERT_EQ(first_difference(alone.contents, team.contents), "");
+  }
+}
+
 TEST_F(SolverStudy, BothSolversAgreeOnTheOptimum) {
   const StudyContents slsqp = run(wide(kSlsqp + "multistart = 5\n"));
   const StudyContents ipopt = run(wide(kIpopt + "multistart = 5\n"));

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -230,13 +231,26 @@ TEST(Solvers, SideBySideIsTheSameAsOneAfterTheOther) {
   }
 }
 
+/// Takes its time, so that starts are at work at once.
+class Slow final : public Evaluator {
+ public:
+  explicit Slow(int threads) : inner_(threads) {}
+  void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override {
+    std::this_thread::sleep_for(std::chrono::microseconds(300));
+    inner_.evaluate(problem, table, first);
+  }
+
+ private:
+  ParallelEvaluator inner_;
+};
+
 TEST(Solvers, WhatOtherStartsHadFoundIsNotLostByAStop) {
   const auto problem = welded_beam();
   const auto stage = make(entry("nlopt"), problem, {{"multistart", std::int64_t{6}}});
   const Outcome straight = run(*stage, problem, 4, 1 << 30, nullptr, {kBeam});
   std::size_t most_ahead = 0;
   for (const std::int64_t last : {0, 5, 20, 60, 90}) {
-    ParallelEvaluator parallel(3);
+    Slow parallel(3);
     Outcome stopped;
     with_team(3, [&] { stopped = run(*stage, problem, 4, last, &parallel, {kBeam}); });
     ASSERT_EQ(stopped.result.reason, StopReason::interrupted);
