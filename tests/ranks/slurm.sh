@@ -67,11 +67,15 @@ objective = [{ type = "slow" }]
 stage = [{ optimiser = "ga", population = 40, generations = 500 }]
 STUDY
 
-# The time limit is a minute, Slurm's least; the signal comes so long before it that the job is stopped after seconds.
-# A requeued job waits until its credential has expired.
-sbatch --quiet --ntasks-per-node 2 --cpus-per-task 1 --time 1 --signal TERM@57 --output job.out "$scripts/study.sbatch" study.toml --quiet
+# The time limit is a minute, Slurm's least; the signal comes so long before it that the job is stopped after seconds, the
+# first time: then the limit is raised. A requeued job waits until its credential has expired.
+job=$(sbatch --parsable --ntasks-per-node 2 --cpus-per-task 1 --time 1 --signal TERM@57 --output job.out "$scripts/study.sbatch" study.toml --quiet)
+raised=
 for ((i = 0; i < 1200; ++i)); do
   [ -n "$(squeue --noheader --name pkmopt)" ] || break
+  if [[ -z $raised ]] && grep -qs "goes on from its checkpoint" job.out; then
+    scontrol update JobId="$job" TimeLimit=10 && raised=yes
+  fi
   sleep 0.25
 done
 grep -q "stopped by SIGTERM" job.out || fail "the time limit stopped nothing"
