@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/math/dual.hpp"
-#include "engine/math/formula.hpp"
+#include "engine/graph/formula.hpp"
 
 namespace pkm::benchmarks {
 namespace {

@@ -49,6 +49,7 @@ struct MechanismInfo {
   std::vector<Sweep> sweeps;          ///< those that it can be surveyed by, the usual one first
   std::vector<LimitInfo> limits;
   std::string characteristic_length;  ///< formula of the default one; "": no pose has a conditioning
+  std::vector<std::string> closed_forms;  ///< how inverse kinematics finds each joint, for people; or none
 };
 
 class Mechanism {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/math/formula.hpp"
+#include "engine/graph/formula.hpp"
 #include "engine/motion/motion.hpp"
 #include "engine/motion/time_law.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/math/formula.hpp"
+#include "engine/graph/formula.hpp"
 #include "engine/problem/quantity.hpp"
 
 namespace pkm {

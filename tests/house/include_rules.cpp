@@ -10,8 +10,8 @@ namespace {
 using Words = std::vector<std::string>;
 
 // A folder of engine/ may include itself and those before it.
-const Words kOrder = {"core",       "math",    "model",      "motion",  "dynamics", "mechanism", "survey",
-                      "mechanisms", "problem", "optimisers", "storage", "setup",    "study",     "report"};
+const Words kOrder = {"core",  "math",       "graph",   "model",      "motion",  "dynamics", "mechanism", "survey",
+                      "limbs", "mechanisms", "problem", "optimisers", "storage", "setup",    "study",     "report"};
 
 // Where the headers of a library may be included.
 struct Library {
@@ -82,7 +82,8 @@ std::string refuse_own(const std::string& path, const std::string& header) {
     if (!here.empty() && !there.empty() && here != there) return "the rooms of " + to + " do not include each other";
     return climbs ? "nothing includes " + to : "";
   }
-  if (to == "engine/mechanisms") return "a mechanism is known by engine/mechanism alone";
+  const bool makes_it = from == "engine/setup" && header.starts_with("engine/mechanisms/described/");
+  if (to == "engine/mechanisms" && !makes_it) return "a mechanism is known by engine/mechanism alone";
   if (from == "objectives" || from == "constraints")
     return place(to) >= 0 && place(to) <= place("engine/problem")
                ? ""

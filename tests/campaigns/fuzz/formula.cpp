@@ -1,5 +1,5 @@
 // Input: a formula of five names. The values of its scalars agree, derivatives or not.
-#include "engine/math/formula.hpp"
+#include "engine/graph/formula.hpp"
 
 #include <array>
 #include <bit>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/math/formula.hpp"
+#include "engine/graph/formula.hpp"
 
 namespace pkm {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/math/formula_words.hpp"
+#include "engine/graph/formula_words.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -6,7 +6,7 @@
 
 #include "engine/core/catalogue.hpp"
 
-namespace pkm::formula {
+namespace pkm::graph {
 namespace {
 
 constexpr const char* kPiName = "pi";
@@ -54,7 +54,7 @@ class WordCheck {
     std::size_t length = 1;
     for (const char* pair : {"<=", ">=", "==", "!=", "&&", "||"})
       if (rest.starts_with(pair)) length = 2;
-    if (length == 2) return {text_.substr(i, length), i};
+    if (length == 2) return {.text = text_.substr(i, length), .place = i};
     if (rest[0] == '(') {
       open_.push_back({words_.size(), !words_.empty() && words_.back().function});
     } else if (rest[0] == ')') {
@@ -70,16 +70,16 @@ class WordCheck {
       while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0U) == 0x80U) ++length;
       refuse(text_, "has a " + quote(rest.substr(0, length), i) + ", which means nothing in a formula");
     }
-    return {text_.substr(i, 1), i};
+    return {.text = text_.substr(i, 1), .place = i};
   }
 
   /// Does not depend on the locale.
   Word number_at(std::size_t i) const {
-    Step step{.kind = Step::Kind::number};
-    const auto [end, error] = std::from_chars(text_.data() + i, text_.data() + text_.size(), step.number);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text_.data() + i, text_.data() + text_.size(), number);
     const std::string word(text_.data() + i, end);
     if (error != std::errc{}) refuse(text_, "has a number out of range, " + quote(word, i));
-    return {word, i, step};
+    return {.text = word, .place = i, .number = number};
   }
 
   Word name_at(std::size_t i) const {
@@ -97,9 +97,9 @@ class WordCheck {
       refuse(text_, "calls the unknown function " + quote(word, i) + known_words(word, names_of(functions())));
     if (!calls && function) refuse(text_, "lacks the arguments of " + quote(word, i) + ", in parentheses");
     if (!calls && !known) refuse(text_, "has the unknown name " + quote(word, i) + known_words(word, known_));
-    if (calls) return {word, i, {}, function};
-    if (word == kPiName) return {word, i, Step{.kind = Step::Kind::number, .number = kPi}};
-    return {word, i, Step{.kind = Step::Kind::name, .count = position}};
+    if (calls) return {.text = word, .place = i, .function = function};
+    if (word == kPiName) return {.text = word, .place = i, .number = kPi};
+    return {.text = word, .place = i, .name = position};
   }
 
   void close(std::size_t i) {
@@ -143,4 +143,4 @@ std::vector<Word> words_of(const std::string& text, const std::vector<std::strin
   return WordCheck(text, names).run();
 }
 
-}  // namespace pkm::formula
+}  // namespace pkm::graph

@@ -2,12 +2,14 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
-#include "engine/math/formula_program.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/graph/operation.hpp"
 
-namespace pkm::formula {
+namespace pkm::graph {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -103,7 +105,7 @@ S extreme(std::span<const S> x) {
 /// F as a rule. What depends on constants alone is constant, even where the operation has no slope (sqrt at 0).
 template <std::size_t arguments, class F, class S>
 S rule(const S* x, std::size_t count) {
-  if constexpr (!std::is_same_v<S, double>)
+  if constexpr (!std::is_same_v<S, double> && arguments <= 2)
     if (count <= 2 && is_constant(x[0]) && is_constant(x[count - 1])) {
       const double values[2] = {value_of(x[0]), value_of(x[count - 1])};
       return S(rule<arguments, F>(values, count));
@@ -111,14 +113,16 @@ S rule(const S* x, std::size_t count) {
   if constexpr (arguments == 0) return F()(std::span<const S>(x, count));
   if constexpr (arguments == 1) return F()(x[0]);
   if constexpr (arguments == 2) return F()(x[0], x[1]);
+  if constexpr (arguments == 3) return F()(x[0], x[1], x[2]);
 }
 
 template <std::size_t arguments, class F>
-Operation operation(std::string name, F, int rank = 0) {
+Operation make(std::string name, F, int rank = 0, Code code = Code::other) {
   return {std::move(name),
           arguments,
           {rule<arguments, F, double>, rule<arguments, F, Dual4>, rule<arguments, F, Taylor>},
-          rank};
+          rank,
+          code};
 }
 
 /// A question about two values: 1 or 0; NaN when something undefined was asked for.
@@ -128,35 +132,38 @@ Operation question(std::string name, F, int rank) {
     const double a = value_of(x), b = value_of(y);
     return a == a && b == b ? (F()(a, b) ? 1.0 : 0.0) : kNaN;
   };
-  return operation<2>(std::move(name), truth, rank);
+  return make<2>(std::move(name), truth, rank);
 }
 
 }  // namespace
 
 const std::vector<Operation>& functions() {
   static const std::vector<Operation> list = {
-      operation<1>("sin", [](const auto& x) { return sine_and_cosine(x).sin; }),
-      operation<1>("cos", [](const auto& x) { return sine_and_cosine(x).cos; }),
-      operation<1>("tan", [](const auto& x) { return tangent(x); }),
-      operation<1>("asin", [](const auto& x) { return asin(x); }),
-      operation<1>("acos", [](const auto& x) { return acos(x); }),
-      operation<1>("atan", []<class S>(const S& x) { return atan2(x, S(1.0)); }),
-      operation<2>("atan2", [](const auto& y, const auto& x) { return atan2(y, x); }),
-      operation<1>("sinh", [](const auto& x) { return hyperbolic_sine(x); }),
-      operation<1>("cosh", [](const auto& x) { return hyperbolic_cosine(x); }),
-      operation<1>("tanh", [](const auto& x) { return hyperbolic_tangent(x); }),
-      operation<1>("exp", [](const auto& x) { return exp(x); }),
-      operation<1>("log", [](const auto& x) { return log(x); }),
-      operation<1>("log10", [](const auto& x) { return log(x) / 2.302585092994045684; }),
-      operation<1>("sqrt", [](const auto& x) { return sqrt(x); }),
-      operation<1>("abs", [](const auto& x) { return magnitude(x); }),
-      operation<1>("sign",
-                   [](const auto& x) {
-                     const double a = value_of(x);
-                     return a > 0 ? 1.0 : a < 0 ? -1.0 : a;
-                   }),
-      operation<0>("min", [](const auto& x) { return extreme<std::less<>>(x); }),
-      operation<0>("max", [](const auto& x) { return extreme<std::greater<>>(x); }),
+      make<1>("sin", [](const auto& x) { return sine_and_cosine(x).sin; }),
+      make<1>("cos", [](const auto& x) { return sine_and_cosine(x).cos; }),
+      make<1>("tan", [](const auto& x) { return tangent(x); }),
+      make<1>("asin", [](const auto& x) { return asin(x); }),
+      make<1>("acos", [](const auto& x) { return acos(x); }),
+      make<1>("atan", []<class S>(const S& x) { return atan2(x, S(1.0)); }),
+      make<2>("atan2", [](const auto& y, const auto& x) { return atan2(y, x); }),
+      make<1>("sinh", [](const auto& x) { return hyperbolic_sine(x); }),
+      make<1>("cosh", [](const auto& x) { return hyperbolic_cosine(x); }),
+      make<1>("tanh", [](const auto& x) { return hyperbolic_tangent(x); }),
+      make<1>("exp", [](const auto& x) { return exp(x); }),
+      make<1>("log", [](const auto& x) { return log(x); }),
+      make<1>("log10", [](const auto& x) { return log(x) / 2.302585092994045684; }),
+      make<1>(
+          "sqrt", [](const auto& x) { return sqrt(x); }, 0, Code::sqrt),
+      make<1>("abs", [](const auto& x) { return magnitude(x); }),
+      make<1>("sign",
+              [](const auto& x) {
+                const double a = value_of(x);
+                return a > 0 ? 1.0 : a < 0 ? -1.0 : a;
+              }),
+      make<0>(
+          "min", [](const auto& x) { return extreme<std::less<>>(x); }, 0, Code::min),
+      make<0>(
+          "max", [](const auto& x) { return extreme<std::greater<>>(x); }, 0, Code::max),
   };
   return list;
 }
@@ -173,19 +180,38 @@ const std::vector<Operation>& operators() {
       question(">=", std::greater_equal<>(), 4),
       question("==", std::equal_to<>(), 4),
       question("!=", std::not_equal_to<>(), 4),
-      operation<2>("+", std::plus<>(), 5),
-      operation<2>("-", std::minus<>(), 5),
-      operation<2>("*", std::multiplies<>(), 6),
-      operation<2>("/", std::divides<>(), 6),
-      operation<2>(
+      make<2>("+", std::plus<>(), 5, Code::add),
+      make<2>("-", std::minus<>(), 5, Code::subtract),
+      make<2>("*", std::multiplies<>(), 6, Code::multiply),
+      make<2>("/", std::divides<>(), 6, Code::divide),
+      make<2>(
           "^", [](const auto& x, const auto& y) { return power(x, y); }, 7),
   };
   return list;
 }
 
 const Operation& negation() {
-  static const Operation sign = operation<1>("-", std::negate<>(), 6);
+  static const Operation sign = make<1>("-", std::negate<>(), 6, Code::negate);
   return sign;
 }
 
-}  // namespace pkm::formula
+const Operation& choice() {
+  static const Operation choice = make<3>("?", []<class S>(const S& condition, const S& x, const S& y) {
+    const double value = value_of(condition);
+    return value != value ? S(kNaN) : value != 0 ? x : y;
+  });
+  return choice;
+}
+
+const Operation& turn() {
+  static const Operation turn = make<1>("turn", [](const auto& x) { return wrapped(x); });
+  return turn;
+}
+
+const Operation& operation(const std::string& name) {
+  for (const auto* const list : {&functions(), &operators()})
+    if (const Operation* const found = find_named(*list, name)) return *found;
+  throw std::logic_error("there is no operation '" + name + "'");
+}
+
+}  // namespace pkm::graph

@@ -1,6 +1,6 @@
 // Formulas: values with the bits of the same formula in C++, derivatives against calculus and differences, every
 // message, threads.
-#include "engine/math/formula.hpp"
+#include "engine/graph/formula.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

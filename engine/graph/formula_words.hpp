@@ -6,15 +6,16 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/math/formula_program.hpp"
+#include "engine/graph/operation.hpp"
 
-namespace pkm::formula {
+namespace pkm::graph {
 
 struct Word {
   std::string text;
-  std::size_t place = 0;                ///< of its first character
-  std::optional<Step> operand = {};     ///< what a number or a name does
-  const Operation* function = nullptr;  ///< that is called; its '(' comes next
+  std::size_t place = 0;  ///< of its first character
+  std::optional<double> number = {};
+  std::optional<std::size_t> name = {};  ///< its position
+  const Operation* function = nullptr;   ///< that is called; its '(' comes next
 };
 
 /// A name that a formula can hold and does not know already.
@@ -29,4 +30,4 @@ std::string quote(std::string_view word, std::size_t place);
 /// of operators and operands is left to the reader.
 std::vector<Word> words_of(const std::string& text, const std::vector<std::string>& names);
 
-}  // namespace pkm::formula
+}  // namespace pkm::graph

@@ -1,6 +1,6 @@
 // A formula of named numbers, read from text once and computed often: "volume / (pi * b * (l_u + l_d))".
 //
-// The text becomes a list of steps that never changes and that works for every scalar. So threads share it, derivatives
+// The text becomes a program that never changes and that works for every scalar. So threads share it, derivatives
 // are as exact as those of the inputs, and values have the same bits on every processor, those of the formula written
 // in C++.
 //
@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/math/formula_program.hpp"
+#include "engine/graph/program.hpp"
 
 namespace pkm {
 
@@ -30,22 +30,26 @@ class Formula {
   Formula(const std::string& text, const std::vector<std::string>& names);
 
   /// Positions in `names` of those that the formula uses, ascending.
-  const std::vector<std::size_t>& used() const { return program_.used; }
+  const std::vector<std::size_t>& used() const { return used_; }
 
-  /// The formula's value; S is double, Dual4 or Taylor. Allocates nothing once the stack has served a formula of
+  /// The formula's value; S is double, Dual4 or Taylor. Allocates nothing once the registers have served a formula of
   /// this size.
-  /// @param values  one number per name; those not used are not looked at
-  /// @param stack   overwritten
+  /// @param values     one number per name; those not used are not looked at
+  /// @param registers  overwritten
   template <class S>
-  S value(std::span<const S> values, std::vector<S>& stack) const;
+  S value(std::span<const S> values, std::vector<S>& registers) const {
+    program_.run_all(values, registers);
+    return registers[program_.outputs().front()];
+  }
   template <class S>
   S value(std::span<const S> values) const {
-    std::vector<S> stack;
-    return value(values, stack);
+    std::vector<S> registers;
+    return value(values, registers);
   }
 
  private:
-  formula::Program program_;
+  std::vector<std::size_t> used_;
+  graph::Program program_;
 };
 
 /// What a formula may hold, in one line for help texts.

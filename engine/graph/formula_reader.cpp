@@ -2,9 +2,10 @@
 #include <stdexcept>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/math/formula_words.hpp"
+#include "engine/graph/formula_reader.hpp"
+#include "engine/graph/formula_words.hpp"
 
-namespace pkm::formula {
+namespace pkm::graph {
 namespace {
 
 constexpr std::size_t kMostCharacters = 20000;
@@ -18,9 +19,10 @@ bool is_order(const Operation* operation) {
 /// c ? x : y until they end. Nothing recurses, so that no depth is too much.
 class Reader {
  public:
-  explicit Reader(const std::string& text) : text_(text) {}
+  Reader(Graph& graph, const std::string& text, std::span<const Node> names)
+      : graph_(graph), text_(text), names_(names) {}
 
-  Program run(const std::vector<Word>& words) {
+  Node run(const std::vector<Word>& words) {
     for (const Word& word : words) {
       const bool is_sign = wants_operand_ && (word.text == "+" || word.text == "-");
       if (is_sign && after_sign_) misplaced(word);
@@ -31,10 +33,7 @@ class Reader {
     end_choices();
     if (!waiting_.empty()) refuse(text_, kNoColon);
     if (compares_comparison_) refuse(text_, "compares a comparison; write a < b && b < c for a < b < c");
-    auto& used = program_.used;
-    std::ranges::sort(used);
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    return std::move(program_);
+    return stack_.front().node;
   }
 
  private:
@@ -42,15 +41,20 @@ class Reader {
     enum class Kind { operation, parenthesis, question, colon };
     Kind kind;
     const Operation* operation = nullptr;  ///< also the function of a parenthesis; null: it only groups
-    std::size_t count = 0;                 ///< arguments so far; of '?' and ':' the step that jumps
+    std::size_t count = 0;                 ///< arguments so far
   };
   using Kind = Waiting::Kind;
+  struct Value {
+    Node node;
+    const Operation* from;  ///< null: a number or a name
+  };
 
   void take(const Word& word) {
     const char mark = word.text[0];
-    if (word.operand || word.function || mark == '(') {
+    if (word.number || word.name || word.function || mark == '(') {
       if (!wants_operand_) misplaced(word);
-      if (word.operand) operand(*word.operand);
+      if (word.number) push(graph_.number(*word.number), nullptr);
+      if (word.name) push(names_[*word.name], nullptr);
       if (mark == '(') waiting_.push_back({Kind::parenthesis, called_, 1});
       called_ = word.function;
     } else if (wants_operand_) {
@@ -62,7 +66,7 @@ class Reader {
       wants_operand_ = true;
     } else if (mark == '?') {
       finish(0);
-      waiting_.push_back({.kind = Kind::question, .count = jump(Step::Kind::jump_if_zero)});
+      waiting_.push_back({Kind::question});
       wants_operand_ = true;
     } else {
       end_choices();
@@ -75,17 +79,9 @@ class Reader {
       if (mark == ',') {
         ++waiting_.back().count;
       } else {
-        const std::size_t question = waiting_.back().count;
-        waiting_.back() = {.kind = Kind::colon, .count = jump(Step::Kind::jump)};
-        land(question);
+        waiting_.back() = {Kind::colon};
       }
     }
-  }
-
-  void operand(const Step& step) {
-    if (step.kind == Step::Kind::name) program_.used.push_back(step.count);
-    push(step);
-    wants_operand_ = false;
   }
 
   void close() {
@@ -105,29 +101,23 @@ class Reader {
   /// And the choices of which both branches are there.
   void end_choices() {
     for (finish(0); !waiting_.empty() && waiting_.back().kind == Kind::colon; finish(0)) {
-      land(waiting_.back().count);
       waiting_.pop_back();
+      call(&choice(), choice().arguments);
     }
   }
 
-  /// Takes the uppermost number; which step the jump is.
-  std::size_t jump(Step::Kind kind) {
-    stack_.pop_back();
-    program_.steps.push_back({.kind = kind});
-    return program_.steps.size() - 1;
-  }
-  void land(std::size_t jump) { program_.steps[jump].count = program_.steps.size(); }
-
   void call(const Operation* operation, std::size_t count) {
     const auto arguments = stack_.end() - static_cast<std::ptrdiff_t>(count);
-    compares_comparison_ |= is_order(operation) && std::any_of(arguments, stack_.end(), is_order);
+    compares_comparison_ |= is_order(operation) && std::any_of(arguments, stack_.end(),
+                                                               [](const Value& value) { return is_order(value.from); });
+    std::vector<Node> nodes;
+    std::transform(arguments, stack_.end(), std::back_inserter(nodes), [](const Value& value) { return value.node; });
     stack_.erase(arguments, stack_.end());
-    push({.kind = Step::Kind::operation, .count = count, .operation = operation});
+    push(graph_.apply(*operation, nodes), operation);
   }
-  void push(const Step& step) {
-    program_.steps.push_back(step);
-    stack_.push_back(step.operation);
-    program_.depth = std::max(program_.depth, stack_.size());
+  void push(Node node, const Operation* from) {
+    stack_.push_back({node, from});
+    wants_operand_ = false;
   }
 
   [[noreturn]] void misplaced(const Word& word) const {
@@ -135,23 +125,25 @@ class Reader {
                       (wants_operand_ ? "a number, a name or '('" : "an operator") + " is expected");
   }
 
+  Graph& graph_;
   const std::string& text_;
-  Program program_;
+  std::span<const Node> names_;
   std::vector<Waiting> waiting_;
-  std::vector<const Operation*> stack_;  ///< what gave each number; null: a number or a name
-  const Operation* called_ = nullptr;    ///< by the name just read
+  std::vector<Value> stack_;
+  const Operation* called_ = nullptr;  ///< by the name just read
   bool wants_operand_ = true, after_sign_ = false, compares_comparison_ = false;
 };
 
 }  // namespace
 
-Program read_program(const std::string& text, const std::vector<std::string>& names) {
+Node read_formula(Graph& graph, const std::string& text, const std::vector<std::string>& names,
+                  std::span<const Node> nodes) {
   for (auto name = names.begin(); name != names.end(); ++name)
     if (!may_be_name(*name) || std::find(name + 1, names.end(), *name) != names.end())
       throw std::logic_error("a formula cannot know a number called '" + *name + "'");
   const std::vector<Word> words = words_of(text, names);
   if (text.size() >= kMostCharacters) refuse(text, "has more than " + std::to_string(kMostCharacters) + " characters");
-  return Reader(text).run(words);
+  return Reader(graph, text, nodes).run(words);
 }
 
-}  // namespace pkm::formula
+}  // namespace pkm::graph

@@ -1,0 +1,114 @@
+#include "engine/graph/graph.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/core/error.hpp"
+#include "engine/math/hash.hpp"
+
+namespace pkm::graph {
+namespace {
+
+bool commutes(const Operation& operation) { return operation.code == Code::add || operation.code == Code::multiply; }
+
+}  // namespace
+
+std::size_t Graph::Hash::operator()(const Entry& entry) const {
+  Fnv1a hash;
+  hash.add(std::bit_cast<std::uint64_t>(entry.number));
+  hash.add(reinterpret_cast<std::uintptr_t>(entry.operation));
+  hash.add(static_cast<std::uint64_t>(entry.input));
+  for (const Node node : entry.operands()) hash.add(static_cast<std::uint64_t>(node));
+  return static_cast<std::size_t>(hash.value() ^ (hash.value() >> 32U));
+}
+
+bool Graph::Same::operator()(const Entry& x, const Entry& y) const {
+  return x.operation == y.operation && x.input == y.input && std::ranges::equal(x.operands(), y.operands()) &&
+         std::bit_cast<std::uint64_t>(x.number) == std::bit_cast<std::uint64_t>(y.number);
+}
+
+Node Graph::add(const Entry& entry) {
+  const auto [place, is_new] = known_.try_emplace(entry, static_cast<Node>(entries_.size()));
+  if (is_new) entries_.push_back(entry);
+  return place->second;
+}
+
+Node Graph::number(double value) { return add({.number = value}); }
+
+Node Graph::input(std::size_t position, Groups group) {
+  inputs_ = std::max(inputs_, position + 1);
+  return add({.input = static_cast<std::int32_t>(position), .groups = group});
+}
+
+/// By squaring, as the operation ^ computes it: the same bits.
+Node Graph::power(Node base, int exponent) {
+  const Operation& times = operation("*");
+  const auto product = [&](Node x, Node y) { return apply(times, std::array{x, y}); };
+  if (exponent == 0) return number(1);
+  if (exponent < 0) return apply(operation("/"), std::array{number(1), power(base, -exponent)});
+  Node result{};
+  for (bool first = true; exponent > 0; exponent /= 2) {
+    if (exponent % 2 != 0) {
+      result = first ? base : product(result, base);
+      first = false;
+    }
+    if (exponent > 1) base = product(base, base);
+  }
+  return result;
+}
+
+Node Graph::apply(const Operation& operation, std::span<const Node> arguments) {
+  if (operation.arguments == 0 && arguments.size() > 2) {
+    Node result = arguments[0];
+    for (const Node next : arguments.subspan(1)) result = apply(operation, std::array{result, next});
+    return result;
+  }
+  PKM_EXPECTS(arguments.size() <= kMostArguments && !arguments.empty());
+  Entry entry{.operation = &operation, .count = static_cast<std::uint8_t>(arguments.size())};
+  std::ranges::copy(arguments, entry.arguments.begin());
+  if (commutes(operation)) std::sort(entry.arguments.begin(), entry.arguments.begin() + 2);
+  bool numbers = true;
+  double values[kMostArguments] = {};
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Entry& argument = (*this)[arguments[i]];
+    entry.groups |= argument.groups;
+    numbers = numbers && argument.is_number();
+    values[i] = argument.number;
+  }
+  if (numbers) return number(std::get<Rule<double>>(operation.rules)(values, arguments.size()));
+  if (operation.name == "^" && (*this)[arguments[1]].is_number() && values[1] == std::nearbyint(values[1]) &&
+      std::fabs(values[1]) <= 1024)
+    return power(arguments[0], static_cast<int>(values[1]));
+  return add(entry);
+}
+
+std::vector<Node> Graph::reachable(std::span<const Node> roots) const {
+  std::vector<bool> used(entries_.size());
+  for (const Node root : roots) used[static_cast<std::size_t>(root)] = true;
+  for (std::size_t i = entries_.size(); i-- > 0;)
+    if (used[i])
+      for (const Node operand : entries_[i].operands()) used[static_cast<std::size_t>(operand)] = true;
+  std::vector<Node> all;
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (used[i]) all.push_back(static_cast<Node>(i));
+  return all;
+}
+
+Term call(const Operation& function, const Term& x) {
+  return {x.graph(), x.graph().apply(function, std::array{x.node()})};
+}
+Term call(const Operation& function, const Term& x, const Term& y) {
+  return {x.graph(), x.graph().apply(function, std::array{x.node(), y.node()})};
+}
+
+Term operator+(const Term& x, const Term& y) { return x.is(0) ? y : y.is(0) ? x : call(operation("+"), x, y); }
+Term operator-(const Term& x, const Term& y) { return y.is(0) ? x : x.is(0) ? -y : call(operation("-"), x, y); }
+Term operator*(const Term& x, const Term& y) {
+  if (x.is(0) || y.is(0)) return {x.graph(), 0.0};
+  return x.is(1) ? y : y.is(1) ? x : x.is(-1) ? -y : y.is(-1) ? -x : call(operation("*"), x, y);
+}
+Term operator/(const Term& x, const Term& y) { return y.is(1) || x.is(0) ? x : call(operation("/"), x, y); }
+Term operator-(const Term& x) { return call(negation(), x); }
+
+}  // namespace pkm::graph

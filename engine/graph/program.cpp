@@ -1,0 +1,49 @@
+#include "engine/graph/program.hpp"
+
+#include <unordered_map>
+
+namespace pkm::graph {
+
+Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<const Groups> stages)
+    : stages_(std::max<std::size_t>(stages.size(), 1)) {
+  std::unordered_map<Node, std::uint32_t> registers;
+  const auto stage_for = [&](Groups groups) {
+    std::size_t stage = 0;
+    for (Groups known = stages.empty() ? groups : stages[0]; stage + 1 < stages_.size() && (groups & ~known) != 0;)
+      known |= stages[++stage];
+    return stage;
+  };
+  for (const Node node : graph.reachable(outputs)) {
+    const Entry& entry = graph[node];
+    const auto to = static_cast<std::uint32_t>(registers.size());
+    registers.emplace(node, to);
+    const std::size_t stage = stage_for(entry.groups);
+    stage_of_.push_back(entry.is_number() ? -1 : static_cast<int>(stage));
+    if (entry.operation) {
+      Step step{.operation = entry.operation, .to = to, .from = {}, .count = entry.count};
+      for (std::size_t i = 0; i < entry.count; ++i) step.from[i] = registers.at(entry.arguments[i]);
+      stages_[stage].steps.push_back(step);
+    } else if (entry.is_number()) {
+      numbers_.emplace_back(to, entry.number);
+    } else {
+      stages_[stage].inputs.push_back({static_cast<std::uint32_t>(entry.input), to});
+    }
+  }
+  for (const Node node : outputs) outputs_.push_back(registers.at(node));
+  registers_ = registers.size();
+}
+
+template <class S>
+void Program::run(std::size_t stage, std::span<S> registers) const {
+  for (const Step& step : stages_[stage].steps) {
+    S arguments[kMostArguments];
+    for (std::size_t i = 0; i < step.count; ++i) arguments[i] = registers[step.from[i]];
+    registers[step.to] = std::get<Rule<S>>(step.operation->rules)(arguments, step.count);
+  }
+}
+
+template void Program::run(std::size_t, std::span<double>) const;
+template void Program::run(std::size_t, std::span<Dual4>) const;
+template void Program::run(std::size_t, std::span<Taylor>) const;
+
+}  // namespace pkm::graph

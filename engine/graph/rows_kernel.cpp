@@ -1,0 +1,83 @@
+#include "engine/graph/rows.hpp"
+#include "engine/math/lanes.hpp"
+
+namespace pkm::graph {
+namespace {
+
+/// Calls visit(x) with what reads lanes from value k on: of a row, or one number in all of them.
+template <class L, class Visit>
+[[gnu::always_inline]] inline void with_operand(const Operand& operand, const double* registers, const double* rows,
+                                                const Visit& visit) {
+  if (operand.row) {
+    const double* const row = rows + operand.index * kRow;
+    visit([row](std::size_t k) __attribute__((always_inline)) { return L::load(row + k); });
+  } else {
+    const L number(registers[operand.index]);
+    visit([number](std::size_t) __attribute__((always_inline)) { return number; });
+  }
+}
+
+}  // namespace
+
+template <InstructionSet set>
+void run_rows(std::span<const RowStep> steps, const double* registers, double* rows, std::size_t count) {
+  using L = LanesOf<set>;
+  for (const RowStep& step : steps) {
+    double* const to = rows + step.to * kRow;
+    const auto one = [&](const auto& f) __attribute__((always_inline)) {
+      with_operand<L>(
+          step.from[0], registers, rows, [&](const auto& x) __attribute__((always_inline)) {
+            for (std::size_t k = 0; k < count; k += kLanes) f(x(k)).store(to + k);
+          });
+    };
+    const auto two = [&](const auto& f) __attribute__((always_inline)) {
+      with_operand<L>(
+          step.from[0], registers, rows, [&](const auto& x) __attribute__((always_inline)) {
+            with_operand<L>(
+                step.from[1], registers, rows, [&](const auto& y) __attribute__((always_inline)) {
+                  for (std::size_t k = 0; k < count; k += kLanes) f(x(k), y(k)).store(to + k);
+                });
+          });
+    };
+    switch (step.code) {
+      case Code::add:
+        two([](const L& x, const L& y) __attribute__((always_inline)) { return x + y; });
+        break;
+      case Code::subtract:
+        two([](const L& x, const L& y) __attribute__((always_inline)) { return x - y; });
+        break;
+      case Code::multiply:
+        two([](const L& x, const L& y) __attribute__((always_inline)) { return x * y; });
+        break;
+      case Code::divide:
+        two([](const L& x, const L& y) __attribute__((always_inline)) { return x / y; });
+        break;
+      case Code::negate:
+        one([](const L& x) __attribute__((always_inline)) { return -x; });
+        break;
+      case Code::sqrt:
+        one([](const L& x) __attribute__((always_inline)) { return sqrt(x); });
+        break;
+      case Code::min:  // undefined where one is
+        two([](const L& x, const L& y)
+                __attribute__((always_inline)) { return select(y >= y, select(y < x, y, x), y); });
+        break;
+      case Code::max:
+        two([](const L& x, const L& y)
+                __attribute__((always_inline)) { return select(y >= y, select(y > x, y, x), y); });
+        break;
+      case Code::other:
+        for (std::size_t k = 0; k < count; ++k) {
+          double arguments[kMostArguments];
+          for (std::size_t i = 0; i < step.count; ++i)
+            arguments[i] = step.from[i].row ? rows[step.from[i].index * kRow + k] : registers[step.from[i].index];
+          to[k] = step.rule(arguments, step.count);
+        }
+        break;
+    }
+  }
+}
+
+template void run_rows<PKM_INSTRUCTION_SET>(std::span<const RowStep>, const double*, double*, std::size_t);
+
+}  // namespace pkm::graph

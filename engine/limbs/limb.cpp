@@ -1,0 +1,78 @@
+#include "engine/limbs/limb.hpp"
+
+namespace pkm::limbs {
+namespace {
+
+/// v without its part along `across`.
+Vector3 seen(const Ends& ends, const Vector3& v) { return ends.across ? v - *ends.across * dot(v, *ends.across) : v; }
+/// (|v|^2 - length^2) / 2, whose derivatives are those of a rod that keeps its length.
+Term rod_closure(const Vector3& v, const Term& length) { return (dot(v, v) - length * length) * 0.5; }
+
+}  // namespace
+
+Rotation turn_about(std::size_t axis, const Term& sine, const Term& cosine) {
+  const Term zero(sine.graph(), 0.0), one(sine.graph(), 1.0);
+  Rotation R({one, zero, zero}, {zero, one, zero}, {zero, zero, one});
+  const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+  R[i][i] = R[j][j] = cosine;
+  R[i][j] = -sine;
+  R[j][i] = sine;
+  return R;
+}
+
+Limb telescope(const Ends& ends, const Term& q) {
+  const Vector3 v = seen(ends, ends.B - ends.A);
+  return {.joint = length(v), .conditions = {}, .closure = rod_closure(v, q), .C = ends.A, .S = ends.A};
+}
+
+Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q) {
+  const Vector3 v = seen(ends, ends.B - ends.A);
+  const Term s = dot(v, e);
+  const Vector3 aside = v - e * s;
+  const Term aside_2 = dot(aside, aside);
+  const Term joint = s + branch * sqrt(rod * rod - aside_2);
+  return {.joint = joint,
+          .conditions = {{"reaches", "m", rod - sqrt(aside_2)}},
+          .closure = rod_closure(v - e * q, rod),
+          .C = ends.A + e * joint,
+          .S = ends.A + e * joint};
+}
+
+Limb slider(const Ends& ends, const Vector3& e, const Term& q) {
+  const Term s = dot(ends.B - ends.A, e);
+  return {.joint = s, .conditions = {}, .closure = s - q, .C = ends.A + e * s, .S = ends.A + e * s};
+}
+
+Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, const Term& l_1, const Term& l_2,
+                      const Term& branch, const Term& q) {
+  const Vector3 v = ends.B - ends.A;
+  const Term s = dot(v, e);
+  const Vector3 aside = v - e * s;
+  const Term distance_2 = dot(aside, aside), distance = sqrt(distance_2);
+  // the elbow: along the line between the outer ends of the links, and beside it
+  const Term along = (distance_2 + l_1 * l_1 - l_2 * l_2) / (distance * 2.0);
+  const Term beside = branch * sqrt(l_1 * l_1 - along * along);
+  const Vector3 slide = ends.A + e * s;
+  return {.joint = s,
+          .conditions = {{"reaches", "m", l_1 + l_2 - distance}, {"unfolds", "m", distance - abs(l_1 - l_2)}},
+          .closure = s - q,
+          .C = slide + (aside * along - cross(axis, aside) * beside) / distance,
+          .S = slide};
+}
+
+Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
+                   const Term& branch, const Term& middle, const Term& q) {
+  const Vector3 v = seen(ends, ends.B - ends.A), beside = cross(axis, zero);
+  const Term u = dot(v, zero), w = dot(v, beside);
+  const Term h = sqrt(u * u + w * w), k = (dot(v, v) + crank * crank - rod * rod) / (crank * 2.0);
+  const Term angle = atan2(w, u) + branch * acos(k / h);
+  const Term joint = middle + call(graph::turn(), angle - middle);
+  const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
+  return {.joint = joint,
+          .conditions = {{"reaches", "m", h - k}, {"unfolds", "m", h + k}},
+          .closure = rod_closure(v - arm(q), rod),
+          .C = ends.A + arm(joint),
+          .S = ends.A};
+}
+
+}  // namespace pkm::limbs

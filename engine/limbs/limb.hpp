@@ -1,0 +1,53 @@
+// Limbs with one drive, in closed form: the joint for a place of the platform's point, what can keep the limb from
+// reaching it, and its closure.
+//
+// A is the base point, B the platform's point, v = B - A; lengths in planes normal to `across`, where it is given.
+// Every function states its joint over a graph, so that numbers, derivatives and lanes come from one statement.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/limbs/vector3.hpp"
+
+namespace pkm::limbs {
+
+/// >= 0 where it holds.
+struct Condition {
+  std::string reason;  ///< "reaches"
+  std::string unit;
+  Term margin;
+};
+
+struct Limb {
+  Term joint;                         ///< undefined where a condition is < 0
+  std::vector<Condition> conditions;  ///< for it to assemble
+  /// Zero where the joint variable belongs to the pose: Jq qdot = G Xdot with Jq = -d/dq, G = d/dX.
+  Term closure;
+  Vector3 C;  ///< where the rod begins: the crank's end, the elbow, the slide; of a telescope A
+  Vector3 S;  ///< the slide; of cranks and telescopes A
+};
+
+/// The ends of a limb.
+struct Ends {
+  Vector3 A, B;
+  std::optional<Vector3> across;  ///< unit vector: rod and crank stay normal to it
+};
+
+/// q = |v|. @param q  the joint variable, for the closure
+Limb telescope(const Ends& ends, const Term& q);
+/// q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), s = v . e, e a unit vector.
+Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q);
+/// q = v . e: the platform's point follows the rail.
+Limb slider(const Ends& ends, const Vector3& e, const Term& q);
+/// q = v . e, and two links in the plane normal to e; branch is the sign of the second one's angle with the first about
+/// `axis`, which is e or -e.
+Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, const Term& l_1, const Term& l_2,
+                      const Term& branch, const Term& q);
+/// q = atan2(w, u) + branch acos(k / h) with u = v . zero, w = v . (axis x zero), h = hypot(u, w) and
+/// k = (|v|^2 + crank^2 - rod^2) / (2 crank), in the turn nearest to `middle`. axis and zero are unit vectors.
+Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
+                   const Term& branch, const Term& middle, const Term& q);
+
+}  // namespace pkm::limbs

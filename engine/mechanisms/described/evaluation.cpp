@@ -1,0 +1,106 @@
+#include "engine/mechanisms/described/evaluation.hpp"
+
+#include <algorithm>
+
+namespace pkm::described {
+namespace {
+
+using graph::Program;
+
+std::vector<Node> nodes_of(const std::vector<Result>& results) {
+  std::vector<Node> nodes;
+  for (const Result& result : results) nodes.push_back(result.node);
+  return nodes;
+}
+Program program_of(const Graph& graph, const std::optional<Node>& node) {
+  return node ? Program(graph, {&*node, 1}) : Program();
+}
+/// Programs of some of the nodes, one each.
+template <class NodeOf>
+std::vector<Program> programs_of(const Graph& graph, std::size_t count, const NodeOf& node_of) {
+  std::vector<Program> programs;
+  for (std::size_t i = 0; i < count; ++i) programs.push_back(program_of(graph, node_of(i)));
+  return programs;
+}
+
+}  // namespace
+
+Evaluation::Evaluation(Model described) : model(std::move(described)) {
+  const Graph& graph = model.graph;
+  std::vector<Node> all = model.joints;
+  for (const auto* const list : {&model.domains, &model.margins, &model.angles})
+    std::ranges::copy(nodes_of(*list), std::back_inserter(all));
+  conditions = Program(graph, all);
+  joints = Program(graph, model.joints);
+  closures = Program(graph, model.closures);
+  tests = Program(graph, model.test_nodes);
+  std::vector<Node> placed;
+  for (const DescribedLink& link : model.links) {
+    std::ranges::copy(link.from, std::back_inserter(placed));
+    std::ranges::copy(link.to, std::back_inserter(placed));
+    placed.push_back(link.radius);
+  }
+  links = Program(graph, placed);
+  size = program_of(graph, model.size ? std::optional(model.size->node) : std::nullopt);
+  length = program_of(graph, model.length);
+  radius = program_of(graph, model.radius);
+  const std::size_t coordinates = model.inputs.coordinates;
+  const auto end = [&](std::size_t i, std::size_t side) {
+    return model.box[i] ? std::optional((*model.box[i])[side]) : std::nullopt;
+  };
+  derived = programs_of(graph, model.derived.size(), [&](std::size_t i) { return model.derived[i]; });
+  lower = programs_of(graph, coordinates, [&](std::size_t i) { return end(i, 0); });
+  upper = programs_of(graph, coordinates, [&](std::size_t i) { return end(i, 1); });
+  middle = programs_of(graph, coordinates, [&](std::size_t i) { return model.middle[i]; });
+}
+
+template <class S>
+void Evaluation::thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& parameter = model.replaced[i];
+    values[i] = parameter && !limits.given[i] ? parameters[*parameter]
+                                              : S(limits.given[i].value_or(model.info.limits[i].inactive));
+    if (limits.derived[i] && !limits.given[i])
+      if (const auto found = of_design<S>(derived[i], parameters)) values[i] = *found;
+  }
+}
+
+template <class S>
+std::vector<S> Evaluation::inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode) const {
+  const Inputs& at = model.inputs;
+  std::vector<S> values(at.count());
+  std::ranges::copy(parameters, values.begin());
+  thresholds<S>(parameters, limits, std::span(values).subspan(at.limit(0), at.limits));
+  for (std::size_t i = 0; i < at.signs; ++i) values[at.sign(i)] = S(model.signs[mode][i]);
+  return values;
+}
+
+template <class S>
+std::optional<S> Evaluation::of_design(const Program& program, std::span<const S> parameters) const {
+  if (program.outputs().empty()) return {};
+  std::vector<S> values(model.inputs.count());
+  std::ranges::copy(parameters, values.begin());
+  for (std::size_t i = 0; i < model.inputs.limits; ++i)
+    values[model.inputs.limit(i)] =
+        model.replaced[i] ? parameters[*model.replaced[i]] : S(model.info.limits[i].inactive);
+  return outputs_of(program, values).front();
+}
+
+std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> parameters,
+                                                       std::size_t coordinate) const {
+  const auto from = of_design<double>(lower[coordinate], parameters),
+             to = of_design<double>(upper[coordinate], parameters);
+  if (!from || !to) return {};
+  return {{*from, *to}};
+}
+
+template void Evaluation::thresholds(std::span<const double>, const LimitSpec&, std::span<double>) const;
+template void Evaluation::thresholds(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const;
+template std::vector<double> Evaluation::inputs(std::span<const double>, const LimitSpec&, std::size_t) const;
+template std::vector<Dual4> Evaluation::inputs(std::span<const Dual4>, const LimitSpec&, std::size_t) const;
+template std::vector<Taylor> Evaluation::inputs(std::span<const Taylor>, const LimitSpec&, std::size_t) const;
+template std::optional<double> Evaluation::of_design(const Program&, std::span<const double>) const;
+template std::optional<Dual4> Evaluation::of_design(const Program&, std::span<const Dual4>) const;
+template std::optional<Taylor> Evaluation::of_design(const Program&, std::span<const Taylor>) const;
+
+}  // namespace pkm::described

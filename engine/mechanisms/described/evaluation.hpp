@@ -1,0 +1,41 @@
+// A description's formulas as programs, by what is asked for.
+#pragma once
+
+#include "engine/graph/program.hpp"
+#include "engine/mechanisms/described/model.hpp"
+
+namespace pkm::described {
+
+/// Immutable, shared by threads.
+struct Evaluation {
+  explicit Evaluation(Model described);
+
+  Model model;
+  graph::Program conditions;  ///< of a pose: joints, domains, margins, angles
+  graph::Program joints, closures, links, tests;
+  graph::Program size, length, radius;                        ///< of a design; without outputs: it is not described
+  std::vector<graph::Program> derived, lower, upper, middle;  ///< by limit; the others by coordinate
+
+  /// Thresholds in force: given, derived from the parameters, or inactive.
+  template <class S>
+  void thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const;
+  /// The graph's inputs for a design; coordinates and joints are 0.
+  template <class S>
+  std::vector<S> inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode) const;
+  /// What a program of the design alone gives; none where it has no output.
+  template <class S>
+  std::optional<S> of_design(const graph::Program& program, std::span<const S> parameters) const;
+  /// Range of a coordinate that holds the workspace.
+  std::optional<std::array<double, 2>> range(std::span<const double> parameters, std::size_t coordinate) const;
+};
+
+/// A program's outputs.
+template <class S>
+std::vector<S> outputs_of(const graph::Program& program, const std::vector<S>& inputs) {
+  std::vector<S> registers, values;
+  program.run_all<S>(inputs, registers);
+  for (const std::uint32_t output : program.outputs()) values.push_back(registers[output]);
+  return values;
+}
+
+}  // namespace pkm::described

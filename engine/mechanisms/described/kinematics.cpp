@@ -1,0 +1,248 @@
+#include "engine/mechanisms/described/kinematics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "engine/model/singular.hpp"
+
+namespace pkm::described {
+namespace {
+
+using graph::Program;
+
+Eigen::MatrixXd eigen(const AxisMatrix<double>& A) {
+  Eigen::MatrixXd same(A.rows(), A.cols());
+  for (std::size_t i = 0; i < A.rows(); ++i)
+    for (std::size_t j = 0; j < A.cols(); ++j)
+      same(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = A(i, j);
+  return same;
+}
+
+std::vector<Taylor> constants(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+
+/// Derivatives of a program's outputs by the inputs from `first` on, count of them.
+AxisMatrix<double> derivatives(const Program& program, const std::vector<double>& inputs, std::size_t first,
+                               std::size_t count) {
+  AxisMatrix<double> D(program.outputs().size(), count);
+  std::vector<Taylor> moving = constants(inputs);
+  for (std::size_t j = 0; j < count; ++j) {
+    moving[first + j].d = 1;
+    const std::vector<Taylor> values = outputs_of(program, moving);
+    for (std::size_t i = 0; i < values.size(); ++i) D(i, j) = values[i].d;
+    moving[first + j].d = 0;
+  }
+  return D;
+}
+
+/// A turn's angular velocity by the rates of three angles about moving axes, inverted: rates for an angular velocity.
+/// Of fewer rotations the rates are the components themselves, for their axes are normal to each other.
+AxisMatrix<double> rates_of_turns(const Model& model, const Pose<double>& pose) {
+  const std::size_t n = pose.size();
+  AxisMatrix<double> rates = AxisMatrix<double>::identity(n);
+  std::vector<std::size_t> turns;
+  for (std::size_t i = 0; i < n; ++i)
+    if (model.turns_about[i]) turns.push_back(i);
+  if (turns.size() < 3) return rates;
+  using Fixed3 = Matrix<double, 3, 3>;
+  Fixed3 R = Fixed3::identity(), axes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t axis = *model.turns_about[turns[k]], i = (axis + 1) % 3, j = (axis + 2) % 3;
+    for (std::size_t row = 0; row < 3; ++row) axes(row, k) = R(row, axis);
+    const auto [sine, cosine] = sincos(pose[turns[k]]);
+    Fixed3 turn = Fixed3::identity();
+    turn(i, i) = turn(j, j) = cosine;
+    turn(i, j) = -sine;
+    turn(j, i) = sine;
+    R = R * turn;
+  }
+  const Fixed3 inverse = solve(axes, Fixed3::identity());
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) rates(turns[i], turns[j]) = inverse(i, j);
+  return rates;
+}
+
+/// Of the Jacobian by the twist, its turns in units of the characteristic length, turning drives of the radius.
+std::optional<double> conditioning_of(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                                      const AxisMatrix<double>& J) {
+  const MechanismInfo& info = e.model.info;
+  const auto turns = [](const AxisInfo& axis) { return axis.turns(); };
+  const bool mixed = std::ranges::any_of(info.coordinates, turns) && !std::ranges::all_of(info.coordinates, turns);
+  const bool mixed_drives = std::ranges::any_of(info.joints, turns) && !std::ranges::all_of(info.joints, turns);
+  const auto length = e.of_design<double>(e.length, parameters), radius = e.of_design<double>(e.radius, parameters);
+  if ((mixed && !length) || (mixed_drives && !radius)) return {};
+  AxisMatrix<double> scaled = J * rates_of_turns(e.model, pose);
+  for (std::size_t i = 0; i < J.rows(); ++i)
+    for (std::size_t j = 0; j < J.cols(); ++j) {
+      if (mixed && info.coordinates[j].turns()) scaled(i, j) /= *length;
+      if (mixed_drives && info.joints[i].turns()) scaled(i, j) *= *radius;
+      if (!std::isfinite(scaled(i, j))) return {};
+    }
+  const Eigen::VectorXd singular = eigen(scaled).jacobiSvd().singularValues();
+  const double greatest = singular(0), least = singular(singular.size() - 1);
+  return J.rows() >= J.cols() && greatest > 0 ? least / greatest : 0;
+}
+
+AxisVector<double> as_axes(std::span<const double> values) {
+  AxisVector<double> axes(values.size());
+  std::ranges::copy(values, axes.begin());
+  return axes;
+}
+
+/// Inputs of a pose.
+std::vector<double> inputs_at(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                              std::size_t mode, const LimitSpec& limits) {
+  std::vector<double> inputs = e.inputs(parameters, limits, mode);
+  std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.coordinate(0)));
+  return inputs;
+}
+
+/// The first condition that does not hold, with `words`; "": all do.
+std::string first_broken(const NamedValues& conditions, const std::string& words) {
+  for (const auto& [name, margin] : conditions)
+    if (!(margin >= 0)) return name + words;
+  return "";
+}
+
+}  // namespace
+
+PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                        std::size_t mode, const LimitSpec& limits) {
+  const Model& model = e.model;
+  const Inputs& at = model.inputs;
+  std::vector<double> inputs = inputs_at(e, parameters, pose, mode, limits);
+  const std::vector<double> values = outputs_of(e.conditions, inputs);
+  auto next = values.begin();
+  const auto named = [&](const std::vector<Result>& results) {
+    NamedValues list;
+    for (const Result& result : results) list.emplace_back(result.name, *next++);
+    return list;
+  };
+  PoseReport report;
+  report.joints = as_axes({values.data(), at.joints});
+  next += static_cast<std::ptrdiff_t>(at.joints);
+  report.margins = named(model.domains);
+  report.reason = first_broken(report.margins, " does not hold: the pose does not assemble");
+  const NamedValues margins = named(model.margins);
+  report.angles = named(model.angles);
+  for (std::size_t i = 0; i < at.joints && report.reason.empty(); ++i)
+    if (!std::isfinite(values[i])) report.reason = model.info.joints[i].name + " is undefined";
+  report.assembles = report.reason.empty();
+  report.margins.insert(report.margins.end(), margins.begin(), margins.end());
+  if (!report.assembles) return report;
+  report.reason = first_broken(margins, " is broken");
+  report.feasible = report.reason.empty();
+
+  std::copy(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at.joints),
+            inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
+  const AxisMatrix<double> Jq = derivatives(e.closures, inputs, at.joint(0), at.joints) * -1.0;
+  const AxisMatrix<double> G = derivatives(e.closures, inputs, at.coordinate(0), at.coordinates);
+  report.Jq = Jq;
+  report.G = G;
+  report.det_Jq = eigen(Jq).determinant();
+  if (at.joints == at.coordinates) report.det_G = eigen(G).determinant();
+  if (is_singular(Jq)) return report;
+  report.J = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
+  report.conditioning = conditioning_of(e, parameters, pose, *report.J);
+  return report;
+}
+
+std::optional<Influence<double>> influence_at(const Evaluation& e, std::span<const double> parameters,
+                                              const Pose<double>& pose, std::size_t mode) {
+  const Inputs& at = e.model.inputs;
+  const std::vector<double> inputs = inputs_at(e, parameters, pose, mode, no_limits(e.model.info));
+  Influence<double> found;
+  found.G = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
+  for (std::size_t i = 0; i < at.joints; ++i) found.H[i] = AxisMatrix<double>::zero(at.coordinates, at.coordinates);
+  // second derivatives along each coordinate and each sum of two
+  std::vector<Taylor> moving(inputs.begin(), inputs.end());
+  for (std::size_t j = 0; j < at.coordinates; ++j)
+    for (std::size_t k = 0; k <= j; ++k) {
+      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 1;
+      const std::vector<Taylor> values = outputs_of(e.joints, moving);
+      moving[at.coordinate(j)].d = moving[at.coordinate(k)].d = 0;
+      for (std::size_t i = 0; i < at.joints; ++i) found.H[i](j, k) = found.H[i](k, j) = values[i].dd;
+    }
+  for (std::size_t i = 0; i < at.joints; ++i) {
+    AxisMatrix<double>& H = found.H[i];
+    for (std::size_t j = 0; j < at.coordinates; ++j)
+      for (std::size_t k = 0; k < j; ++k) H(j, k) = H(k, j) = (H(j, k) - H(j, j) - H(k, k)) / 2;
+    if (!std::ranges::all_of(H, [](double x) { return std::isfinite(x); })) return {};
+  }
+  return found;
+}
+
+namespace {
+
+/// Newton's method on the closures for given joints; none where it does not converge.
+std::optional<Pose<double>> solve_closures(const Evaluation& e, std::vector<double>& inputs, Pose<double> pose) {
+  const Inputs& at = e.model.inputs;
+  constexpr int kSteps = 60;
+  double last = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kSteps; ++step) {
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
+    const AxisVector<double> f = as_axes(outputs_of(e.closures, inputs));
+    const AxisMatrix<double> G = derivatives(e.closures, inputs, at.coordinate(0), at.coordinates);
+    const AxisVector<double> change = solve(G, f * -1.0);
+    double size = 0;
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      if (!std::isfinite(change[i])) return {};
+      size = std::max(size, std::fabs(change[i]) / (1 + std::fabs(pose[i])));
+    }
+    // far away, a step of at most 0.5 m or rad
+    pose = pose + change * std::min(1.0, 0.5 / std::max(size, 1e-300));
+    if (size < 1e-9 && size >= last / 2) return pose;  // rounding alone is left
+    if (size == 0) return pose;
+    last = size;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const double> parameters,
+                                        const AxisVector<double>& joints) {
+  const Model& model = e.model;
+  const Inputs& at = model.inputs;
+  if (at.joints != at.coordinates) return {};
+  constexpr std::size_t kStarts = 64;
+  std::vector<std::array<double, 2>> ranges;
+  for (std::size_t i = 0; i < at.coordinates; ++i)
+    ranges.push_back(e.range(parameters, i).value_or(std::array{-1.0, 1.0}));
+  std::vector<AssemblyMode> found;
+  const LimitSpec none = no_limits(model.info);
+  for (std::size_t start = 0; start < kStarts; ++start) {
+    Pose<double> pose(at.coordinates);
+    for (std::size_t i = 0; i < at.coordinates; ++i) {  // a Kronecker sequence over the box, from its middle
+      const double place =
+          0.5 + static_cast<double>(start) * std::sqrt(static_cast<double>(std::array{2, 3, 5, 7, 11, 13}[i]));
+      const double inside = place - std::floor(place);
+      pose[i] = ranges[i][0] + inside * (ranges[i][1] - ranges[i][0]);
+    }
+    std::vector<double> inputs = e.inputs(parameters, none, 0);
+    std::ranges::copy(joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
+    auto solved = solve_closures(e, inputs, pose);
+    if (!solved) continue;
+    for (std::size_t i = 0; i < at.coordinates; ++i)
+      if (model.info.coordinates[i].turns()) (*solved)[i] = wrapped((*solved)[i]);
+    // which working mode gives these joints
+    std::string mode;
+    for (std::size_t k = 0; k < model.info.modes.size() && mode.empty(); ++k) {
+      const std::vector<double> values = outputs_of(e.joints, inputs_at(e, parameters, *solved, k, none));
+      const bool same = std::ranges::equal(
+          values, joints, [](double x, double y) { return std::fabs(x - y) <= 1e-7 * (1 + std::fabs(y)); });
+      if (same) mode = model.info.modes[k];
+    }
+    if (mode.empty()) continue;  // a solution of the closures that no limb reaches
+    const auto near = [&](const AssemblyMode& other) {
+      return std::ranges::equal(other.pose, *solved, [](double x, double y) { return std::fabs(x - y) < 1e-6; });
+    };
+    if (std::ranges::any_of(found, near)) continue;
+    found.push_back({.pose = *solved, .mode = "found " + std::to_string(found.size() + 1), .working_mode = mode});
+  }
+  return found;
+}
+
+}  // namespace pkm::described

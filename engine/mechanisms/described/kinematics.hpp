@@ -1,0 +1,22 @@
+// What a description says of one pose: joints, margins, Jacobians and their derivatives.
+#pragma once
+
+#include "engine/mechanisms/described/evaluation.hpp"
+#include "engine/model/influence.hpp"
+#include "engine/model/pose.hpp"
+
+namespace pkm::described {
+
+PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
+                        std::size_t mode, const LimitSpec& limits);
+
+/// Absent where the pose does not assemble or they are infinite.
+std::optional<Influence<double>> influence_at(const Evaluation& evaluation, std::span<const double> parameters,
+                                              const Pose<double>& pose, std::size_t mode);
+
+/// Poses for joint values by Newton's method on the closures, from the nominal pose and from a grid of poses in the
+/// description's box, each once: those that it finds need not be all.
+std::vector<AssemblyMode> assemblies_of(const Evaluation& evaluation, std::span<const double> parameters,
+                                        const AxisVector<double>& joints);
+
+}  // namespace pkm::described

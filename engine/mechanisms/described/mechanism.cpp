@@ -1,0 +1,108 @@
+#include "engine/mechanisms/described/mechanism.hpp"
+
+#include <algorithm>
+
+#include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/mechanisms/described/voxels.hpp"
+
+namespace pkm::described {
+namespace {
+
+/// Its abilities are those that the description has what for.
+class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKinematics, Links, DesignTests, Size {
+ public:
+  explicit DescribedMechanism(Model model) : e_(std::move(model)) {}
+
+  const MechanismInfo& info() const override { return e_.model.info; }
+  PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
+                     const LimitSpec& limits) const override {
+    return inspect_pose(e_, parameters, pose, number_of_mode(info(), mode), limits);
+  }
+  std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double> parameters) const override {
+    std::vector<std::array<double, 2>> all;
+    for (std::size_t i = 0; i < e_.model.inputs.coordinates; ++i) {
+      const auto range = e_.range(parameters, i);
+      if (!range) return {};
+      all.push_back(*range);
+    }
+    return all;
+  }
+  std::optional<double> middle(std::span<const double> parameters, int coordinate) const override {
+    return e_.of_design<double>(e_.middle[static_cast<std::size_t>(coordinate)], parameters);
+  }
+  void thresholds(std::span<const double> parameters, const LimitSpec& limits,
+                  std::span<double> values) const override {
+    e_.thresholds(parameters, limits, values);
+  }
+  void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const override {
+    e_.thresholds(parameters, limits, values);
+  }
+
+  const Voxels* voxels() const override { return this; }
+  const Velocities* velocities() const override { return this; }
+  const ForwardKinematics* forward() const override {
+    return e_.model.inputs.joints == e_.model.inputs.coordinates ? this : nullptr;
+  }
+  const Links* links() const override { return e_.model.links.empty() ? nullptr : this; }
+  const DesignTests* design_tests() const override { return e_.model.tests.empty() ? nullptr : this; }
+  const Size* size() const override { return e_.model.size ? this : nullptr; }
+
+ private:
+  std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                               const Demand& demand) const override {
+    return prepare_voxels(*this, e_, plan, voxels, demand);
+  }
+  std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
+                                             const std::string& mode) const override {
+    return influence_at(e_, parameters, pose, number_of_mode(info(), mode));
+  }
+  std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
+                                       const AxisVector<double>& joints) const override {
+    return assemblies_of(e_, parameters, joints);
+  }
+  ForwardStatus status(std::span<const double> parameters, const AxisVector<double>& joints) const override {
+    if (assemblies(parameters, joints).empty()) return {"NO_POSE", "no pose was found from any of the starting poses"};
+    return {};
+  }
+  std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
+                                const std::string& mode) const override {
+    std::vector<double> inputs = e_.inputs(parameters, no_limits(info()), number_of_mode(info(), mode));
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+    const std::vector<double> values = outputs_of(e_.links, inputs);
+    if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); })) return {};
+    std::vector<PlacedLink> links;
+    const double* at = values.data();
+    for (const DescribedLink& link : e_.model.links) {
+      links.push_back({link.name, link.part, {{{at[0], at[1], at[2]}, {at[3], at[4], at[5]}}, at[6]}});
+      at += 7;
+    }
+    return links;
+  }
+
+  const std::vector<DesignMarginInfo>& list() const override { return e_.model.tests; }
+  void test(std::span<const double> parameters, const LimitSpec& limits, std::span<double> margins) const override {
+    find_tests(parameters, limits, margins);
+  }
+  void test(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> margins) const override {
+    find_tests(parameters, limits, margins);
+  }
+  template <class S>
+  void find_tests(std::span<const S> parameters, const LimitSpec& limits, std::span<S> margins) const {
+    std::ranges::copy(outputs_of(e_.tests, e_.inputs(parameters, limits, 0)), margins.begin());
+  }
+
+  std::string unit() const override { return e_.model.size->unit; }
+  std::string meaning() const override { return e_.model.size->meaning; }
+  double of(std::span<const double> parameters) const override { return *e_.of_design(e_.size, parameters); }
+  Dual4 of(std::span<const Dual4> parameters) const override { return *e_.of_design(e_.size, parameters); }
+
+  Evaluation e_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Mechanism> make_mechanism(Model model) {
+  return std::make_shared<const DescribedMechanism>(std::move(model));
+}
+
+}  // namespace pkm::described

@@ -1,0 +1,76 @@
+// A mechanism as its file describes it: names, and one expression graph from which everything is computed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/limbs/limb.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+namespace pkm::described {
+
+using graph::Graph;
+using graph::Groups;
+using graph::Node;
+
+/// Where the graph's inputs are, and the groups that they form: parameters, thresholds and signs of the working mode;
+/// each coordinate; the joints, as variables of the closures.
+struct Inputs {
+  std::size_t parameters = 0, limits = 0, signs = 0, coordinates = 0, joints = 0;
+
+  static constexpr std::size_t kMostSigns = 8;
+  static constexpr Groups kDesign = 1, kJoints = 2;
+  static constexpr Groups coordinate_group(std::size_t i) { return 4U << i; }
+
+  std::size_t limit(std::size_t i) const { return parameters + i; }
+  std::size_t sign(std::size_t i) const { return limit(limits) + i; }
+  std::size_t coordinate(std::size_t i) const { return sign(kMostSigns) + i; }
+  std::size_t joint(std::size_t i) const { return coordinate(coordinates) + i; }
+  std::size_t count() const { return joint(kMostJoints); }
+};
+
+/// A named number of a pose or of a design.
+struct Result {
+  std::string name;
+  std::string unit;
+  Node node{};
+};
+
+struct DescribedLink {
+  std::string name, part;
+  std::array<Node, 3> from, to;
+  Node radius;
+};
+
+/// What the design's size is, for workspace-ratio.
+struct DescribedSize {
+  Node node;
+  std::string unit, meaning;
+};
+
+struct Model {
+  MechanismInfo info;
+  Graph graph;
+  Inputs inputs;
+  std::vector<std::vector<double>> signs;  ///< by mode
+  std::vector<Node> joints, closures;
+  std::vector<Result> domains;  ///< >= 0 where the pose assembles
+  std::vector<Result> margins;  ///< >= 0 where it is feasible
+  std::vector<Result> angles;   ///< of passive joints
+  std::vector<Node> defined;    ///< >= 0 where formulas have a value: 0 times them
+  std::vector<DescribedLink> links;
+  std::vector<DesignMarginInfo> tests;
+  std::vector<Node> test_nodes;
+  std::optional<DescribedSize> size;
+  std::optional<Node> length, radius;                   ///< characteristic: of conditioning
+  std::vector<std::optional<Node>> derived;             ///< thresholds, by limit
+  std::vector<std::optional<std::size_t>> replaced;     ///< by limit: the parameter of its name, whose value it takes
+  std::vector<std::optional<std::array<Node, 2>>> box;  ///< by coordinate
+  std::vector<std::optional<Node>> middle;              ///< by coordinate: where a survey holds it
+  std::vector<std::optional<std::size_t>> turns_about;  ///< by coordinate: the axis of a rotation, 0 to 2
+
+  limbs::Term term(Node node) { return {graph, node}; }
+};
+
+}  // namespace pkm::described

@@ -1,0 +1,195 @@
+#include "engine/mechanisms/described/voxels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/mechanisms/described/cells.hpp"
+#include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/survey/share_samples.hpp"
+
+namespace pkm::described {
+namespace {
+
+using Kind = HeldCoordinate::Kind;
+
+/// A coordinate that is integrated over, by its own cells.
+struct HeldCells {
+  std::size_t coordinate;
+  double lower, step;
+  std::int64_t cells;
+};
+
+class DescribedVoxels final : public VoxelSurveyor {
+ public:
+  DescribedVoxels(const Mechanism& mechanism, const Evaluation& evaluation, const SurveyPlan& plan,
+                  const VoxelOptions& voxels, const Demand& demand)
+      : mechanism_(mechanism),
+        e_(evaluation),
+        plan_(plan),
+        voxels_(voxels),
+        demand_(demand),
+        sweep_(sweep_of(mechanism.info(), plan)),
+        mode_(number_of_mode(mechanism.info(), demand.mode)),
+        test_(evaluation, sweep_.swept) {
+    if (demand.characteristic_length)
+      throw std::invalid_argument("mechanism " + mechanism.info().name +
+                                  " has its own characteristic length only; leave out characteristic_length");
+  }
+
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    const VoxelGrid grid = grid_of(parameters);
+    const std::vector<HeldCells> held = integrated(parameters);
+    std::int64_t repeats = 1;
+    double measure = grid.cell_volume();
+    for (const HeldCells& each : held) {
+      repeats *= each.cells;
+      measure *= each.step;
+    }
+    survey.clear(demand_.fields);
+    survey.cells = grid.count() * repeats;
+    survey.cell_volume = measure;
+    const std::size_t slices = test_.slices(grid);
+    auto& rooms = scratch.get<Rooms>().of;
+    if (rooms.size() < workers()) rooms.resize(workers());
+    const std::vector<double> inputs = inputs_of(parameters);
+    share_samples(slices * static_cast<std::size_t>(repeats), survey,
+                  [&](std::size_t piece, Survey<double>& part, std::size_t worker) {
+                    Room& room = rooms[worker];
+                    room.inputs = inputs;
+                    std::size_t repeat = piece / slices;
+                    for (const HeldCells& each : held) {
+                      const auto cells = static_cast<std::size_t>(each.cells);
+                      room.inputs[e_.model.inputs.coordinate(each.coordinate)] =
+                          each.lower + (static_cast<double>(repeat % cells) + 0.5) * each.step;
+                      repeat /= cells;
+                    }
+                    test_.start(room.inputs, room.cells);
+                    test_.test(grid, piece % slices, room.cells);
+                    add_slice(parameters, grid, piece % slices, measure, room, part);
+                  });
+    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+  }
+
+  VoxelMap map(std::span<const double> parameters) const override {
+    const VoxelGrid grid = grid_of(parameters);
+    VoxelMap map = grid.map();
+    CellRoom room;
+    auto to = map.feasible.begin();
+    test_.start(inputs_of(parameters), room);
+    for (std::size_t slice = 0; slice < test_.slices(grid); ++slice) {
+      test_.test(grid, slice, room);
+      to = std::ranges::copy(room.feasible, to).out;
+    }
+    return map;
+  }
+
+ private:
+  struct Room {
+    std::vector<double> inputs;
+    CellRoom cells;
+  };
+  struct Rooms {
+    std::vector<Room> of;  ///< by worker
+  };
+
+  std::array<double, 2> range_of(std::span<const double> parameters, std::size_t coordinate) const {
+    if (const auto range = e_.range(parameters, coordinate)) return *range;
+    throw std::invalid_argument("mechanism " + mechanism_.info().name + " has no [survey] box for " +
+                                mechanism_.info().coordinates[coordinate].name + "; give a box");
+  }
+  VoxelGrid grid_of(std::span<const double> parameters) const {
+    Box box;
+    box.fill({0, 1});
+    if (voxels_.box) {
+      box = *voxels_.box;
+    } else {
+      for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
+        box[axis] = range_of(parameters, static_cast<std::size_t>(sweep_.swept[axis]));
+    }
+    return {voxels_.cells, box};
+  }
+  std::vector<HeldCells> integrated(std::span<const double> parameters) const {
+    std::vector<HeldCells> all;
+    for (const int coordinate : sweep_.held) {
+      const HeldCoordinate held = how_held(plan_, coordinate);
+      if (held.kind != Kind::integrated) continue;
+      const auto [lower, upper] = range_of(parameters, static_cast<std::size_t>(coordinate));
+      all.push_back(
+          {static_cast<std::size_t>(coordinate), lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
+    }
+    return all;
+  }
+  /// With the held coordinates where they are held; those that are integrated over in the middle of their first cell.
+  std::vector<double> inputs_of(std::span<const double> parameters) const {
+    std::vector<double> inputs = e_.inputs(parameters, plan_.limits, mode_);
+    for (const int coordinate : sweep_.held) {
+      const auto at = static_cast<std::size_t>(coordinate);
+      const HeldCoordinate held = how_held(plan_, coordinate);
+      const bool sums = held.kind == Kind::integrated;
+      const auto range = sums ? range_of(parameters, at) : std::array{0.0, 0.0};
+      inputs[e_.model.inputs.coordinate(at)] =
+          sums ? range[0] + 0.5 * (range[1] - range[0]) / static_cast<double>(held.cells)
+               : held_value(mechanism_, parameters, plan_, coordinate);
+    }
+    return inputs;
+  }
+
+  /// Counts the feasible cells of a slice, and adds their samples.
+  void add_slice(std::span<const double> parameters, const VoxelGrid& grid, std::size_t slice, double measure,
+                 Room& room, Survey<double>& to) const {
+    const auto [middle, inner] = test_.shape(grid);
+    const std::size_t swept = sweep_.swept.size();
+    const bool outermost = swept == 3 && (slice == 0 || slice + 1 == static_cast<std::size_t>(grid.cells[0]));
+    const std::uint8_t* feasible = room.cells.feasible.data();
+    for (std::size_t j = 0; j < middle; ++j) {
+      const bool at_side = outermost || (swept >= 2 && (j == 0 || j + 1 == middle));
+      for (std::size_t k = 0; k < inner; ++k) {
+        if (!*feasible++) continue;
+        ++to.feasible_cells;
+        to.touches_box = to.touches_box || at_side || k == 0 || k + 1 == inner;
+        if (!demand_.needs_samples()) continue;
+        const std::size_t cell[3] = {slice, j, k};
+        Pose<double> pose(e_.model.inputs.coordinates);
+        std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
+        for (std::size_t axis = 0; axis < swept; ++axis)
+          pose[static_cast<std::size_t>(sweep_.swept[axis])] =
+              grid.centre(axis, static_cast<std::int64_t>(cell[3 - swept + axis]));
+        add_sample(parameters, pose, measure, to);
+      }
+    }
+  }
+  void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight,
+                  Survey<double>& to) const {
+    to.weight.push_back(weight);
+    if (demand_.poses) to.pose.push_back(pose);
+    if (demand_.fields.empty()) return;
+    const PoseReport report = inspect_pose(e_, parameters, pose, mode_, plan_.limits);
+    for (auto& [quantity, field] : to.fields) {
+      std::array<double, kMostJoints> values;
+      quantity->of_report(report, values.data());
+      const std::size_t count = quantity->per_joint ? e_.model.inputs.joints : 1;
+      for (std::size_t i = 0; i < count; ++i)
+        field[i].push_back(std::isfinite(values[i]) ? values[i] : quantity->without_value);
+    }
+  }
+
+  const Mechanism& mechanism_;
+  const Evaluation& e_;
+  SurveyPlan plan_;
+  VoxelOptions voxels_;
+  Demand demand_;
+  const Sweep& sweep_;
+  std::size_t mode_;
+  CellTest test_;
+};
+
+}  // namespace
+
+std::unique_ptr<const VoxelSurveyor> prepare_voxels(const Mechanism& mechanism, const Evaluation& evaluation,
+                                                    const SurveyPlan& plan, const VoxelOptions& voxels,
+                                                    const Demand& demand) {
+  return std::make_unique<DescribedVoxels>(mechanism, evaluation, plan, voxels, demand);
+}
+
+}  // namespace pkm::described

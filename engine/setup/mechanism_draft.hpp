@@ -1,0 +1,37 @@
+// The sections of a mechanism's file, one function each, in the order in which read_mechanism_toml calls them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/setup/mechanism_scope.hpp"
+
+namespace pkm {
+
+/// A limb as other sections name it.
+struct NamedLimb {
+  std::string name;                              ///< "arm2"
+  std::string group;                             ///< "arm": all copies
+  std::map<std::string, limbs::Vector3> points;  ///< "A", "B", "C", "S"
+};
+
+/// What the sections build up together.
+struct MechanismDraft {
+  described::Model model;
+  MechanismScope scope{model};
+  limbs::Vector3 origin{zero(), zero(), zero()};  ///< of the platform's frame
+  limbs::Rotation turn{limbs::turn_about(2, zero(), limbs::Term(model.graph, 1.0))};
+  std::vector<NamedLimb> limbs;
+  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: x, y, z
+  std::vector<std::string> sign_choices;                                          ///< by sign: "+-", the file's first
+
+  limbs::Term zero() { return {model.graph, 0.0}; }
+  /// A sign of the working modes, and its place among the inputs. @param first  '+' or '-': the file's
+  limbs::Term add_sign(char first, bool both);
+};
+
+/// The limbs of the file: joints, closures, conditions, ranges, angles, links.
+void read_limbs(const ConfigValue& root, MechanismDraft& draft);
+
+}  // namespace pkm

@@ -1,0 +1,54 @@
+// The names that formulas of a mechanism's file know, and formulas as nodes of its graph.
+#pragma once
+
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "engine/mechanisms/described/model.hpp"
+#include "engine/setup/config_value.hpp"
+
+namespace pkm {
+
+class MechanismScope {
+ public:
+  explicit MechanismScope(described::Model& model) : model_(model) {}
+
+  /// Refuses a name that a formula cannot hold, or that something has already.
+  void add(const ConfigValue& at, const std::string& name, graph::Node node);
+  /// A later meaning of a name: a threshold in place of the parameter.
+  void replace(const std::string& name, graph::Node node);
+  bool knows(const std::string& name) const;
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// A number, text with a unit of the dimension of `unit`, or a formula of the names known so far. Where it could be
+  /// undefined, that is noted as a margin called after `what`.
+  limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
+  /// The same of parameters alone.
+  limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
+  /// Three of them, [x, y, z].
+  limbs::Vector3 point(const ConfigValue& value, const std::string& what);
+  /// A direction, scaled to length 1. @param node_of  formula or of_design
+  limbs::Vector3 direction(const ConfigValue& value, const std::string& what);
+
+  /// Roots and the like that a limb is made of: its own conditions say where they exist.
+  void known_to_exist(graph::Node node);
+  /// The margins of what is reachable from the model's joints and margins and could be undefined.
+  void note_domains();
+
+ private:
+  void watch(graph::Node node, const std::string& what);
+
+  struct Watched {
+    graph::Node node;
+    std::string name;
+  };
+
+  described::Model& model_;
+  std::vector<std::string> names_;
+  std::vector<graph::Node> nodes_;
+  std::vector<Watched> watched_;
+  std::unordered_set<graph::Node> seen_;
+};
+
+}  // namespace pkm
