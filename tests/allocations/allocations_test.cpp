@@ -44,7 +44,8 @@ namespace {
 std::vector<std::string> experiments() {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS))
-    if (entry.path().extension() == ".toml" && entry.path().parent_path().filename() != "motions")
+    if (const auto folder = entry.path().parent_path().filename();  // motions and mechanisms are no studies
+        entry.path().extension() == ".toml" && folder != "motions" && folder != "mechanisms")
       paths.push_back(entry.path());
   std::ranges::sort(paths);
   return paths;
