@@ -82,7 +82,9 @@ std::string refuse_own(const std::string& path, const std::string& header) {
     if (!here.empty() && !there.empty() && here != there) return "the rooms of " + to + " do not include each other";
     return climbs ? "nothing includes " + to : "";
   }
-  if (to == "engine/mechanisms") return "a mechanism is known by engine/mechanism alone";
+  // The reader of descriptions makes the mechanisms that they describe, and knows no other.
+  const bool made = path == "engine/setup/mechanism_file.cpp" && room_of(header) == "described";
+  if (to == "engine/mechanisms") return made ? "" : "a mechanism is known by engine/mechanism alone";
   if (from == "objectives" || from == "constraints")
     return place(to) >= 0 && place(to) <= place("engine/problem")
                ? ""
