@@ -48,7 +48,7 @@ struct MechanismInfo {
   std::vector<std::string> branches;  ///< signs that a mode may require behind a "/"; the first goes without saying
   std::vector<Sweep> sweeps;          ///< those that it can be surveyed by, the usual one first
   std::vector<LimitInfo> limits;
-  std::string characteristic_length;  ///< formula of the default one; "": no pose has a conditioning
+  std::string characteristic_length;      ///< formula of the default one; "": no pose has a conditioning
   std::vector<std::string> closed_forms;  ///< how inverse kinematics finds each joint, for people; or none
 };
 

@@ -81,6 +81,8 @@ Json origin(const PageStudy& page) {
     extensions.push_back({{"stage", e.stage + 1}, {"limit", e.limit}, {"value", e.value}});
   return {{"toml_file", c.toml_file},
           {"toml", c.toml},
+          {"mechanism_file", c.description ? Json(c.description->file_name) : Json()},
+          {"mechanism_toml", c.description ? Json(c.description->text) : Json()},
           {"seed", std::to_string(c.seed)},  // may have more digits than a number of the page
           {"version", c.program_version},
           {"revision", c.program_revision},

@@ -160,11 +160,12 @@ std::string describe(const Study& study) {
   std::ostringstream out;
   Study bare;
   bare.file_name = study.file_name;
+  const std::string described = study.description ? "from " + study.description->file_name : "";
   out << aligned({{"study", study.name, mark(study.name + ".h5" == bare.output_file())},
                   {"file", study.file_name},
                   {"seed", std::to_string(study.seed), mark(study.seed == bare.seed)},
                   {"output", study.output_file(), mark(study.output_file() == bare.output_file())},
-                  {"mechanism", info.name + ": " + info.title}});
+                  {"mechanism", info.name + ": " + info.title, described}});
   write_parameters(out, study);
   write_table(out, "workspace", survey_rows(info, parts.plan));
   for (const Region& region : parts.regions) write_table(out, "region " + region.name, survey_rows(info, region.plan));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/unit.hpp"
+#include "engine/setup/mechanism_file.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
@@ -47,19 +48,34 @@ void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& war
   }
 }
 
+/// The mechanism that `type` or `file` names.
+std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDraft& draft) {
+  std::vector<std::string> names;
+  for (const auto& mechanism : draft.catalogues.mechanisms) names.push_back(mechanism->info().name);
+  const std::string either = "type = one of " + join(names) + ", or file = the name of a mechanism's file";
+  const ConfigValue table = root.at("mechanism", "a table [mechanism] with " + either);
+  table.expect_table("a table [mechanism]").allow({"type", "file", "masses", "parameters"});
+  const auto type = table.find("type"), file = table.find("file");
+  if (type && file)
+    throw file->refusal("the mechanism is also given by mechanism.type (" + type->line() +
+                        "); it is either built in or described by a file");
+  if (type) {
+    const std::string& name = type->word(names);
+    return *std::ranges::find(draft.catalogues.mechanisms, name, [](const auto& m) { return m->info().name; });
+  }
+  if (!file) throw table.error_of("neither type nor file", either);
+  const SourceText& description = draft.study.description.emplace(draft.description(*file));
+  return read_mechanism_toml(description.text, description.file_name);
+}
+
 }  // namespace
 
 void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
-  std::vector<std::string> names;
-  for (const auto& mechanism : draft.catalogues.mechanisms) names.push_back(mechanism->info().name);
-  const ConfigValue table = root.at("mechanism", "a table [mechanism] with type = one of " + join(names));
-  table.expect_table("a table [mechanism]").allow({"type", "masses", "parameters"});
-  const std::string& type = table.at("type", "one of " + join(names)).word(names);
-  for (const auto& mechanism : draft.catalogues.mechanisms)
-    if (mechanism->info().name == type) draft.parts.mechanism = mechanism;
+  draft.parts.mechanism = find_mechanism(root, draft);
+  const ConfigValue table = *root.find("mechanism");
   if (const auto masses = table.find("masses")) {
     const Dynamics* const dynamics = draft.parts.mechanism->dynamics();
-    if (!dynamics) throw masses->refusal("the mechanism " + type + " has no masses");
+    if (!dynamics) throw masses->refusal("the mechanism " + draft.info().name + " has no masses");
     draft.parts.mechanism = dynamics->with_masses(masses->word(dynamics->mass_models()));
   }
 

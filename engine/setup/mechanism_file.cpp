@@ -29,10 +29,12 @@ void read_names(const ConfigValue& root, MechanismDraft& draft) {
   table.expect_table("a table [mechanism]").allow({"name", "title", "source"});
   const ConfigValue name = table.at("name", "the mechanism's name");
   draft.model.info.name = name.text("the mechanism's name");
-  const auto fits = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
   if (draft.model.info.name.empty() || draft.model.info.name.size() > 60 ||
       !std::ranges::all_of(draft.model.info.name, fits))
-    throw name.error("a name of at most 60 lower-case letters, digits, '-' and '_'");
+    throw name.error("a name of at most 60 letters, digits, '-' and '_'");
   draft.model.info.title = text_of(table, "title");
   draft.model.info.source = text_of(table, "source");
 }
@@ -359,7 +361,7 @@ void list_modes(MechanismDraft& draft) {
 }  // namespace
 
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name) {
-  const TomlValue document = parse_toml(text, file_name);
+  const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
   const ConfigValue root(document, file_name, "");
   if (root.keys().empty())
     throw ConfigError({file_name, 0, ""}, "an empty file",

@@ -2,6 +2,7 @@
 // part of the document's root table and adds to what is known of the problem.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "engine/core/catalogue.hpp"
@@ -13,13 +14,15 @@ namespace pkm {
 /// What the sections build up together.
 struct StudyDraft {
   const Catalogues& catalogues;
+  /// What is in the file of a mechanism that [mechanism] names.
+  std::function<SourceText(const ConfigValue& file)> description;
   Study study;
   ProblemParts parts;
 
   const MechanismInfo& info() const { return parts.mechanism->info(); }
 };
 
-/// [mechanism]: type and fixed parameters.
+/// [mechanism]: type or file, masses, fixed parameters.
 void read_mechanism(const ConfigValue& root, StudyDraft& draft);
 /// [variables]
 void read_variables(const ConfigValue& root, StudyDraft& draft);

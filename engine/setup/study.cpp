@@ -6,6 +6,7 @@
 
 #include "engine/core/unit.hpp"
 #include "engine/problem/verdict.hpp"
+#include "engine/setup/mechanism_file.hpp"
 #include "engine/setup/sections.hpp"
 #include "engine/setup/text_file.hpp"
 #include "engine/survey/survey_set.hpp"
@@ -110,6 +111,61 @@ void warn_of_targets(Study& study) {
   }
 }
 
+/// Studies name a mechanism, descriptions give it a name; only these have a platform.
+bool describes_mechanism(const TomlValue& document) {
+  const TomlValue* const table = document.find("mechanism");
+  return document.find("platform") || (table && table->find("name") && !table->find("type") && !table->find("file"));
+}
+
+using FindDescription = std::function<SourceText(const ConfigValue& file)>;
+
+Study read_document(const TomlValue& document, const SourceText& source, const Catalogues& catalogues,
+                    const FindDescription& find_description) {
+  const std::string& file_name = source.file_name;
+  if (document.keys.empty())
+    throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
+  if (describes_mechanism(document))
+    throw ConfigError({file_name, 0, ""}, "the description of a mechanism",
+                      "a study, which names such a file in [mechanism] file = \"..\"");
+  const ConfigValue root(document, file_name, "");
+  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
+              "report", "reference", "stage", "checkpoint", "final"},
+             "section");
+
+  StudyDraft draft{catalogues, find_description, {}, {}};
+  draft.study.text = source.text;
+  draft.study.file_name = file_name;
+  read_study_section(root, draft.study);
+  read_mechanism(root, draft);
+  read_variables(root, draft);
+  read_baseline(root, draft);
+  read_workspace(root, draft);
+  read_pose_constraints(root, draft);
+  read_regions(root, draft);
+  read_motions(root, draft);
+  read_quantities(root, draft);
+  draft.study.problem = root.find("workspace").value_or(*root.find("mechanism")).explained([&draft] {
+    return std::make_shared<const DesignProblem>(draft.parts);
+  });
+  read_references(root, draft);
+  read_stages(root, draft);
+  read_run_sections(root, draft);
+  for (std::string& doubt : doubts(draft.study.problem->parts())) draft.study.warnings.push_back(std::move(doubt));
+  warn_of_targets(draft.study);
+  warn_of_empty_workspace(draft.study);
+  return std::move(draft.study);
+}
+
+/// The file of a mechanism, whose name is relative to the folder of the study that names it.
+SourceText load_description(const ConfigValue& file) {
+  const std::string expected = "the name of a mechanism's file";
+  const std::string& name = file.text(expected);
+  if (name.empty() || name.find('\0') != std::string::npos) throw file.error(expected);
+  const auto [study, line, key] = file.place();
+  const std::string path = (std::filesystem::path(study).parent_path() / name).string();
+  return {read_text_file(path, "the mechanism in TOML that " + study + ":" + std::to_string(line) + " names"), path};
+}
+
 }  // namespace
 
 std::string Study::output_file() const { return output ? *output : stem(file_name) + ".h5"; }
@@ -143,41 +199,25 @@ std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std
   return specs;
 }
 
-Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues) {
-  const TomlValue document = parse_toml(text, file_name);
-  if (document.keys.empty())
-    throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
-  const ConfigValue root(document, file_name, "");
-  root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
-              "report", "reference", "stage", "checkpoint", "final"},
-             "section");
-
-  StudyDraft draft{catalogues, {}, {}};
-  draft.study.text = text;
-  draft.study.file_name = file_name;
-  read_study_section(root, draft.study);
-  read_mechanism(root, draft);
-  read_variables(root, draft);
-  read_baseline(root, draft);
-  read_workspace(root, draft);
-  read_pose_constraints(root, draft);
-  read_regions(root, draft);
-  read_motions(root, draft);
-  read_quantities(root, draft);
-  draft.study.problem = root.find("workspace").value_or(*root.find("mechanism")).explained([&draft] {
-    return std::make_shared<const DesignProblem>(draft.parts);
+Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
+                      const std::optional<SourceText>& description) {
+  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, [&](const ConfigValue& file) {
+    if (!description) throw file.refusal("what the mechanism's file holds is not known here");
+    return *description;
   });
-  read_references(root, draft);
-  read_stages(root, draft);
-  read_run_sections(root, draft);
-  for (std::string& doubt : doubts(draft.study.problem->parts())) draft.study.warnings.push_back(std::move(doubt));
-  warn_of_targets(draft.study);
-  warn_of_empty_workspace(draft.study);
-  return std::move(draft.study);
 }
 
 Study load_study_toml(const std::string& path, const Catalogues& catalogues) {
-  return read_study_toml(read_text_file(path, "a study file in TOML"), path, catalogues);
+  const SourceText source{read_text_file(path, "a study file in TOML"), path};
+  return read_document(parse_toml(source.text, path), source, catalogues, load_description);
+}
+
+MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues) {
+  const std::string expected = "a study or a mechanism in TOML";
+  const SourceText source{read_text_file(path, expected), path};
+  const TomlValue document = parse_toml(source.text, path, expected);
+  if (describes_mechanism(document)) return read_mechanism_toml(source.text, path);
+  return read_document(document, source, catalogues, load_description);
 }
 
 }  // namespace pkm

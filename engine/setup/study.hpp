@@ -10,8 +10,10 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "engine/core/source_text.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/problem/design_problem.hpp"
@@ -52,9 +54,10 @@ struct Reference {
 };
 
 struct Study {
-  std::string text;       ///< the TOML document
-  std::string file_name;  ///< as it was called when it was read
-  std::string name;       ///< default: the file's stem
+  std::string text;                       ///< the TOML document
+  std::string file_name;                  ///< as it was called when it was read
+  std::optional<SourceText> description;  ///< the mechanism's, where [mechanism] names a file
+  std::string name;                       ///< default: the file's stem
   std::uint64_t seed = 1;
   std::optional<std::string> output;
   /// Mechanism, parameters, variables and survey plan are in problem->parts().
@@ -76,11 +79,19 @@ struct Study {
   std::string output_file() const;
 };
 
-/// Builds a study from a TOML document. `file_name` is named in messages. Throws ConfigError.
-Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues);
+/// Builds a study from a TOML document. `file_name` is named in messages. Opens no file: where [mechanism] names one,
+/// `description` is what was in it. Throws ConfigError.
+Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
+                      const std::optional<SourceText>& description = {});
 
-/// Reads the file at `path` and builds its study. Throws ConfigError, also when the file cannot be read.
+/// Reads the file at `path`, and the mechanism's that it may name, and builds its study. Throws ConfigError, also when
+/// a file cannot be read.
 Study load_study_toml(const std::string& path, const Catalogues& catalogues);
+
+/// What a file holds that may be a study or the description of a mechanism.
+using MechanismOrStudy = std::variant<std::shared_ptr<const Mechanism>, Study>;
+/// Reads the file at `path`, once. Throws ConfigError.
+MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues);
 
 /// The resolved problem with every default spelled out: the text of `pkmopt check`.
 std::string describe(const Study& study);

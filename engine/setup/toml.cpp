@@ -159,7 +159,7 @@ const TomlValue* TomlValue::find(const std::string& key) const {
   return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
 }
 
-TomlValue parse_toml(const std::string& text, const std::string& file) {
+TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected) {
   if (const int line = line_too_deep(text))
     throw ConfigError({file, line, ""}, "tables nested too deeply", "keys of at most 16 parts, in at most 32 brackets");
   try {
@@ -167,7 +167,7 @@ TomlValue parse_toml(const std::string& text, const std::string& file) {
     return convert(toml::parse(text), source);
   } catch (const toml::parse_error& error) {
     throw ConfigError({file, static_cast<int>(error.source().begin.line), ""},
-                      "text that is not TOML (" + std::string(error.description()) + ")", "a study in TOML");
+                      "text that is not TOML (" + std::string(error.description()) + ")", expected);
   }
 }
 

@@ -28,7 +28,7 @@ struct TomlValue {
 };
 
 /// Parses `text`. Throws ConfigError with the line for whatever TOML does not allow (duplicate keys, bytes that are not
-/// UTF-8, ...). `file` is named in messages.
-TomlValue parse_toml(const std::string& text, const std::string& file);
+/// UTF-8, ...). `file` is named in messages, `expected` says there what it should be.
+TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected = "a study in TOML");
 
 }  // namespace pkm

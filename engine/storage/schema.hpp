@@ -288,6 +288,15 @@ void describe_final(Archive& archive, const Problem& problem, Final& final) {
   if (present(archive, "/final/map", final.map)) describe_map(archive, *final.map);
 }
 
+template <class Archive, class Text>
+void describe_description(Archive& archive, Text& description) {
+  archive.group("/mechanism", "The mechanism's file, which the study's text names");
+  archive.attribute("/mechanism", "file", description.file_name);
+  std::vector<std::string> text = {description.text};
+  archive.array(Leaf{"/mechanism/toml", "Its text"}, text, {});
+  if constexpr (Archive::kReads) description.text = text[0];
+}
+
 template <class Archive, class Study>
 void describe(Archive& archive, Study& study) {
   archive.group("/", "Study of pkmopt: its schema is documented in engine/storage/README.md");
@@ -311,6 +320,7 @@ void describe(Archive& archive, Study& study) {
   std::vector<std::string> text = {study.toml};
   archive.array(Leaf{"/toml", "The study file's text"}, text, {});
   if constexpr (Archive::kReads) study.toml = text[0];
+  if (present(archive, "/mechanism", study.description)) describe_description(archive, *study.description);
   records(archive, "/extensions", "Limits changed by `pkmopt resume`, in the order of the changes", study.extensions,
           Field{"stage", &Extension::stage, "1", "Stage, 0 is the first"},
           Field{"limit", &Extension::limit, "1", "generations, evaluations or time"},

@@ -10,6 +10,7 @@
 
 #include "engine/core/options.hpp"
 #include "engine/core/parameter.hpp"
+#include "engine/core/source_text.hpp"
 #include "engine/mechanism/survey.hpp"
 #include "engine/problem/front.hpp"
 #include "engine/problem/start_outcome.hpp"
@@ -166,8 +167,9 @@ std::string words(StudyState state);
 struct StudyContents {
   // where it comes from
   std::string name;
-  std::string toml;       ///< the study's text
-  std::string toml_file;  ///< and the file it was read from
+  std::string toml;                       ///< the study's text
+  std::string toml_file;                  ///< and the file it was read from
+  std::optional<SourceText> description;  ///< the mechanism's, where the study's text names a file
   std::uint64_t seed = 1;
   std::string program_version;
   std::string program_revision;

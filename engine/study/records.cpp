@@ -181,6 +181,7 @@ StudyContents new_contents(const Study& study) {
   c.name = study.name;
   c.toml = study.text;
   c.toml_file = study.file_name;
+  c.description = study.description;
   c.seed = study.seed;
   c.machine = describe_machine();
   c.created = c.updated = utc_now();
@@ -191,6 +192,8 @@ StudyContents new_contents(const Study& study) {
 Refusal text_against_record(const Study& study, const StudyContents& contents) {
   const ProblemRecord told = problem_record(study);
   const ProblemRecord& recorded = contents.problem;
+  if (study.description.has_value() != contents.description.has_value())
+    return std::string(study.description ? "a mechanism's file, and none" : "no file of a mechanism, and one");
   if (told.mechanism != recorded.mechanism) return told.mechanism + " as mechanism, and " + recorded.mechanism;
   const std::string variables = join(names_of(told.variables));
   if (const std::string other = join(names_of(recorded.variables)); variables != other)

@@ -525,7 +525,7 @@ void dismiss_ranks(int exit_code) {
 }
 
 Study study_of(const StudyContents& contents, const Catalogues& catalogues) {
-  Study study = read_study_toml(contents.toml, contents.toml_file, catalogues);
+  Study study = read_study_toml(contents.toml, contents.toml_file, catalogues, contents.description);
   if (const Refusal difference = text_against_record(study, contents))
     throw StorageError("the study's text and what is recorded of it disagree: " + *difference);
   study.seed = contents.seed;

@@ -15,6 +15,9 @@ bool needs_options(const std::vector<OptionSpec>& specs);
 /// The mass model in force; null: no masses.
 Json mass_model_json(const Mechanism& mechanism);
 
+/// Everything known of one mechanism, which need not be in the catalogues.
+Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues);
+
 /// The four catalogues by their names ("mechanisms", "objectives", "constraints", "optimisers"), each a list of
 /// objects with `name`, `meaning` and all the rest.
 Json catalogues_json(const Catalogues& catalogues);

@@ -120,48 +120,6 @@ Json said_by(const Ability* ability, const Say& say) {
   return ability ? Json(say(*ability)) : Json();
 }
 
-Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
-  const MechanismInfo& info = mechanism.info();
-  const bool has_columns = mechanism.columns();
-  Json json = {{"name", info.name}, {"meaning", info.title}, {"source", info.source}};
-  json["mass_models"] = mechanism.dynamics() ? Json(mechanism.dynamics()->mass_models()) : Json::array();
-  json["masses"] = mass_model_json(mechanism);
-  json["coordinates"] = names_of(info.coordinates);
-  json["joints"] = names_of(info.joints);
-  json["modes"] = info.modes;
-  json["default_mode"] = info.modes.front();
-  json["branches"] = info.branches.empty() ? Json() : Json(info.branches);
-  json["influence_coefficients"] = mechanism.velocities() != nullptr;
-  json["chain_input"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.input(); });
-  json["chain_output"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.output(); });
-  const Sweep& usual = info.sweeps.front();
-  json.update(sweep_json(info, usual, has_columns));
-  json["other_sweeps"] = Json::array();
-  for (std::size_t k = 1; k < info.sweeps.size(); ++k) {
-    const Json sweep = sweep_json(info, info.sweeps[k], has_columns);
-    Json other = {{"held", sweep["held"]}};
-    other.update(sweep);
-    json["other_sweeps"].push_back(other);
-  }
-  std::vector<int> integrated = usual.swept;
-  integrated.insert(integrated.end(), usual.held.begin(), usual.held.end());
-  json["integrated_unit"] = usual.integrates ? Json(unit_of_product(info, integrated)) : Json();
-  json["size"] = said_by(mechanism.size(), [](const Size& size) { return size.meaning(); });
-  json["size_unit"] = said_by(mechanism.size(), [](const Size& size) { return size.unit(); });
-  json["characteristic_length"] = text_or_null(info.characteristic_length);
-  json["objectives"] = serving(catalogues.objectives, mechanism);
-  json["constraints"] = serving(catalogues.constraints, mechanism);
-  json["parameters"] = parameters_json(info.parameters);
-  if (Json others = other_parameters_json(mechanism); !others.empty()) json["parameters_besides"] = std::move(others);
-  json["limits"] = limits_json(info, "");
-  json["design_tests"] = Json::array();
-  if (const DesignTests* tests = mechanism.design_tests())
-    for (const auto& test : tests->list())
-      json["design_tests"].push_back({{"name", test.name}, {"unit", test.unit}, {"meaning", test.meaning}});
-  json["expression_names"] = expression_names_json(mechanism);
-  return json;
-}
-
 Json objective_json(const ObjectiveEntry& entry, const Catalogues& catalogues) {
   const auto service = [&entry](const auto& mechanism) { return service_json(entry, entry.options, *mechanism); };
   return {{"name", entry.name},
@@ -215,6 +173,48 @@ Json optimiser_json(const OptimiserEntry& entry) {
 Json mass_model_json(const Mechanism& mechanism) {
   const Dynamics* const dynamics = mechanism.dynamics();
   return dynamics ? Json(dynamics->mass_model()) : Json();
+}
+
+Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues) {
+  const MechanismInfo& info = mechanism.info();
+  const bool has_columns = mechanism.columns();
+  Json json = {{"name", info.name}, {"meaning", info.title}, {"source", info.source}};
+  json["mass_models"] = mechanism.dynamics() ? Json(mechanism.dynamics()->mass_models()) : Json::array();
+  json["masses"] = mass_model_json(mechanism);
+  json["coordinates"] = names_of(info.coordinates);
+  json["joints"] = names_of(info.joints);
+  json["modes"] = info.modes;
+  json["default_mode"] = info.modes.front();
+  json["branches"] = info.branches.empty() ? Json() : Json(info.branches);
+  json["influence_coefficients"] = mechanism.velocities() != nullptr;
+  json["chain_input"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.input(); });
+  json["chain_output"] = said_by(mechanism.chain(), [](const AuxiliaryChain& chain) { return chain.output(); });
+  const Sweep& usual = info.sweeps.front();
+  json.update(sweep_json(info, usual, has_columns));
+  json["other_sweeps"] = Json::array();
+  for (std::size_t k = 1; k < info.sweeps.size(); ++k) {
+    const Json sweep = sweep_json(info, info.sweeps[k], has_columns);
+    Json other = {{"held", sweep["held"]}};
+    other.update(sweep);
+    json["other_sweeps"].push_back(other);
+  }
+  std::vector<int> integrated = usual.swept;
+  integrated.insert(integrated.end(), usual.held.begin(), usual.held.end());
+  json["integrated_unit"] = usual.integrates ? Json(unit_of_product(info, integrated)) : Json();
+  json["size"] = said_by(mechanism.size(), [](const Size& size) { return size.meaning(); });
+  json["size_unit"] = said_by(mechanism.size(), [](const Size& size) { return size.unit(); });
+  json["characteristic_length"] = text_or_null(info.characteristic_length);
+  json["objectives"] = serving(catalogues.objectives, mechanism);
+  json["constraints"] = serving(catalogues.constraints, mechanism);
+  json["parameters"] = parameters_json(info.parameters);
+  if (Json others = other_parameters_json(mechanism); !others.empty()) json["parameters_besides"] = std::move(others);
+  json["limits"] = limits_json(info, "");
+  json["design_tests"] = Json::array();
+  if (const DesignTests* tests = mechanism.design_tests())
+    for (const auto& test : tests->list())
+      json["design_tests"].push_back({{"name", test.name}, {"unit", test.unit}, {"meaning", test.meaning}});
+  json["expression_names"] = expression_names_json(mechanism);
+  return json;
 }
 
 bool needs_options(const std::vector<OptionSpec>& specs) { return std::ranges::any_of(specs, &OptionSpec::required); }

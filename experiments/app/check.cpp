@@ -1,11 +1,12 @@
 // `pkmopt check`: a study as it was understood, every default spelled out, what contradicts itself in it, and whether a
-// few designs are feasible; nothing is run.
+// few designs are feasible; or a mechanism as it was understood from its description. Nothing is run.
 
 #include <algorithm>
 #include <iostream>
 
 #include "engine/problem/verdict.hpp"
 #include "engine/report/json_text.hpp"
+#include "engine/setup/mechanism_file.hpp"
 #include "engine/study/probe.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
@@ -16,7 +17,7 @@ namespace pkm {
 namespace {
 
 struct CheckArguments {
-  std::string study;
+  std::string file;
   bool json = false;
 };
 
@@ -70,9 +71,13 @@ Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
 Json study_json(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
-  Json json = {{"name", study.name},          {"file", study.file_name},
-               {"seed", study.seed},          {"output", study.output_file()},
-               {"mechanism", info.name},      {"masses", mass_model_json(*parts.mechanism)},
+  Json json = {{"name", study.name},
+               {"file", study.file_name},
+               {"seed", study.seed},
+               {"output", study.output_file()},
+               {"mechanism", info.name},
+               {"mechanism_file", study.description ? Json(study.description->file_name) : Json()},
+               {"masses", mass_model_json(*parts.mechanism)},
                {"parameters", Json::object()}};
   for (std::size_t i = 0; i < info.parameters.size(); ++i)
     if (std::ranges::find(parts.varies, i) == parts.varies.end())
@@ -108,8 +113,7 @@ std::string probe_text(const Probe& probe) {
   return text + "note: " + probe.verdict->sentence + "; a run may still find others\n" + reasons_text(reasons);
 }
 
-void check(const CheckArguments& arguments, Session& session) {
-  const Study study = load_study_toml(arguments.study, session.catalogues);
+void check_study(const Study& study, const CheckArguments& arguments, Session& session) {
   const std::vector<Reason> against = contradictions(study.problem->parts());
   const Probe tried = probe(study);
   if (!against.empty()) session.exit_code = kNothingFeasible;
@@ -125,16 +129,27 @@ void check(const CheckArguments& arguments, Session& session) {
   std::cout << probe_text(tried);
 }
 
+void check(const CheckArguments& arguments, Session& session) {
+  const MechanismOrStudy found = load_mechanism_or_study(arguments.file, session.catalogues);
+  if (const Study* const study = std::get_if<Study>(&found)) return check_study(*study, arguments, session);
+  const Mechanism& mechanism = *std::get<std::shared_ptr<const Mechanism>>(found);
+  if (arguments.json)
+    print_json(mechanism_json(mechanism, session.catalogues));
+  else
+    std::cout << describe_mechanism(mechanism);
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<CheckArguments>(
       app, "check", "The resolved problem, every default spelled out, and a few designs tried.",
-      "Exit code 2 and one sentence with file, line and key when the study is wrong; 4 when\n"
-      "what it asks for contradicts itself, so that nothing can be feasible.\n"
+      "Of a mechanism's description: what was understood of it, and what the mechanism can.\n"
+      "Exit code 2 and one sentence with file, line and key when the file is wrong; 4 when\n"
+      "what a study asks for contradicts itself, so that nothing can be feasible.\n"
       "Example: pkmopt check experiments/4ppa-2par/paper-problem.toml",
       [&session](const CheckArguments& given) { check(given, session); });
-  add_option(command, "STUDY.toml", arguments.study, "The study's path")->required();
+  add_option(command, "FILE.toml", arguments.file, "The path of a study or of a mechanism's description")->required();
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }
 

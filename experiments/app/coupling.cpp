@@ -87,7 +87,7 @@ CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
 }
 
 std::string coupling(const Target& target, const CouplingArguments& arguments, Printout& out) {
-  check_outputs({arguments.csv}, inputs_of(arguments), if_forced(arguments.force));
+  check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
   const MechanismInfo& info = target.info();
   if (const Refusal reason = no_joint_forces(*target.mechanism))
     throw ConfigError({"", 0, "coupling"}, *reason + ", so no coupling indices");

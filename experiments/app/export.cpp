@@ -41,7 +41,7 @@ void export_study(const Catalogues& catalogues, const ExportArguments& arguments
     files.insert(files.end(), more.begin(), more.end());
   }
   const Existing existing = if_forced(arguments.force);
-  check_outputs(files, inputs_of(arguments), existing);
+  check_outputs(files, {arguments.from}, existing);
 
   if (!tables.empty()) make_folder(arguments.csv);
   for (const NamedTable& table : tables) write_file(path_of(arguments.csv, table), table.table.text(), existing);

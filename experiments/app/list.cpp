@@ -1,9 +1,11 @@
-// `pkmopt list`: the catalogues. The text shows what the JSON holds: a value per line, a table per list.
+// `pkmopt list`: the catalogues, and mechanisms that a file describes. The text shows what the JSON holds: a value per
+// line, a table per list.
 
+#include <algorithm>
 #include <iostream>
 
 #include "experiments/app/catalogue.hpp"
-#include "experiments/app/commands.hpp"
+#include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
@@ -47,8 +49,16 @@ const Json& find_entry(const Json& entries, const std::string& kind, const std::
   for (const auto& entry : entries)
     if (entry["name"] == name) return entry;
   const auto known = entry_names(entries);
-  throw ConfigError({"", 0, "list " + kind}, "the unknown name '" + name + "'", "one of " + join(known),
+  throw ConfigError({"", 0, "list " + kind}, "the unknown name '" + name + "'",
+                    "one of " + join(known) + (kind == "mechanisms" ? ", or a mechanism's file" : ""),
                     nearest_name(name, known));
+}
+
+/// Some catalogue has an entry of that name.
+bool known(const Json& catalogues, const std::string& name) {
+  return std::ranges::any_of(catalogues, [&name](const Json& entries) {
+    return std::ranges::any_of(entries, [&name](const Json& entry) { return entry["name"] == name; });
+  });
 }
 
 /// The entries called `word` by their catalogue, where a catalogue's name was expected.
@@ -61,7 +71,7 @@ Json find_anywhere(const Json& catalogues, const std::string& word) {
       if (entry["name"] == word) found[kind] = entry;
   }
   if (!found.empty()) return found;
-  const std::string expected = "one of " + join(known) + ", or the name of an entry";
+  const std::string expected = "one of " + join(known) + ", the name of an entry, or a mechanism's file";
   for (const auto& [kind, entries] : catalogues.items())
     for (const auto& name : entry_names(entries)) known.push_back(name);
   throw ConfigError({"", 0, "list"}, "the unknown word '" + word + "'", expected, nearest_name(word, known));
@@ -77,8 +87,15 @@ void list(const Session& session, const ListArguments& arguments) {
     json ? print_json(listed) : print_overview(listed, session.program);
   } else {
     Json found = Json::object();
-    if (all.contains(kind))
+    const auto described = [&session](const std::string& file) {
+      return mechanism_json(*find_mechanism(session.catalogues, file), session.catalogues);
+    };
+    if (kind == "mechanisms" && !known(all, name) && may_be_file(name))
+      found[kind] = described(name);
+    else if (all.contains(kind))
       found[kind] = find_entry(all[kind], kind, name);
+    else if (name.empty() && !known(all, kind) && may_be_file(kind))
+      found["mechanisms"] = described(kind);
     else
       found = find_anywhere(all, kind);
     json ? print_json(found.size() == 1 ? found.front() : found) : print_found(found);
@@ -91,7 +108,8 @@ void add_list(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ListArguments>(
       app, "list", "What a study may name: mechanisms, objectives, constraints, optimisers.",
       "Example: pkmopt list mechanisms 4ppa-2par", [&session](const ListArguments& given) { list(session, given); });
-  add_option(command, "KIND", arguments.kind, "mechanisms, objectives, constraints or optimisers (default: all)");
+  add_option(command, "KIND", arguments.kind,
+             "mechanisms, objectives, constraints or optimisers (default: all); or a name or a mechanism's file");
   add_option(command, "NAME", arguments.name,
              "One entry, with everything known of it: parameters, limits, options, ...");
   command.add_flag("--json", arguments.json, "Print one JSON object, with everything known of each entry");

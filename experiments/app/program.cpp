@@ -66,7 +66,7 @@ void run(const std::vector<std::string>& arguments, Session& session) {
       "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml");
   for (AddCommand* const add :
        {add_run, add_resume, add_check, add_evaluate, add_pose, add_forward, add_dynamics, add_coupling, add_trajectory,
-        add_simulate, add_workspace, add_show, add_report, add_export, add_list})
+        add_simulate, add_workspace, add_show, add_report, add_export, add_list, add_new})
     add(app, session);
   for (const char* name : {"run", "resume", "evaluate", "coupling"}) add_instruction_set(*app.get_subcommand(name));
   parse_command_line(app, arguments);

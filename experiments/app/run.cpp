@@ -105,6 +105,9 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
         "; go on with it by '" + session.program + " resume " + quoted(output) + "', or overwrite it with --force";
     if (contents.toml != study.text)
       throw StorageError(output + " holds another text of the study than " + study.file_name + way_out);
+    if (study.description && contents.description && contents.description->text != study.description->text)
+      throw StorageError(output + " holds another text of the mechanism than " + study.description->file_name +
+                         way_out);
     if (contents.seed != study.seed)
       throw StorageError(output + " holds the study with seed " + std::to_string(contents.seed) + ", not " +
                          std::to_string(study.seed) + way_out);
@@ -112,6 +115,12 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
     return resume_study(held, session.catalogues, {}, options, progress);
   }
   return run_study(study, output, arguments.force, options, progress);
+}
+
+/// The files that a study was read from: no output may be one of them.
+std::vector<std::string> inputs_of(const Study& study) {
+  if (!study.description) return {study.file_name};
+  return {study.file_name, study.description->file_name};
 }
 
 std::string seed_file(const std::string& output, std::uint64_t seed) {
@@ -205,7 +214,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
     throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "one that leaves room for them");
   const auto file_of = [&](int i) { return seed_file(output, first + static_cast<std::uint64_t>(i)); };
   for (int i = 0; i < arguments.seeds; ++i) {
-    check_outputs({file_of(i)}, {arguments.study}, Existing::replaced);
+    check_outputs({file_of(i)}, inputs_of(study), Existing::replaced);
     if (!arguments.force && !arguments.resume && exists(file_of(i)))
       throw StorageError(file_of(i) + " exists already; resume it with --resume, or overwrite it with --force");
   }
@@ -257,7 +266,7 @@ void run(const RunArguments& arguments, Session& session) {
   Study study = load_study_toml(arguments.study, session.catalogues);
   if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;
-  check_outputs({output}, {arguments.study}, Existing::replaced);
+  check_outputs({output}, inputs_of(study), Existing::replaced);
   for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
   for (const Reason& reason : contradictions(study.problem->parts()))
     std::cerr << session.program << ": warning: " << reason.sentence << '\n';

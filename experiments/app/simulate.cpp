@@ -74,7 +74,7 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
 }
 
 std::string simulate_target(const Target& target, const SimulateArguments& arguments, Printout& out) {
-  check_outputs({arguments.csv}, inputs_of(arguments), if_forced(arguments.force));
+  check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
   const MechanismInfo& info = target.info();
   const Dynamics& dynamics = needed(target.mechanism->dynamics(), "simulate", "dynamics", info);
   if (const Refusal reason = no_joint_forces(*target.mechanism))

@@ -35,30 +35,43 @@ Target of_study(Study study) {
   return target;
 }
 
-Target named_target(const Catalogues& catalogues, const std::string& name) {
+/// A built-in mechanism, or what is in a file.
+MechanismOrStudy named(const Catalogues& catalogues, const std::string& name, const std::string& files) {
   std::vector<std::string> known;
   for (const auto& mechanism : catalogues.mechanisms) {
     known.push_back(mechanism->info().name);
-    if (known.back() == name) return bare_mechanism(mechanism);
+    if (known.back() == name) return mechanism;
   }
-  std::error_code unreadable;  // is told by the attempt to read
-  if (name.ends_with(".toml") || std::filesystem::exists(name, unreadable))
-    return of_study(load_study_toml(name, catalogues));
+  if (may_be_file(name)) return load_mechanism_or_study(name, catalogues);
   throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",
-                    "a study in TOML, or one of the mechanisms " + join(known), nearest_name(name, known));
+                    "one of the mechanisms " + join(known) + ", or " + files, nearest_name(name, known));
+}
+
+Target named_target(const Catalogues& catalogues, const std::string& name) {
+  MechanismOrStudy found = named(catalogues, name, "a file in TOML of a study or a mechanism");
+  if (const auto* const mechanism = std::get_if<std::shared_ptr<const Mechanism>>(&found)) {
+    Target target = bare_mechanism(*mechanism);
+    target.files = {name};
+    return target;
+  }
+  Target target = of_study(std::get<Study>(std::move(found)));
+  target.files = {name};
+  if (target.study->description) target.files.push_back(target.study->description->file_name);
+  return target;
 }
 
 Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
   Target target = of_study(study_of(contents, catalogues));
   static_cast<ChosenDesign&>(target) = chosen_design(contents, *target.study, arguments.choice);
+  target.files = {arguments.from};
   return target;
 }
 
 Target chosen_target(const Catalogues& catalogues, const DesignArguments& arguments) {
   if (arguments.from.empty() == arguments.target.empty())
     throw ConfigError({}, arguments.from.empty() ? "no design" : "'" + arguments.target + "' together with --from",
-                      "a mechanism, a study in TOML or --from F.h5");
+                      "a mechanism, a file in TOML or --from F.h5");
   if (!arguments.from.empty()) return of_file(catalogues, arguments);
   if (const char* const option = given_option(arguments.choice))
     throw ConfigError({"", 0, option}, "no --from", "--from F.h5 beside it");
@@ -76,7 +89,9 @@ void set_masses(Target& target, const std::string& model) {
   if (!other)
     throw ConfigError({"", 0, "--masses"}, "'" + model + "'", "one of " + join(dynamics->mass_models()),
                       nearest_name(model, dynamics->mass_models()));
+  const auto files = std::move(target.files);
   target = bare_mechanism(other);
+  target.files = files;
 }
 
 }  // namespace
@@ -153,7 +168,8 @@ MotionSample parse_motion(const Mechanism& mechanism, const MotionArguments& arg
 }
 
 void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
-  add_option(command, "MECHANISM|STUDY.toml", arguments.target, "A mechanism's name, or a study's path; else --from");
+  add_option(command, "MECHANISM|FILE.toml", arguments.target,
+             "A mechanism's name, or the path of its description or of a study; else --from");
   add_option(command, "--from F.h5", arguments.from,
              "The best design of a study file (of a trade-off the compromise), and its problem");
   add_choice_options(command, arguments.choice);
@@ -163,8 +179,6 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }
 
-std::vector<std::string> inputs_of(const DesignArguments& arguments) { return {arguments.target, arguments.from}; }
-
 void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning) {
   add_option(command, "--csv FILE", output.csv, meaning);
   command.add_flag("--force", output.force, "Overwrite the file if it exists");
@@ -172,6 +186,17 @@ void add_table_output(CLI::App& command, TableOutput& output, const std::string&
 
 void write_table(const TableOutput& output, const CsvTable& table) {
   write_file(output.csv, table.text(), if_forced(output.force));
+}
+
+std::shared_ptr<const Mechanism> find_mechanism(const Catalogues& catalogues, const std::string& name) {
+  const MechanismOrStudy found = named(catalogues, name, "the file of one");
+  if (const auto* const mechanism = std::get_if<std::shared_ptr<const Mechanism>>(&found)) return *mechanism;
+  throw ConfigError({name, 0, ""}, "a study", "the description of a mechanism");
+}
+
+bool may_be_file(const std::string& name) {
+  std::error_code unreadable;  // is told by the attempt to read
+  return name.ends_with(".toml") || std::filesystem::exists(name, unreadable);
 }
 
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {

@@ -1,4 +1,4 @@
-// What the commands that look at one design have in common: MECHANISM|STUDY.toml or --from F.h5, --set and --json.
+// What the commands that look at one design have in common: MECHANISM|FILE.toml or --from F.h5, --set and --json.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 namespace pkm {
 
 struct DesignArguments {
-  std::string target;            ///< a mechanism's name or the path of a study
+  std::string target;            ///< a mechanism's name, or the path of its description or of a study
   std::vector<std::string> set;  ///< lists of name=value
   std::string masses;            ///< a mass model; "": the study's, else the mechanism's default
   std::string from;              ///< instead of `target`: a study file
@@ -61,15 +61,13 @@ const Ability& needed(const Ability* ability, const std::string& command, const 
 struct Target : ChosenDesign {
   std::shared_ptr<const Mechanism> mechanism;
   std::optional<Study> study;
-  LimitSpec limits;  ///< the study's; none for a bare mechanism
+  LimitSpec limits;                ///< the study's; none for a bare mechanism
+  std::vector<std::string> files;  ///< that this was read from: no output may be one of them
 
   const MechanismInfo& info() const { return mechanism->info(); }
   /// The study's, else columns over all that the design reaches; under the limits.
   SurveyPlan plan() const;
 };
-
-/// The files that a command's target stands for, none for a mechanism's name: no output may be one of them.
-std::vector<std::string> inputs_of(const DesignArguments& arguments);
 
 /// A table that a command writes when it is asked for.
 struct TableOutput {
@@ -79,6 +77,11 @@ struct TableOutput {
 /// Declares --csv and --force.
 void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning);
 void write_table(const TableOutput& output, const CsvTable& table);
+
+/// A word of the command line is a file's name: it looks so, or there is one.
+bool may_be_file(const std::string& name);
+/// The built-in mechanism of that name, or the one that a file describes. Throws ConfigError.
+std::shared_ptr<const Mechanism> find_mechanism(const Catalogues& catalogues, const std::string& name);
 
 /// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments);

@@ -166,7 +166,9 @@ void tell_summary(const Mechanism& mechanism, const Trajectory& trajectory, Prin
 }
 
 std::string trajectory(const Target& target, const TrajectoryArguments& arguments, Printout& out) {
-  check_outputs({arguments.csv}, {arguments.target, arguments.from, arguments.motion}, if_forced(arguments.force));
+  std::vector<std::string> inputs = target.files;
+  inputs.push_back(arguments.motion);
+  check_outputs({arguments.csv}, inputs, if_forced(arguments.force));
   const Mechanism& mechanism = *target.mechanism;
   const MechanismInfo& info = target.info();
   const std::string mode = known_mode(info, arguments);

@@ -148,7 +148,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
   for (const std::string& file : {arguments.csv, arguments.html})
     if (!file.empty()) files.push_back(file);
   const Existing existing = if_forced(arguments.force);
-  check_outputs(files, inputs_of(arguments), existing);
+  check_outputs(files, target.files, existing);
   if (!arguments.html.empty()) page_parts();  // or say at once that there are none
   with_team(arguments.threads, [&] {
     SurveyPlan plan = target.plan();

@@ -27,7 +27,7 @@ struct Refusal {
 TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
   const std::string commands =
       "one of run, resume, check, evaluate, pose, forward, dynamics, coupling, trajectory, simulate, "
-      "workspace, show, report, export, list";
+      "workspace, show, report, export, list, new";
   const std::string mechanism = "4ppa-2par";
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry->info().name;
@@ -37,7 +37,7 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
        "found the unknown command 'evalute'; expected " + commands +
            " (see 'pkmopt --help'); did you mean 'evaluate'?"},
       {{"--hlp"}, "found the unknown option '--hlp'; expected one of --help, --version; did you mean '--help'?"},
-      {{"evaluate"}, "found no design; expected a mechanism, a study in TOML or --from F.h5"},
+      {{"evaluate"}, "found no design; expected a mechanism, a file in TOML or --from F.h5"},
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
@@ -45,18 +45,17 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},
-       "list: found the unknown word 'objectiv'; expected one of mechanisms, objectives, constraints, optimisers, or "
-       "the name of an entry; did you mean 'objectives'?"},
+       "list: found the unknown word 'objectiv'; expected one of mechanisms, objectives, constraints, optimisers, the "
+       "name of an entry, or a mechanism's file; did you mean 'objectives'?"},
       {{"list", "optimisers", "g"},
        "list optimisers: found the unknown name 'g'; expected one of ga, nsga2, sweep, nlopt, ipopt; did you mean "
        "'ga'?"},
       {{"evaluate", "4ppa-2pra"},
-       "found '4ppa-2pra', which is neither a mechanism nor a file; expected a study in TOML, or one of the "
-       "mechanisms " +
-           mechanisms + "; did you mean '4ppa-2par'?"},
+       "found '4ppa-2pra', which is neither a mechanism nor a file; expected one of the mechanisms " + mechanisms +
+           ", or a file in TOML of a study or a mechanism; did you mean '4ppa-2par'?"},
       {{"check", "none.toml"},
-       "none.toml: found no readable file (No such file or directory); expected a study file in TOML"},
-      {{"evaluate", "/tmp"}, "/tmp: found a folder; expected a study file in TOML"},
+       "none.toml: found no readable file (No such file or directory); expected a study or a mechanism in TOML"},
+      {{"evaluate", "/tmp"}, "/tmp: found a folder; expected a study or a mechanism in TOML"},
       {{"evaluate", mechanism, "--set", "l_uu=0.5"},
        "--set: found the unknown name 'l_uu'; expected one of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, "
        "R_s, lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p; did you mean "
@@ -149,7 +148,7 @@ TEST(CliHelp, EveryCommandHasHelpWithAnExample) {
   const auto all = pkmopt({"--help"});
   EXPECT_EQ(all.exit_code, 0);
   for (const std::string command : {"run", "resume", "check", "evaluate", "pose", "forward", "dynamics", "coupling",
-                                    "trajectory", "simulate", "show", "list"}) {
+                                    "trajectory", "simulate", "show", "list", "new"}) {
     EXPECT_THAT(all.out, HasSubstr("\n  " + command + " "));
     const auto help = pkmopt({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);

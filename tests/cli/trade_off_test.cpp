@@ -222,7 +222,7 @@ TEST_F(TradeOffProgram, RefusesPointsThatAreNotThere) {
   EXPECT_THAT(refused({"--from", "f.h5", "--stage", "1"}), HasSubstr("--stage: found no --front"));
   EXPECT_THAT(refused({"4ppa-2par", "--front", "1"}), HasSubstr("--front: found no --from"));
   EXPECT_THAT(refused({"4ppa-2par", "--from", "f.h5"}), HasSubstr("'4ppa-2par' together with --from"));
-  EXPECT_THAT(refused({}), HasSubstr("expected a mechanism, a study in TOML or --from F.h5"));
+  EXPECT_THAT(refused({}), HasSubstr("expected a mechanism, a file in TOML or --from F.h5"));
 }
 
 }  // namespace

@@ -82,8 +82,9 @@ std::string refuse_own(const std::string& path, const std::string& header) {
     if (!here.empty() && !there.empty() && here != there) return "the rooms of " + to + " do not include each other";
     return climbs ? "nothing includes " + to : "";
   }
-  const bool makes_it = from == "engine/setup" && header.starts_with("engine/mechanisms/described/");
-  if (to == "engine/mechanisms" && !makes_it) return "a mechanism is known by engine/mechanism alone";
+  // The reader of descriptions makes the mechanisms that they describe, and knows no other.
+  const bool made = path.starts_with("engine/setup/mechanism_") && room_of(header) == "described";
+  if (to == "engine/mechanisms") return made ? "" : "a mechanism is known by engine/mechanism alone";
   if (from == "objectives" || from == "constraints")
     return place(to) >= 0 && place(to) <= place("engine/problem")
                ? ""

@@ -26,6 +26,9 @@ TEST(IncludeRules, AllowWhatTheHouseAllows) {
                            "#include <CLI/CLI.hpp>\n#include \"constraints/all.hpp\"\n"
                            "#include \"engine/study/run.hpp\"\n"),
               IsEmpty());
+  EXPECT_THAT(
+      broken_rules("engine/setup/mechanism_file.cpp", "#include \"engine/mechanisms/described/mechanism.hpp\"\n"),
+      IsEmpty());
   EXPECT_THAT(broken_rules("experiments/app/print.hpp", "#include <nlohmann/json.hpp>\n"), IsEmpty());
   EXPECT_THAT(broken_rules("tests/unit/a_test.cpp", "#include <ceres/jet.h>\n#include \"tests/unit/b.hpp\"\n"),
               IsEmpty());
@@ -55,6 +58,12 @@ TEST(IncludeRules, FindWhatTheOrderWouldAllow) {
                           "what is stored is data of engine/problem"));
   EXPECT_THAT(broken_rules("engine/setup/a.hpp", "#include \"engine/mechanisms/all.hpp\"\n"),
               ElementsAre("engine/setup/a.hpp includes engine/mechanisms/all.hpp: "
+                          "a mechanism is known by engine/mechanism alone"));
+  EXPECT_THAT(broken_rules("engine/setup/mechanism_file.cpp", "#include \"engine/mechanisms/hybrid/survey.hpp\"\n"),
+              ElementsAre("engine/setup/mechanism_file.cpp includes engine/mechanisms/hybrid/survey.hpp: "
+                          "a mechanism is known by engine/mechanism alone"));
+  EXPECT_THAT(broken_rules("engine/setup/study.cpp", "#include \"engine/mechanisms/described/mechanism.hpp\"\n"),
+              ElementsAre("engine/setup/study.cpp includes engine/mechanisms/described/mechanism.hpp: "
                           "a mechanism is known by engine/mechanism alone"));
   EXPECT_THAT(broken_rules("objectives/a.cpp", "#include \"engine/mechanisms/hybrid/survey.hpp\"\n"),
               ElementsAre("objectives/a.cpp includes engine/mechanisms/hybrid/survey.hpp: "

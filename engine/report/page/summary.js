@@ -299,6 +299,7 @@ function howToRepeat(study) {
     element("pre", "", commands.join("\n")),
     details("The study's text, " + toml, origin.toml),
   );
+  if (origin.mechanism_toml) panel.append(details("The mechanism's text, " + origin.mechanism_file, origin.mechanism_toml));
   if (origin.resolved) panel.append(details("The problem with every default spelled out", origin.resolved));
   for (const [i, stage] of study.summary.stages.entries())
     if (stage.options.length)

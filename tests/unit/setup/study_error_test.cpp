@@ -16,28 +16,30 @@ using testing::message_of;
 
 TEST(StudyErrors, Document) {
   expect_messages(
-      "", {
-              {"", "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
-              {"# nothing\n",
-               "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
-              {"a = 1\na = 2\n",
-               "s.toml:2: found text that is not TOML (Error while parsing key-value pair: cannot redefine existing "
-               "integer 'a'); expected a study in TOML"},
-              {"[study]\nname = \"x\nseed = 1\n",
-               "s.toml:2: found text that is not TOML (Error while parsing string: unescaped control characters other "
-               "than TAB (U+0009) are explicitly prohibited); expected a study in TOML"},
-              {"[study]\nname = \"\xff\"\n",
-               "s.toml:2: found text that is not TOML (Encountered invalid utf-8 sequence); expected a study in TOML"},
-              {"[study\n",
-               "s.toml:1: found text that is not TOML (Error while parsing table header: expected ']', saw '\\n'); "
-               "expected a study in TOML"},
-              {"[mechansim]\ntype = \"slider\"\n",
-               "s.toml:1: mechansim: found an unknown section; expected one of study, mechanism, variables, baseline, "
-               "workspace, region, motion, objective, constraint, report, reference, stage, checkpoint, final; did you "
-               "mean 'mechanism'?"},
-              {"[study]\nname = \"x\"\n",
-               "s.toml:1: mechanism: found nothing; expected a table [mechanism] with type = one of slider"},
-          });
+      "",
+      {
+          {"", "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
+          {"# nothing\n",
+           "s.toml: found an empty file; expected a study in TOML, with [mechanism] and [[stage]] at least"},
+          {"a = 1\na = 2\n",
+           "s.toml:2: found text that is not TOML (Error while parsing key-value pair: cannot redefine existing "
+           "integer 'a'); expected a study in TOML"},
+          {"[study]\nname = \"x\nseed = 1\n",
+           "s.toml:2: found text that is not TOML (Error while parsing string: unescaped control characters other "
+           "than TAB (U+0009) are explicitly prohibited); expected a study in TOML"},
+          {"[study]\nname = \"\xff\"\n",
+           "s.toml:2: found text that is not TOML (Encountered invalid utf-8 sequence); expected a study in TOML"},
+          {"[study\n",
+           "s.toml:1: found text that is not TOML (Error while parsing table header: expected ']', saw '\\n'); "
+           "expected a study in TOML"},
+          {"[mechansim]\ntype = \"slider\"\n",
+           "s.toml:1: mechansim: found an unknown section; expected one of study, mechanism, variables, baseline, "
+           "workspace, region, motion, objective, constraint, report, reference, stage, checkpoint, final; did you "
+           "mean 'mechanism'?"},
+          {"[study]\nname = \"x\"\n",
+           "s.toml:1: mechanism: found nothing; expected a table [mechanism] with type = one of slider, or file = the "
+           "name of a mechanism's file"},
+      });
 }
 
 /// "one.one.one"
@@ -112,15 +114,30 @@ TEST(StudyErrors, StudyCheckpointFinal) {
 
 TEST(StudyErrors, MechanismAndParameters) {
   expect_messages(
-      "", {
-              {"[mechanism]\nparameters = {}", "s.toml:1: mechanism.type: found nothing; expected one of slider"},
-              {"[mechanism]\ntype = \"slidr\"",
-               "s.toml:2: mechanism.type: found \"slidr\"; expected one of slider; did you mean 'slider'?"},
-              {"[[mechanism]]\ntype = \"slider\"", "s.toml:1: mechanism: found an array; expected a table [mechanism]"},
-              {"[mechanism]\ntype = 4", "s.toml:2: mechanism.type: found 4; expected one of slider"},
-              {"[mechanism]\ntype = \"slider\"\nparams = {}",
-               "s.toml:3: mechanism.params: found an unknown key; expected one of type, masses, parameters"},
-          });
+      "",
+      {
+          {"[mechanism]\nparameters = {}",
+           "s.toml:1: mechanism: found neither type nor file; expected type = one of slider, or file = the name of a "
+           "mechanism's file"},
+          {"[mechanism]\ntype = \"slider\"\nfile = \"m.toml\"",
+           "s.toml:3: mechanism.file: the mechanism is also given by mechanism.type (line 2); it is either built in "
+           "or described by a file"},
+          // The text is all that this reader reads: it opens no file.
+          {"[mechanism]\nfile = \"m.toml\"",
+           "s.toml:2: mechanism.file: what the mechanism's file holds is not known here"},
+          {"[mechanism]\nname = \"a\"",
+           "s.toml: found the description of a mechanism; expected a study, which names such a file in [mechanism] "
+           "file = \"..\""},
+          {"[platform]\ncoordinates = {}",
+           "s.toml: found the description of a mechanism; expected a study, which names such a file in [mechanism] "
+           "file = \"..\""},
+          {"[mechanism]\ntype = \"slidr\"",
+           "s.toml:2: mechanism.type: found \"slidr\"; expected one of slider; did you mean 'slider'?"},
+          {"[[mechanism]]\ntype = \"slider\"", "s.toml:1: mechanism: found an array; expected a table [mechanism]"},
+          {"[mechanism]\ntype = 4", "s.toml:2: mechanism.type: found 4; expected one of slider"},
+          {"[mechanism]\ntype = \"slider\"\nparams = {}",
+           "s.toml:3: mechanism.params: found an unknown key; expected one of type, file, masses, parameters"},
+      });
   expect_messages(
       kMachine,
       {

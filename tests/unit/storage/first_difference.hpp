@@ -15,9 +15,9 @@ namespace pkm::test {
 
 /// Times, machine, program and the TOML file's place: what another run need not repeat.
 inline bool must_repeat(std::string_view path) {
-  static constexpr std::string_view kOnce[] = {"/@toml_file",        "/@reproducible", "/@program_version",
-                                               "/@program_revision", "/@machine",      "/@created",
-                                               "/@updated",          "/@seconds",      "/notes"};
+  static constexpr std::string_view kOnce[] = {
+      "/@toml_file", "/@reproducible", "/@program_version", "/@program_revision", "/@machine", "/@created", "/@updated",
+      "/@seconds",   "/notes",         "/mechanism@file"};
   return !path.ends_with("/evaluations/seconds") && !path.ends_with("/generations/seconds") &&
          std::ranges::find(kOnce, path) == std::end(kOnce);
 }

@@ -21,7 +21,8 @@ TEST(FirstDifference, NoneBetweenEqualStudies) {
 
 TEST(FirstDifference, IgnoresTimesMachineAndProgram) {
   EXPECT_EQ(difference_after([](StudyContents& s) {
-              s.machine = s.created = s.updated = s.program_revision = s.program_version = s.toml_file = "x";
+              s.machine = s.created = s.updated = s.program_revision = s.program_version = s.toml_file =
+                  s.description->file_name = "x";
               s.seconds = 1e9;
               s.stages[0].table.seconds[2] = 7;
               s.stages[0].generations.seconds[1] = 7;

@@ -37,6 +37,9 @@ TEST(StudyFile, KeepsEverything) {
   // What first_difference leaves out, and a sample of the rest without its help.
   EXPECT_EQ(read.toml, written.toml);
   EXPECT_EQ(read.toml_file, "wide.toml");
+  ASSERT_TRUE(read.description);
+  EXPECT_EQ(read.description->text, written.description->text);
+  EXPECT_EQ(read.description->file_name, "delta.toml");
   EXPECT_EQ(read.seed, 0xfedcba9876543210u);
   EXPECT_EQ(read.program_version, "0.1.0");
   EXPECT_EQ(read.program_revision, "abc123");
@@ -98,6 +101,7 @@ TEST(StudyFile, KeepsAnEmptyStudy) {
   write_study(folder / "s.h5", StudyContents{});
   const StudyContents read = read_study(folder / "s.h5");
   EXPECT_EQ(first_difference(StudyContents{}, read), "");
+  EXPECT_FALSE(read.description);
   EXPECT_EQ(read.stages.size(), 0u);
   EXPECT_EQ(read.best.row, -1);
   EXPECT_FALSE(read.final);

@@ -153,6 +153,10 @@ TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
   EXPECT_EQ(refusal([](StudyContents& c) { c.problem.mechanism = "quadrupteron"; }),
             begin + "4ppa-2par as mechanism, and quadrupteron");
   EXPECT_EQ(refusal([](StudyContents& c) {
+              c.description = {"[mechanism]", "m.toml"};
+            }),
+            begin + "no file of a mechanism, and one");
+  EXPECT_EQ(refusal([](StudyContents& c) {
               c.problem.variables.push_back({"l_d", "m", 0.5, 0.7, 0});
             }),
             begin + "the variables a, b, l_u, and a, b, l_u, l_d");

@@ -1,0 +1,197 @@
+// A mechanism as a file: `new` writes one to begin with, and it stands wherever a mechanism's name does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "engine/mechanisms/all.hpp"
+#include "engine/storage/study_file.hpp"
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string text_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+/// Lines that are neither empty nor comments.
+std::int64_t lines_of(const std::string& text) {
+  std::istringstream lines(text);
+  std::int64_t count = 0;
+  for (std::string line; std::getline(lines, line);) count += !line.empty() && line[0] != '#';
+  return count;
+}
+
+/// A folder with delta.toml, and a short study of it.
+class MechanismFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(run({"new", "mechanism", "my-delta", "-o", "delta.toml"}).err, "");
+    const auto study = run({"new", "study", "delta.toml"});
+    ASSERT_EQ(study.err, "");
+    std::string text = study.out + "population = 6\n";
+    for (const auto& [from, to] : {std::pair<std::string, std::string>{"generations = 50", "generations = 2"},
+                                   {"x = 24, y = 24, z = 24", "x = 6, y = 6, z = 6"}})
+      text.replace(text.find(from), from.size(), to);
+    folder_.write("study.toml", text);
+  }
+  ProgramResult run(const std::vector<std::string>& arguments) const { return pkmopt(arguments, folder_.path()); }
+  std::string path(const std::string& name) const { return folder_.path() + "/" + name; }
+
+  StudyFolder folder_;
+};
+
+TEST_F(MechanismFile, AFileToBeginWithIsShortAndChecks) {
+  EXPECT_LE(std::ranges::count(text_of(path("delta.toml")), '\n'), 45);
+  EXPECT_THAT(text_of(path("delta.toml")), HasSubstr("\nname   = \"my-delta\"\n"));
+  EXPECT_THAT(run({"new", "mechanism"}).out, HasSubstr("\nname   = \"rotary-delta\"\n"));
+  EXPECT_EQ(run({"check", "delta.toml"}).exit_code, 0);
+  std::vector<std::string> mechanisms = {"delta.toml", "./delta.toml"};
+  for (const auto& mechanism : all_mechanisms()) mechanisms.push_back(mechanism->info().name);
+  for (const std::string& mechanism : mechanisms) {
+    SCOPED_TRACE(mechanism);
+    const auto written = run({"new", "study", mechanism, "--output", "new.toml", "--force"});
+    EXPECT_EQ(written.err, "");
+    EXPECT_EQ(written.out, "wrote new.toml\n");
+    EXPECT_LE(lines_of(text_of(path("new.toml"))), 15);
+    const auto checked = run({"check", "new.toml", "--json"});
+    EXPECT_EQ(checked.exit_code, 0) << checked.err;
+    EXPECT_EQ(checked.json()["warnings"].size(), 0u);
+    EXPECT_GT(checked.json()["probe"]["feasible"], 0);
+  }
+}
+
+TEST_F(MechanismFile, AStudyNamesItRelativeToItsOwnFolder) {
+  std::filesystem::create_directory(path("studies"));
+  EXPECT_EQ(run({"new", "study", "delta.toml", "-o", "studies/s.toml"}).err, "");
+  EXPECT_THAT(text_of(path("studies/s.toml")), HasSubstr("file = \"../delta.toml\""));
+  const auto checked = run({"check", "studies/s.toml", "--json"});
+  EXPECT_EQ(checked.json()["mechanism"], "my-delta");
+  EXPECT_EQ(checked.json()["mechanism_file"], "studies/../delta.toml");
+}
+
+TEST_F(MechanismFile, StandsForTheMechanismsName) {
+  std::filesystem::copy(path("delta.toml"), path("delta"));
+  for (const std::string file : {"delta.toml", "./delta.toml", "delta"}) {
+    SCOPED_TRACE(file);
+    const auto pose = run({"pose", file, "--at", "x=0,y=0,z=-450mm", "--json"});
+    EXPECT_EQ(pose.exit_code, 0) << pose.err;
+    EXPECT_EQ(pose.json()["mechanism"], "my-delta");
+    EXPECT_EQ(pose.json()["feasible"], true);
+    EXPECT_EQ(run({"evaluate", file, "--set", "l_b=0.6", "--json"}).json()["parameters"]["l_b"], 0.6);
+    const auto entry = run({"list", file, "--json"}).json();
+    EXPECT_EQ(entry["name"], "my-delta");
+    EXPECT_EQ(entry["parameters"][3]["name"], "l_b");
+    EXPECT_EQ(run({"list", "mechanisms", file, "--json"}).json(), entry);
+    EXPECT_EQ(run({"check", file, "--json"}).json(), entry);
+    EXPECT_THAT(run({"list", file}).out, HasSubstr("my-delta"));
+    EXPECT_THAT(run({"check", file}).out, HasSubstr("my-delta"));
+  }
+  EXPECT_GT(run({"workspace", "delta.toml", "--cells", "x=8,y=8,z=8", "--json"}).json()["feasible_cells"], 0);
+}
+
+TEST_F(MechanismFile, AStudyGoesOnAndIsShownWithoutIt) {
+  ASSERT_EQ(run({"run", "study.toml", "--output", "s.h5", "--quiet"}).err, "");
+  const std::string text = text_of(path("delta.toml"));
+  const StudyContents stored = read_study(path("s.h5"));
+  ASSERT_TRUE(stored.description);
+  EXPECT_EQ(stored.description->text, text);
+  EXPECT_EQ(stored.description->file_name, "delta.toml");
+
+  const auto evaluate = [this] { return run({"evaluate", "--from", "s.h5"}).out; };
+  const std::string evaluated = evaluate();
+  folder_.write("delta.toml", "not TOML");  // what is stored counts, not what is there
+  EXPECT_EQ(evaluate(), evaluated);
+  std::filesystem::remove(path("delta.toml"));
+  EXPECT_EQ(evaluate(), evaluated);
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"show", "s.h5"},
+                                                    {"export", "s.h5", "--csv", "tables"},
+                                                    {"workspace", "--from", "s.h5"},
+                                                    {"resume", "s.h5", "--generations", "4", "--quiet"}}) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << arguments[0];
+    EXPECT_EQ(result.err, "") << arguments[0];
+  }
+  EXPECT_EQ(read_study(path("s.h5")).stages[0].generations.size(), 5u);
+  EXPECT_EQ(run({"run", "study.toml", "--output", "s.h5", "--resume"}).err,
+            "pkmopt: delta.toml: found no readable file (No such file or directory); expected the mechanism in TOML "
+            "that study.toml:3 names\n");
+
+  folder_.write("delta.toml", text);
+  EXPECT_EQ(run({"run", "study.toml", "--output", "s.h5", "--resume", "--quiet"}).err, "");
+  folder_.write("delta.toml", text + "# changed\n");
+  const auto changed = run({"run", "study.toml", "--output", "s.h5", "--resume", "--quiet"});
+  EXPECT_EQ(changed.exit_code, 1);
+  EXPECT_EQ(changed.err,
+            "pkmopt: s.h5 holds another text of the mechanism than delta.toml; go on with it by 'pkmopt resume s.h5', "
+            "or overwrite it with --force\n");
+}
+
+TEST_F(MechanismFile, NoOutputOverwritesIt) {
+  const std::string text = text_of(path("delta.toml"));
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"run", "study.toml", "--output", "delta.toml", "--force"},
+        {"run", "study.toml", "--output", "./delta.toml", "--seeds", "2", "--force"},
+        {"workspace", "study.toml", "--csv", "delta.toml", "--force"},
+        {"workspace", "delta.toml", "--csv", "./delta.toml", "--force"},
+        {"new", "study", "delta.toml", "-o", "delta.toml", "--force"}}) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments[0];
+    EXPECT_THAT(result.err, HasSubstr("delta.toml: is read by this command, so it is not overwritten")) << arguments[0];
+  }
+  const auto unforced = run({"new", "mechanism", "-o", "delta.toml"});
+  EXPECT_EQ(unforced.exit_code, 1);
+  EXPECT_EQ(unforced.err, "pkmopt: delta.toml exists already; overwrite it with --force\n");
+  EXPECT_EQ(text_of(path("delta.toml")), text);
+}
+
+TEST_F(MechanismFile, WhatIsNoneIsRefused) {
+  folder_.write("both.toml", "[mechanism]\nfile = \"delta.toml\"\ntype = \"quadrupteron\"\n");
+  folder_.write("nul.toml", "[mechanism]\nfile = \"a\\u0000b\"\n");
+  folder_.write("folder.toml", "[mechanism]\nfile = \".\"\n");
+  folder_.write("large.toml", "[mechanism]\nfile = \"large\"\n");
+  folder_.write("large", "");
+  std::filesystem::resize_file(path("large"), (std::uintmax_t{16} << 20) + 1);
+  const struct {
+    std::vector<std::string> arguments;
+    std::string sentence;
+  } cases[] = {
+      {{"run", "delta.toml"},
+       "delta.toml: found the description of a mechanism; expected a study, which names such a file in [mechanism] "
+       "file = \"..\""},
+      {{"check", "both.toml"},
+       "both.toml:2: mechanism.file: the mechanism is also given by mechanism.type (line 3); it is either built in or "
+       "described by a file"},
+      {{"check", "nul.toml"},
+       "nul.toml:2: mechanism.file: found \"a\\u0000b\"; expected the name of a mechanism's file"},
+      {{"evaluate", "folder.toml"}, ".: found a folder; expected the mechanism in TOML that folder.toml:2 names"},
+      {{"check", "large.toml"},
+       "large: found more than 16 MiB; expected the mechanism in TOML that large.toml:2 names"},
+      {{"list", "study.toml"}, "study.toml: found a study; expected the description of a mechanism"},
+      {{"new", "study", "study.toml"}, "study.toml: found a study; expected the description of a mechanism"},
+      {{"new", "study"}, "new study: found no mechanism; expected a mechanism's name or its file"},
+      {{"new", "stduy"}, "new: found 'stduy'; expected one of mechanism, study; did you mean 'study'?"},
+      {{"new", "mechanism", "../x"},
+       "new mechanism: found '../x'; expected a name of at most 60 letters, digits, - and _"},
+  };
+  for (const auto& [arguments, sentence] : cases) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << sentence;
+    EXPECT_EQ(result.err, "pkmopt: " + sentence + "\n");
+  }
+  const auto none = run({"new", "study", "dleta"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, StartsWith("pkmopt: found 'dleta', which is neither a mechanism nor a file; expected one of "));
+}
+
+}  // namespace
+}  // namespace pkm::testing
