@@ -8,7 +8,7 @@
 #include <Eigen/SVD>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/core/printable.hpp"
+#include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/setup/mechanism_file.hpp"
