@@ -25,4 +25,8 @@ std::string aligned(std::vector<std::vector<std::string>> rows) {
   return text;
 }
 
+std::string titled(const std::string& title, const std::vector<std::vector<std::string>>& rows) {
+  return '\n' + title + (rows.empty() ? ": none\n" : "\n") + aligned(rows);
+}
+
 }  // namespace pkm

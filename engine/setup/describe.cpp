@@ -20,10 +20,6 @@ std::string range(double lower, double upper, const std::string& unit) {
   return shortest(lower) + " .. " + with_unit(upper, unit);
 }
 
-void write_table(std::ostream& out, const std::string& title, const std::vector<Row>& rows) {
-  out << '\n' << title << (rows.empty() ? ": none" : "") << '\n' << aligned(rows);
-}
-
 void write_parameters(std::ostream& out, const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const auto& known = parts.mechanism->info().parameters;
@@ -49,8 +45,8 @@ void write_parameters(std::ostream& out, const Study& study) {
       note += (note.empty() ? "" : " ") + ("baseline " + with_unit((*study.baseline)[i], known[i].unit));
     fixed.push_back({known[i].name, with_unit(value, known[i].unit), note, known[i].meaning});
   }
-  write_table(out, "variables", varying);
-  write_table(out, "fixed parameters", fixed);
+  out << titled("variables", varying);
+  out << titled("fixed parameters", fixed);
 }
 
 /// How a coordinate is held.
@@ -167,13 +163,13 @@ std::string describe(const Study& study) {
                   {"output", study.output_file(), mark(study.output_file() == bare.output_file())},
                   {"mechanism", info.name + ": " + info.title, described}});
   write_parameters(out, study);
-  write_table(out, "workspace", survey_rows(info, parts.plan));
-  for (const Region& region : parts.regions) write_table(out, "region " + region.name, survey_rows(info, region.plan));
+  out << titled("workspace", survey_rows(info, parts.plan));
+  for (const Region& region : parts.regions) out << titled("region " + region.name, survey_rows(info, region.plan));
   std::vector<Row> motions;
   for (const NamedMotion& named : study.motions)
     motions.push_back({named.name, "takes " + with_unit(named.motion->duration(), "s")});
-  if (!motions.empty()) write_table(out, "motions", motions);
-  write_table(out, "limits of a pose", limit_rows(study));
+  if (!motions.empty()) out << titled("motions", motions);
+  out << titled("limits of a pose", limit_rows(study));
   write_entries(out, "objectives", study.objectives);
   write_entries(out, "constraints", study.constraints);
   write_entries(out, "reports", study.reports);
@@ -185,12 +181,11 @@ std::string describe(const Study& study) {
   }
   std::string round = "best design as it is";
   if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
-  write_table(out, "run",
-              {{"checkpoint",
-                study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
-                                       : "adapts: at most 2 % of the run time",
-                mark(!study.checkpoint_every)},
-               {"final", round, mark(!study.round)}});
+  out << titled("run", {{"checkpoint",
+                         study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
+                                                : "adapts: at most 2 % of the run time",
+                         mark(!study.checkpoint_every)},
+                        {"final", round, mark(!study.round)}});
   for (const auto& warning : study.warnings) out << "\nwarning: " << warning << '\n';
   return out.str();
 }

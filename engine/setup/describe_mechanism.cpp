@@ -16,13 +16,7 @@
 namespace pkm {
 namespace {
 
-using Row = std::vector<std::string>;
-
-constexpr std::int64_t kCells = 16;  ///< per swept coordinate, of the grid in which a nominal pose is looked for
-
-void write_table(std::ostream& out, const std::string& title, const std::vector<Row>& rows) {
-  out << '\n' << title << (rows.empty() ? ": none" : "") << '\n' << aligned(rows);
-}
+constexpr std::int64_t kNominalCells = 16;  ///< per swept coordinate, of the grid in which a nominal pose is looked for
 
 std::string names_text(const std::vector<std::string>& names, std::size_t most = 8) {
   const std::vector<std::string> first(names.begin(),
@@ -47,9 +41,9 @@ std::vector<Pose<double>> grid_of_poses(const Mechanism& mechanism, std::span<co
     const auto at = static_cast<std::size_t>(coordinate);
     std::vector<Pose<double>> next;
     for (Pose<double> each : poses)
-      for (std::int64_t k = 0; k < kCells; ++k) {
+      for (std::int64_t k = 0; k < kNominalCells; ++k) {
         const auto [lower, upper] = (*ranges)[at];
-        each[at] = lower + (static_cast<double>(k) + 0.5) / static_cast<double>(kCells) * (upper - lower);
+        each[at] = lower + (static_cast<double>(k) + 0.5) / static_cast<double>(kNominalCells) * (upper - lower);
         next.push_back(each);
       }
     poses = std::move(next);
@@ -115,7 +109,7 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
 }
 
 void write_abilities(std::ostream& out, const Mechanism& mechanism) {
-  std::vector<Row> can, cannot;
+  std::vector<std::vector<std::string>> can, cannot;
   const auto tell = [&](bool has, const char* what, const char* how, const char* why) {
     (has ? can : cannot).push_back({what, has ? how : why});
   };
@@ -130,8 +124,8 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   tell(mechanism.design_tests(), "tests of the design", "", "there is no [[design]]");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
   tell(mechanism.dynamics(), "forces and coupling", "", "masses of a described mechanism are checked, not used");
-  write_table(out, "available", can);
-  write_table(out, "not available, and why", cannot);
+  out << titled("available", can);
+  out << titled("not available, and why", cannot);
 }
 
 }  // namespace
@@ -142,7 +136,7 @@ std::string describe_mechanism(const Mechanism& mechanism) {
   out << "mechanism  " << info.name << (info.title.empty() ? "" : ": " + info.title) << '\n';
   if (!info.source.empty()) out << "source     " << info.source << '\n';
 
-  std::vector<Row> parameters, coordinates, joints, limits;
+  std::vector<std::vector<std::string>> parameters, coordinates, joints, limits;
   std::vector<double> nominal;
   for (const Parameter& p : info.parameters) {
     parameters.push_back(
@@ -164,15 +158,15 @@ std::string describe_mechanism(const Mechanism& mechanism) {
   for (const LimitInfo& limit : info.limits)
     limits.push_back(
         {limit.name, "inactive " + with_unit(limit.inactive, limit.unit), limit.derivation, limit.meaning});
-  write_table(out, "parameters", parameters);
-  write_table(out, "coordinates", coordinates);
-  write_table(out, "joints", joints);
-  write_table(out, "limits", limits);
+  out << titled("parameters", parameters);
+  out << titled("coordinates", coordinates);
+  out << titled("joints", joints);
+  out << titled("limits", limits);
   out << "\nworking modes: " << names_text(info.modes) << '\n';
   if (const DesignTests* const tests = mechanism.design_tests()) {
-    std::vector<Row> rows;
+    std::vector<std::vector<std::string>> rows;
     for (const DesignMarginInfo& test : tests->list()) rows.push_back({test.name, test.unit, test.meaning});
-    write_table(out, "tests of the design", rows);
+    out << titled("tests of the design", rows);
   }
   write_nominal_pose(out, mechanism, nominal);
   write_abilities(out, mechanism);
