@@ -77,9 +77,9 @@ Node Graph::apply(const Operation& operation, std::span<const Node> arguments) {
     values[i] = argument.number;
   }
   if (numbers) return number(std::get<Rule<double>>(operation.rules)(values, arguments.size()));
-  if (operation.name == "^" && (*this)[arguments[1]].is_number() && values[1] == std::nearbyint(values[1]) &&
+  if (operation.name == "^" && (*this)[entry.arguments[1]].is_number() && values[1] == std::nearbyint(values[1]) &&
       std::fabs(values[1]) <= 1024)
-    return power(arguments[0], static_cast<int>(values[1]));
+    return power(entry.arguments[0], static_cast<int>(values[1]));
   return add(entry);
 }
 
@@ -93,6 +93,28 @@ std::vector<Node> Graph::reachable(std::span<const Node> roots) const {
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (used[i]) all.push_back(static_cast<Node>(i));
   return all;
+}
+
+Graph with_numbers(const Graph& graph, std::span<const std::optional<double>> numbers, std::vector<Node>& roots) {
+  Graph made;
+  std::vector<Node> now(graph.size());
+  for (const Node node : graph.reachable(roots)) {
+    const Entry& entry = graph[node];
+    Node& to = now[static_cast<std::size_t>(node)];
+    if (entry.operation) {
+      std::array<Node, kMostArguments> arguments{};
+      for (std::size_t i = 0; i < entry.count; ++i) arguments[i] = now[static_cast<std::size_t>(entry.arguments[i])];
+      to = made.apply(*entry.operation, std::span(arguments).first(entry.count));
+    } else if (entry.is_number()) {
+      to = made.number(entry.number);
+    } else {
+      const auto input = static_cast<std::size_t>(entry.input);
+      const auto number = input < numbers.size() ? numbers[input] : std::nullopt;
+      to = number ? made.number(*number) : made.input(input, entry.groups);
+    }
+  }
+  for (Node& root : roots) root = now[static_cast<std::size_t>(root)];
+  return made;
 }
 
 Term call(const Operation& function, const Term& x) {

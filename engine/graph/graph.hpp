@@ -8,7 +8,7 @@
 
 #include <array>
 #include <cstdint>
-#include <initializer_list>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -63,6 +63,10 @@ class Graph {
   std::unordered_map<Entry, Node, Hash, Same> known_;
   std::size_t inputs_ = 0;
 };
+
+/// What `roots` are made of as a graph of its own, in which some inputs are numbers; the roots become its nodes.
+/// @param numbers  by position of the input; behind its end, none is a number
+Graph with_numbers(const Graph& graph, std::span<const std::optional<double>> numbers, std::vector<Node>& roots);
 
 /// Nodes as numbers, for physics that is written as C++: Term a = g(..), b = ..; a * b + sqrt(a). Unlike formulas of a
 /// user these drop what is certain: x + 0, x * 1 and x * 0.

@@ -1,13 +1,15 @@
 #include "engine/mechanisms/described/cells.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <numeric>
 
 #include "engine/math/lanes.hpp"
 
 namespace pkm::described {
 namespace {
 
-using graph::kRow, graph::RowStage;
+using graph::kRow, graph::Program, graph::RowStage;
 
 constexpr std::size_t kOuter = 1, kMiddle = 2, kInner = 3;  // stages; 0: the design and what is held
 
@@ -26,32 +28,145 @@ std::size_t fill_centres(const VoxelGrid& grid, std::size_t axis, std::size_t fi
   return whole;
 }
 
+/// Bits [from, to) of a word.
+std::uint64_t range_of_bits(double from, double to, std::size_t word) {
+  const double first = static_cast<double>(word * 64);
+  const auto below = [&](double end) {  // bits before it
+    const double bits = std::clamp(end - first, 0.0, 64.0);
+    return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << static_cast<unsigned>(bits)) - 1;
+  };
+  return below(to) & ~below(from);
+}
+
+Shape shape_of(const graph::Graph& graph, Node leading) {
+  const graph::Entry& entry = graph[leading];
+  if (!entry.is_number()) return Shape::any;
+  return entry.number < 0 ? Shape::concave : entry.number > 0 ? Shape::any : Shape::line;
+}
+
+/// What a step takes, in additions.
+double cost_of(const std::vector<Program::Step>& steps) {
+  double sum = 0;
+  for (const Program::Step& step : steps) {
+    const graph::Code code = step.operation->code;
+    sum += code == graph::Code::other ? 40 : code == graph::Code::sqrt || code == graph::Code::divide ? 4 : 1;
+  }
+  return sum;
+}
+
 }  // namespace
 
-CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept) : swept_(swept.size()) {
+CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, std::vector<std::size_t> order,
+                   std::size_t mode)
+    : order_(std::move(order)) {
   const Model& model = evaluation.model;
+  std::vector<std::optional<double>> signs(model.inputs.sign(0));
+  for (const double sign : model.signs[mode]) signs.emplace_back(sign);
+  std::vector<Node> conditions = conditions_of(model);
+  graph::Graph graph = with_numbers(model.graph, signs, conditions);
+
   std::array<Groups, 4> groups{~Groups{0}, 0, 0, 0};
-  for (std::size_t i = 0; i < swept_; ++i) {
-    const auto coordinate = static_cast<std::size_t>(swept[i]);
-    const std::size_t stage = kInner + 1 + i - swept_;
-    groups[stage] = Inputs::coordinate_group(coordinate);
-    groups[0] &= ~groups[stage];
-    inputs_[stage - 1] = model.inputs.coordinate(coordinate);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    Groups& group = groups[kInner + 1 + i - order_.size()];
+    group = Inputs::coordinate_group(static_cast<std::size_t>(swept[order_[i]]));
+    groups[0] &= ~group;
   }
-  program_ = graph::Program(model.graph, conditions_of(model), groups);
-  for (const std::uint32_t condition : program_.outputs()) {
-    const int stage = program_.stage_of()[condition];
-    (stage == kInner ? inner_conditions_ : stage == kMiddle ? middle_conditions_ : early_).push_back(condition);
+  std::vector<Node> outputs, plain;
+  std::vector<std::vector<std::pair<Shape, graph::Quadratic>>> clauses;
+  for (const Node condition : conditions) {
+    const bool along = (graph[condition].groups & groups[kInner]) != 0;
+    const auto lower = along ? lowered(graph, condition, groups[kInner]) : std::nullopt;
+    if (!lower) {
+      plain.push_back(condition);
+      continue;
+    }
+    for (const graph::Clause& clause : *lower) {
+      auto& alternatives = clauses.emplace_back();
+      for (const graph::Quadratic& q : clause) alternatives.emplace_back(shape_of(graph, q.c[2]), q);
+    }
+  }
+  outputs = plain;
+  for (const auto& alternatives : clauses)
+    for (const auto& [shape, q] : alternatives) outputs.insert(outputs.end(), q.c.begin(), q.c.end());
+  program_ = Program(graph, outputs, groups);
+
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const std::uint32_t at = program_.outputs()[i];
+    const int stage = program_.stage_of()[at];
+    if (i < plain.size())
+      (stage == kInner ? inner_conditions_ : stage == kMiddle ? middle_conditions_ : early_).push_back(at);
+    if (stage == kMiddle) kept.push_back(at);
   }
   for (const auto& step : program_.stages()[kInner].steps)
     for (std::size_t i = 0; i < step.count; ++i)
       if (program_.stage_of()[step.from[i]] == kMiddle) handed_down_.push_back(step.from[i]);
   std::ranges::sort(handed_down_);
   handed_down_.erase(std::unique(handed_down_.begin(), handed_down_.end()), handed_down_.end());
-  std::vector<std::uint32_t> kept = middle_conditions_;
   kept.insert(kept.end(), handed_down_.begin(), handed_down_.end());
   middle_.emplace(program_, kMiddle, kept);
   inner_.emplace(program_, kInner, inner_conditions_);
+  std::size_t output = plain.size();
+  for (const auto& alternatives : clauses) {
+    Alternatives& made = columns_.emplace_back();
+    for (const auto& [shape, q] : alternatives) {
+      Condition& condition = made.emplace_back(Condition{shape, {}});
+      for (graph::Operand& c : condition.c) c = middle_->operand(program_.outputs()[output++]);
+    }
+  }
+  // those that narrow ranges first; the others take bits away
+  std::ranges::stable_partition(columns_,
+                                [](const Alternatives& a) { return a.size() == 1 && a.front().shape != Shape::any; });
+}
+
+double CellTest::cost(const std::array<std::int64_t, 3>& cells) const {
+  double passes = 1, sum = 0;
+  std::size_t stage = kInner + 1 - order_.size();
+  for (const std::size_t axis : order_) {
+    passes *= static_cast<double>(cells[axis]);
+    sum +=
+        passes * cost_of(program_.stages()[stage].steps) * (stage == kOuter ? 4 : 1);  // numbers are slower than rows
+    if (stage == kMiddle) sum += passes * 8 * static_cast<double>(columns_.size());
+    ++stage;
+  }
+  return sum;
+}
+
+CellTest CellTest::fastest(const Evaluation& evaluation, const std::vector<int>& swept,
+                           const std::array<std::int64_t, 3>& cells, std::size_t mode) {
+  std::vector<std::size_t> order(swept.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::optional<CellTest> best;
+  double least = 0;
+  do {
+    CellTest test(evaluation, swept, order, mode);
+    const double cost = test.cost(cells);
+    if (best && cost >= least) continue;
+    least = cost;
+    best.emplace(std::move(test));
+  } while (std::next_permutation(order.begin(), order.end()));
+  return std::move(*best);
+}
+
+std::array<std::size_t, 3> CellTest::shape(const VoxelGrid& grid) const {
+  std::array<std::size_t, 3> cells = {1, 1, 1};
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    cells[3 - order_.size() + i] = static_cast<std::size_t>(grid.cells[order_[i]]);
+  return cells;
+}
+
+std::array<std::int64_t, 3> CellTest::cell(std::size_t outer, std::size_t middle, std::size_t inner) const {
+  const std::size_t loops[3] = {outer, middle, inner};
+  std::array<std::int64_t, 3> cell{};
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    cell[order_[i]] = static_cast<std::int64_t>(loops[3 - order_.size() + i]);
+  return cell;
+}
+
+bool CellTest::at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const {
+  const auto cells = shape(grid);
+  return (order_.size() == 3 && (outer == 0 || outer + 1 == cells[0])) ||
+         (order_.size() >= 2 && (middle == 0 || middle + 1 == cells[1]));
 }
 
 void CellTest::start(const std::vector<double>& inputs, CellRoom& room) const {
@@ -62,46 +177,92 @@ void CellTest::start(const std::vector<double>& inputs, CellRoom& room) const {
   program_.run<double>(0, inputs, room.registers);
 }
 
-void CellTest::test(const VoxelGrid& grid, std::size_t slice, CellRoom& room) const {
-  const auto [middle, inner] = shape(grid);
-  room.feasible.assign(middle * inner, 0);
-  if (swept_ == 3)
-    for (const auto& input : program_.stages()[kOuter].inputs)
-      room.registers[input.to] = grid.centre(0, static_cast<std::int64_t>(slice));
+void CellTest::test(const VoxelGrid& grid, std::size_t outer, CellRoom& room) const {
+  const auto [slices, columns, cells] = shape(grid);
+  room.bits.assign(columns * words(cells), 0);
+  for (const auto& input : program_.stages()[kOuter].inputs)
+    room.registers[input.to] = grid.centre(order_[0], static_cast<std::int64_t>(outer));
   program_.run<double>(kOuter, room.registers);
   if (!std::ranges::all_of(early_, [&](std::uint32_t at) { return room.registers[at] >= 0; })) return;
-  for (std::size_t first = 0; first < middle; first += kRow)
-    test_columns(grid, first, std::min(kRow, middle - first), room);
+  for (std::size_t first = 0; first < columns; first += kRow)
+    test_columns(grid, first, std::min(kRow, columns - first), room);
 }
 
 void CellTest::test_columns(const VoxelGrid& grid, std::size_t first, std::size_t count, CellRoom& room) const {
-  std::size_t whole = kLanes;
+  const std::size_t cells = shape(grid)[2], inner = order_.back();
+  const ColumnGrid column_grid = {grid.centre(inner, 0), grid.step[inner], static_cast<double>(cells)};
+  std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
   for (const std::uint32_t slot : middle_->inputs())
-    whole = fill_centres(grid, swept_ - 2, first, count, &room.middle_rows[slot * kRow]);
-  middle_->run(room.registers.data(), room.middle_rows.data(), whole);
-  const auto row_of = [&](std::uint32_t program_register) {
-    return &room.middle_rows[middle_->operand(program_register).index * kRow];
+    whole = fill_centres(grid, order_[order_.size() - 2], first, count, &room.middle_rows[slot * kRow]);
+  const double* const registers = room.registers.data();
+  double* const rows = room.middle_rows.data();
+  middle_->run(registers, rows, whole);
+
+  CellRanges ranges, other;
+  ranges.from.fill(0);
+  ranges.to.fill(column_grid.cells);
+  for (const std::uint32_t at : middle_conditions_) {
+    const double* const row = rows + middle_->operand(at).index * kRow;
+    for (std::size_t j = 0; j < count; ++j) ranges.to[j] = row[j] >= 0 ? ranges.to[j] : 0;
+  }
+  const auto narrow_to = [&](const Condition& condition, CellRanges& to) {
+    with_instruction_set([&]<InstructionSet set> {
+      narrow<set>(condition.shape, condition.c, registers, rows, column_grid, whole, to);
+    });
   };
+  const std::size_t length = words(cells);
+  const auto for_words = [&](const auto& change) {
+    for (std::size_t j = 0; j < count; ++j)
+      for (std::size_t word = 0; word < length; ++word) change(room.bits[(first + j) * length + word], j, word);
+  };
+  const auto end_of_ranges = std::ranges::find_if(
+      columns_, [](const Alternatives& a) { return a.size() > 1 || a.front().shape == Shape::any; });
+  for (auto condition = columns_.begin(); condition != end_of_ranges; ++condition)
+    narrow_to(condition->front(), ranges);
+  for_words([&](std::uint64_t& bits, std::size_t j, std::size_t word) {
+    bits = range_of_bits(ranges.from[j], ranges.to[j], word);
+  });
+  std::vector<std::uint64_t>& some = room.some;
+  for (auto condition = end_of_ranges; condition != columns_.end(); ++condition) {
+    some.assign(count * length, 0);
+    for (const Condition& alternative : *condition) {
+      other.from.fill(0);
+      other.to.fill(column_grid.cells);
+      if (alternative.shape != Shape::any) {
+        other.drop_from.fill(0);
+        other.drop_to.fill(0);
+      }
+      narrow_to(alternative, other);
+      for (std::size_t j = 0; j < count; ++j)
+        for (std::size_t word = 0; word < length; ++word)
+          some[j * length + word] |= range_of_bits(other.from[j], other.to[j], word) &
+                                     ~range_of_bits(other.drop_from[j], other.drop_to[j], word);
+    }
+    for_words([&](std::uint64_t& bits, std::size_t j, std::size_t word) { bits &= some[j * length + word]; });
+  }
+  if (inner_conditions_.empty()) return;
   for (std::size_t j = 0; j < count; ++j) {
-    if (!std::ranges::all_of(middle_conditions_, [&](std::uint32_t at) { return row_of(at)[j] >= 0; })) continue;
-    for (const std::uint32_t at : handed_down_) room.registers[at] = row_of(at)[j];
-    test_column(grid, first + j, room);
+    std::uint64_t* const bits = &room.bits[(first + j) * length];
+    if (std::all_of(bits, bits + length, [](std::uint64_t word) { return word == 0; })) continue;
+    for (const std::uint32_t at : handed_down_) room.registers[at] = rows[middle_->operand(at).index * kRow + j];
+    test_cells(grid, bits, cells, room);
   }
 }
 
-void CellTest::test_column(const VoxelGrid& grid, std::size_t column, CellRoom& room) const {
-  const std::size_t cells = shape(grid)[1];
-  for (std::size_t first = 0; first < cells; first += kRow) {
-    const std::size_t count = std::min(kRow, cells - first);
-    std::uint8_t* const feasible = &room.feasible[column * cells + first];
+void CellTest::test_cells(const VoxelGrid& grid, std::uint64_t* bits, std::size_t cells, CellRoom& room) const {
+  static_assert(kRow == 64);  // a row is a word
+  for (std::size_t word = 0; word < words(cells); ++word) {
+    if (bits[word] == 0) continue;
+    const std::size_t first = word * kRow, count = std::min(kRow, cells - first);
     std::size_t whole = kLanes;
     for (const std::uint32_t slot : inner_->inputs())
-      whole = fill_centres(grid, swept_ - 1, first, count, &room.rows[slot * kRow]);
+      whole = fill_centres(grid, order_.back(), first, count, &room.rows[slot * kRow]);
     inner_->run(room.registers.data(), room.rows.data(), whole);
-    std::fill_n(feasible, count, std::uint8_t{1});
     for (const std::uint32_t condition : inner_conditions_) {
       const double* const row = &room.rows[inner_->operand(condition).index * kRow];
-      for (std::size_t k = 0; k < count; ++k) feasible[k] &= static_cast<std::uint8_t>(row[k] >= 0);
+      std::uint64_t holds = 0;
+      for (std::size_t k = 0; k < count; ++k) holds |= static_cast<std::uint64_t>(row[k] >= 0) << k;
+      bits[word] &= holds;
     }
   }
 }

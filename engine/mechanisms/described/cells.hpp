@@ -1,11 +1,16 @@
-// Which cells of a grid are feasible, row by row.
+// Which cells of a grid are feasible. Conditions that are quadratic along the innermost coordinate end columns in
+// closed form, so that their cells are counted; what is left of the others is tested in rows, where columns have cells
+// at all.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "engine/graph/lowering.hpp"
 #include "engine/graph/rows.hpp"
+#include "engine/mechanisms/described/column_cells.hpp"
 #include "engine/mechanisms/described/evaluation.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
@@ -13,40 +18,51 @@ namespace pkm::described {
 
 /// What a worker overwrites.
 struct CellRoom {
-  std::vector<double> inputs, registers, middle_rows, rows;
-  std::vector<std::uint8_t> feasible;  ///< of one slice: middle x innermost
+  std::vector<double> registers, middle_rows, rows;
+  std::vector<std::uint64_t> bits;  ///< of one slice: a bit for each cell, words() words for each column
+  std::vector<std::uint64_t> some;  ///< where one of several alternatives holds
 };
 
-/// The conditions of a pose over the swept coordinates: what depends on none of them, on the outer one of three, on the
-/// middle one, and on the innermost. Immutable, shared by threads.
+/// Loops over the swept coordinates: the outer one of three, the middle one, and the innermost, along columns.
 class CellTest {
  public:
-  /// @param swept  outermost first
-  CellTest(const Evaluation& evaluation, const std::vector<int>& swept);
+  /// @param swept  axes of the grid: their coordinates
+  /// @param order  axes from the outermost loop to the innermost
+  CellTest(const Evaluation& evaluation, const std::vector<int>& swept, std::vector<std::size_t> order,
+           std::size_t mode);
+  /// In the order in which a grid of these cells is estimated to take the least time.
+  static CellTest fastest(const Evaluation& evaluation, const std::vector<int>& swept,
+                          const std::array<std::int64_t, 3>& cells, std::size_t mode);
 
-  /// Slices of a grid: the cells of the outer one of three axes, else 1.
-  std::size_t slices(const VoxelGrid& grid) const { return swept_ == 3 ? static_cast<std::size_t>(grid.cells[0]) : 1; }
-  /// Cells of a slice: of its middle and of its innermost axis, fastest.
-  std::array<std::size_t, 2> shape(const VoxelGrid& grid) const {
-    const auto cells = [&](std::size_t axis) { return static_cast<std::size_t>(grid.cells[axis]); };
-    return {swept_ == 1 ? 1 : cells(swept_ - 2), cells(swept_ - 1)};
-  }
+  /// Cells of the outer, the middle and the innermost loop; 1 where there is none.
+  std::array<std::size_t, 3> shape(const VoxelGrid& grid) const;
+  /// The cell of the grid, by axis, of these three.
+  std::array<std::int64_t, 3> cell(std::size_t outer, std::size_t middle, std::size_t inner) const;
+  static std::size_t words(std::size_t cells) { return (cells + 63) / 64; }
+  /// Whether a slice is on the box's outside, and a column of it.
+  bool at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const;
 
   /// Computes what no swept coordinate changes.
   /// @param inputs  of the design, with held coordinates
   void start(const std::vector<double>& inputs, CellRoom& room) const;
-  /// Fills room.feasible with the cells of a slice, after start().
-  void test(const VoxelGrid& grid, std::size_t slice, CellRoom& room) const;
+  /// Finds the cells of a slice, after start().
+  void test(const VoxelGrid& grid, std::size_t outer, CellRoom& room) const;
 
  private:
-  void test_columns(const VoxelGrid& grid, std::size_t first, std::size_t count, CellRoom& room) const;
-  void test_column(const VoxelGrid& grid, std::size_t column, CellRoom& room) const;
+  struct Condition {
+    Shape shape;
+    std::array<graph::Operand, 3> c;
+  };
+  using Alternatives = std::vector<Condition>;  ///< one of them has to hold
 
-  std::size_t swept_;
+  void test_columns(const VoxelGrid& grid, std::size_t first, std::size_t count, CellRoom& room) const;
+  void test_cells(const VoxelGrid& grid, std::uint64_t* bits, std::size_t cells, CellRoom& room) const;
+  double cost(const std::array<std::int64_t, 3>& cells) const;
+
+  std::vector<std::size_t> order_;  ///< axes
   graph::Program program_;
-  std::array<std::size_t, 3> inputs_{};  ///< of the outer, the middle and the innermost coordinate
-  std::vector<std::uint32_t> early_, handed_down_;
-  std::vector<std::uint32_t> middle_conditions_, inner_conditions_;  ///< registers
+  std::vector<std::uint32_t> early_, middle_conditions_, inner_conditions_, handed_down_;  ///< registers
+  std::vector<Alternatives> columns_;
   std::optional<graph::RowStage> middle_, inner_;
 };
 

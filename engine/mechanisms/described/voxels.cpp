@@ -1,6 +1,7 @@
 #include "engine/mechanisms/described/voxels.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -31,7 +32,7 @@ class DescribedVoxels final : public VoxelSurveyor {
         demand_(demand),
         sweep_(sweep_of(mechanism.info(), plan)),
         mode_(number_of_mode(mechanism.info(), demand.mode)),
-        test_(evaluation, sweep_.swept) {
+        test_(CellTest::fastest(evaluation, sweep_.swept, voxels.cells, mode_)) {
     if (demand.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
@@ -49,22 +50,15 @@ class DescribedVoxels final : public VoxelSurveyor {
     survey.clear(demand_.fields);
     survey.cells = grid.count() * repeats;
     survey.cell_volume = measure;
-    const std::size_t slices = test_.slices(grid);
+    const std::size_t slices = test_.shape(grid)[0];
     auto& rooms = scratch.get<Rooms>().of;
     if (rooms.size() < workers()) rooms.resize(workers());
+    for (Room& room : rooms) room.repeat.reset();
     const std::vector<double> inputs = inputs_of(parameters);
     share_samples(slices * static_cast<std::size_t>(repeats), survey,
                   [&](std::size_t piece, Survey<double>& part, std::size_t worker) {
                     Room& room = rooms[worker];
-                    room.inputs = inputs;
-                    std::size_t repeat = piece / slices;
-                    for (const HeldCells& each : held) {
-                      const auto cells = static_cast<std::size_t>(each.cells);
-                      room.inputs[e_.model.inputs.coordinate(each.coordinate)] =
-                          each.lower + (static_cast<double>(repeat % cells) + 0.5) * each.step;
-                      repeat /= cells;
-                    }
-                    test_.start(room.inputs, room.cells);
+                    if (room.repeat != piece / slices) start(inputs, held, piece / slices, room);
                     test_.test(grid, piece % slices, room.cells);
                     add_slice(parameters, grid, piece % slices, measure, room, part);
                   });
@@ -75,23 +69,41 @@ class DescribedVoxels final : public VoxelSurveyor {
     const VoxelGrid grid = grid_of(parameters);
     VoxelMap map = grid.map();
     CellRoom room;
-    auto to = map.feasible.begin();
     test_.start(inputs_of(parameters), room);
-    for (std::size_t slice = 0; slice < test_.slices(grid); ++slice) {
+    const auto [slices, columns, cells] = test_.shape(grid);
+    for (std::size_t slice = 0; slice < slices; ++slice) {
       test_.test(grid, slice, room);
-      to = std::ranges::copy(room.feasible, to).out;
+      for_each_cell(room, columns, cells, [&](std::size_t j, std::size_t k) {
+        const auto cell = test_.cell(slice, j, k);
+        map.feasible[static_cast<std::size_t>((cell[0] * map.cells[1] + cell[1]) * map.cells[2] + cell[2])] = 1;
+      });
     }
     return map;
   }
 
  private:
   struct Room {
+    std::optional<std::size_t> repeat;  ///< that it is ready for
     std::vector<double> inputs;
     CellRoom cells;
   };
   struct Rooms {
     std::vector<Room> of;  ///< by worker
   };
+
+  /// With integrated coordinates in the middle of their cells.
+  void start(const std::vector<double>& inputs, const std::vector<HeldCells>& held, std::size_t repeat,
+             Room& room) const {
+    room.repeat = repeat;
+    room.inputs = inputs;
+    for (const HeldCells& each : held) {
+      const auto cells = static_cast<std::size_t>(each.cells);
+      room.inputs[e_.model.inputs.coordinate(each.coordinate)] =
+          each.lower + (static_cast<double>(repeat % cells) + 0.5) * each.step;
+      repeat /= cells;
+    }
+    test_.start(room.inputs, room.cells);
+  }
 
   std::array<double, 2> range_of(std::span<const double> parameters, std::size_t coordinate) const {
     if (const auto range = e_.range(parameters, coordinate)) return *range;
@@ -135,29 +147,39 @@ class DescribedVoxels final : public VoxelSurveyor {
     return inputs;
   }
 
+  /// Calls visit(column, cell) for the feasible cells of a slice, in order.
+  template <class Visit>
+  static void for_each_cell(const CellRoom& room, std::size_t columns, std::size_t cells, const Visit& visit) {
+    const std::size_t words = CellTest::words(cells);
+    for (std::size_t j = 0; j < columns; ++j)
+      for (std::size_t word = 0; word < words; ++word)
+        for (std::uint64_t bits = room.bits[j * words + word]; bits != 0; bits &= bits - 1)
+          visit(j, word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
+  }
+
   /// Counts the feasible cells of a slice, and adds their samples.
   void add_slice(std::span<const double> parameters, const VoxelGrid& grid, std::size_t slice, double measure,
                  Room& room, Survey<double>& to) const {
-    const auto [middle, inner] = test_.shape(grid);
-    const std::size_t swept = sweep_.swept.size();
-    const bool outermost = swept == 3 && (slice == 0 || slice + 1 == static_cast<std::size_t>(grid.cells[0]));
-    const std::uint8_t* feasible = room.cells.feasible.data();
-    for (std::size_t j = 0; j < middle; ++j) {
-      const bool at_side = outermost || (swept >= 2 && (j == 0 || j + 1 == middle));
-      for (std::size_t k = 0; k < inner; ++k) {
-        if (!*feasible++) continue;
-        ++to.feasible_cells;
-        to.touches_box = to.touches_box || at_side || k == 0 || k + 1 == inner;
-        if (!demand_.needs_samples()) continue;
-        const std::size_t cell[3] = {slice, j, k};
-        Pose<double> pose(e_.model.inputs.coordinates);
-        std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
-        for (std::size_t axis = 0; axis < swept; ++axis)
-          pose[static_cast<std::size_t>(sweep_.swept[axis])] =
-              grid.centre(axis, static_cast<std::int64_t>(cell[3 - swept + axis]));
-        add_sample(parameters, pose, measure, to);
-      }
+    const auto [slices, columns, cells] = test_.shape(grid);
+    const std::size_t words = CellTest::words(cells);
+    for (std::size_t j = 0; j < columns; ++j) {
+      const std::uint64_t* const bits = &room.cells.bits[j * words];
+      std::int64_t count = 0;
+      for (std::size_t word = 0; word < words; ++word) count += std::popcount(bits[word]);
+      to.feasible_cells += count;
+      if (count == 0 || to.touches_box) continue;
+      const bool last = (bits[(cells - 1) / 64] >> ((cells - 1) % 64) & 1) != 0;
+      to.touches_box = test_.at_side(grid, slice, j) || (bits[0] & 1) != 0 || last;
     }
+    if (!demand_.needs_samples()) return;
+    for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
+      const auto cell = test_.cell(slice, j, k);
+      Pose<double> pose(e_.model.inputs.coordinates);
+      std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
+      for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
+        pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid.centre(axis, cell[axis]);
+      add_sample(parameters, pose, measure, to);
+    });
   }
   void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight,
                   Survey<double>& to) const {

@@ -1,0 +1,198 @@
+#include "engine/graph/lowering.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace pkm::graph {
+namespace {
+
+constexpr std::size_t kMostCoefficients = 5;  // on the way: squares of degree two
+
+/// A polynomial in z by its coefficients, the lowest first; empty is 0.
+using Polynomial = std::vector<Term>;
+
+struct Form {
+  Polynomial A, B;
+  Node radicand{};  ///< where B is there: of the root
+  Polynomial Q;     ///< the same as a polynomial
+};
+
+Polynomial trimmed(Polynomial p) {
+  while (!p.empty() && p.back().is(0)) p.pop_back();
+  return p;
+}
+Polynomial sum(const Polynomial& p, const Polynomial& q) {
+  Polynomial r = p.size() >= q.size() ? p : q;
+  const Polynomial& shorter = p.size() >= q.size() ? q : p;
+  for (std::size_t i = 0; i < shorter.size(); ++i) r[i] = p[i] + q[i];
+  return trimmed(r);
+}
+Polynomial negative(Polynomial p) {
+  for (Term& c : p) c = -c;
+  return p;
+}
+std::optional<Polynomial> product(const Polynomial& p, const Polynomial& q) {
+  if (p.empty() || q.empty()) return Polynomial();
+  if (p.size() + q.size() - 1 > kMostCoefficients) return {};
+  Polynomial r(p.size() + q.size() - 1, Term(p[0].graph(), 0.0));
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (std::size_t j = 0; j < q.size(); ++j) r[i + j] = r[i + j] + p[i] * q[j];
+  return trimmed(r);
+}
+
+/// Known to be >= 0 whatever the inputs: numbers, squares, roots, and sums, products, quotients of such.
+bool is_positive(const Graph& graph, Node node) {
+  const Entry& entry = graph[node];
+  if (entry.is_number()) return entry.number >= 0;
+  if (!entry.operation) return false;
+  const auto each = [&] {
+    return std::ranges::all_of(entry.operands(), [&](Node n) { return is_positive(graph, n); });
+  };
+  switch (entry.operation->code) {
+    case Code::multiply:
+      return entry.arguments[0] == entry.arguments[1] || each();
+    case Code::add:
+    case Code::divide:
+      return each();
+    case Code::sqrt:
+      return true;
+    default:
+      return entry.operation->name == "abs";
+  }
+}
+
+class Lowering {
+ public:
+  Lowering(Graph& graph, Groups z) : graph_(graph), z_(z) {}
+
+  /// f as a form; none: it is of another kind.
+  std::optional<Form> form(Node node) {
+    const Entry entry = graph_[node];
+    if ((entry.groups & z_) == 0) return Form{.A = trimmed({Term(graph_, node)}), .B = {}, .Q = {}};
+    if (entry.input >= 0) return Form{.A = {Term(graph_, 0.0), Term(graph_, 1.0)}, .B = {}, .Q = {}};
+    switch (entry.operation->code) {
+      case Code::add:
+      case Code::subtract: {
+        auto x = form(entry.arguments[0]), y = form(entry.arguments[1]);
+        if (!x || !y) return {};
+        if (entry.operation->code == Code::subtract) y = Form{negative(y->A), negative(y->B), y->radicand, y->Q};
+        if (!x->B.empty() && !y->B.empty() && x->radicand != y->radicand) return {};
+        const Form& rooted = x->B.empty() ? *y : *x;
+        return Form{sum(x->A, y->A), sum(x->B, y->B), rooted.radicand, rooted.Q};
+      }
+      case Code::negate: {
+        const auto x = form(entry.arguments[0]);
+        if (!x) return {};
+        return Form{negative(x->A), negative(x->B), x->radicand, x->Q};
+      }
+      case Code::multiply:
+        return times(form(entry.arguments[0]), form(entry.arguments[1]));
+      case Code::divide: {
+        if ((graph_[entry.arguments[1]].groups & z_) != 0) return {};
+        const Term divisor(graph_, entry.arguments[1]);
+        auto x = form(entry.arguments[0]);
+        if (!x) return {};
+        for (Polynomial* p : {&x->A, &x->B})
+          for (Term& c : *p) c = c / divisor;
+        return x;
+      }
+      case Code::sqrt: {
+        const auto x = form(entry.arguments[0]);
+        if (!x || !x->B.empty()) return {};
+        return Form{.A = {}, .B = {Term(graph_, 1.0)}, .radicand = entry.arguments[0], .Q = x->A};
+      }
+      default:
+        return {};
+    }
+  }
+
+  std::optional<std::vector<Clause>> conditions(Node node) {
+    const Entry entry = graph_[node];
+    if ((entry.groups & z_) != 0 && entry.operation) {
+      const Code code = entry.operation->code;
+      if (code == Code::min) return both(conditions(entry.arguments[0]), conditions(entry.arguments[1]));
+      if (code == Code::max) return either(conditions(entry.arguments[0]), conditions(entry.arguments[1]));
+      if (code == Code::subtract) {
+        const Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+        if (const auto inner = inside_of_abs(y))  // x - |u|
+          return both(conditions((x - *inner).node()), conditions((x + *inner).node()));
+        if (const auto inner = inside_of_abs(x))  // |u| - y
+          return either(conditions((*inner - y).node()), conditions((-*inner - y).node()));
+      }
+    }
+    const auto f = form(node);
+    if (!f) return {};
+    if (f->B.empty()) return one({f->A});
+    const auto BB = product(f->B, f->B), AA = product(f->A, f->A);
+    if (!BB || !AA) return {};
+    const auto BBQ = product(*BB, f->Q);
+    if (!BBQ) return {};
+    if (f->B.size() != 1) return {};
+    const Term b = f->B[0];
+    if (is_positive(graph_, (-b).node()) ||
+        (graph_[b.node()].operation == &negation() && is_positive(graph_, graph_[b.node()].arguments[0])))
+      return both(one({f->A}), one({sum(*AA, negative(*BBQ))}));
+    if (is_positive(graph_, b.node())) return one({f->A, sum(*BBQ, negative(*AA))});
+    return {};
+  }
+
+ private:
+  /// u, where the term is |u|, or |u| / d with d >= 0 (then u / d); and where z is in it.
+  std::optional<Term> inside_of_abs(const Term& term) {
+    const Entry entry = graph_[term.node()];
+    if (!entry.operation || (entry.groups & z_) == 0) return {};
+    if (entry.operation->name == "abs") return Term(graph_, entry.arguments[0]);
+    if (entry.operation->code != Code::divide || !is_positive(graph_, entry.arguments[1])) return {};
+    const auto inner = inside_of_abs(Term(graph_, entry.arguments[0]));
+    if (!inner) return {};
+    return *inner / Term(graph_, entry.arguments[1]);
+  }
+
+  std::optional<Form> times(const std::optional<Form>& x, const std::optional<Form>& y) {
+    if (!x || !y) return {};
+    if (!x->B.empty() && !y->B.empty() && x->radicand != y->radicand) return {};
+    const Form& rooted = x->B.empty() ? *y : *x;
+    const auto AA = product(x->A, y->A), BB = product(x->B, y->B), AB = product(x->A, y->B), BA = product(x->B, y->A);
+    if (!AA || !BB || !AB || !BA) return {};
+    const auto BBQ = product(*BB, rooted.Q);
+    if (!BBQ) return {};
+    return Form{sum(*AA, *BBQ), sum(*AB, *BA), rooted.radicand, rooted.Q};
+  }
+
+  using Clauses = std::optional<std::vector<Clause>>;
+
+  /// One clause of these polynomials.
+  Clauses one(const std::vector<Polynomial>& polynomials) {
+    Clause clause;
+    for (const Polynomial& p : polynomials) {
+      if (p.size() > 3) return {};
+      const auto c = [&](std::size_t i) { return i < p.size() ? p[i].node() : graph_.number(0); };
+      clause.push_back({{c(0), c(1), c(2)}});
+    }
+    return {{clause}};
+  }
+  static Clauses both(Clauses x, const Clauses& y) {
+    if (!x || !y) return {};
+    x->insert(x->end(), y->begin(), y->end());
+    return x;
+  }
+  static Clauses either(const Clauses& x, const Clauses& y) {
+    if (!x || !y) return {};
+    std::vector<Clause> all;
+    for (const Clause& a : *x)
+      for (const Clause& b : *y) {
+        all.push_back(a);
+        all.back().insert(all.back().end(), b.begin(), b.end());
+      }
+    return all;
+  }
+
+  Graph& graph_;
+  Groups z_;
+};
+
+}  // namespace
+
+std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z) { return Lowering(graph, z).conditions(f); }
+
+}  // namespace pkm::graph

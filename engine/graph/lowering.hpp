@@ -1,0 +1,27 @@
+// Conditions f >= 0 along one coordinate z as conditions of polynomials of degree two or less in z, whose coefficients
+// are nodes of the same graph: where a column ends then is a closed form.
+//
+// A form A + B sqrt(Q), with polynomials A, B and Q, goes through + - * / and sqrt. Where the sign of B is known, f >=
+// 0 is B < 0: A >= 0 and A^2 - B^2 Q >= 0; B > 0: A >= 0 or B^2 Q - A^2 >= 0. That Q >= 0 is a condition of its own.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/graph/graph.hpp"
+
+namespace pkm::graph {
+
+/// c[0] + c[1] z + c[2] z^2
+struct Quadratic {
+  std::array<Node, 3> c;
+};
+
+/// At least one of them is >= 0.
+using Clause = std::vector<Quadratic>;
+
+/// Clauses that hold together where f >= 0; none: f is not of this kind.
+/// @param z  the group of the coordinate
+std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z);
+
+}  // namespace pkm::graph
