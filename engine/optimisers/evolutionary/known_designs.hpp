@@ -17,11 +17,18 @@ class KnownDesigns {
   void insert(const EvaluationTable& table, std::size_t row);
 
  private:
-  /// Where the design's row is, or will be.
-  std::size_t slot_of(const EvaluationTable& table, std::span<const double> design) const;
-
+  /// The hash is beside the row: to tell designs apart, and to move rows when there are more slots, takes no look at
+  /// the table, most of which is not in the processor's cache.
+  struct Slot {
+    std::uint64_t hash = 0;
+    std::int64_t row = kEmpty;
+  };
   static constexpr std::int64_t kEmpty = -1;
-  std::vector<std::int64_t> slots_ = std::vector(64, kEmpty);  // open addressing, a power of two, at most half full
+
+  /// Where the design's row is, or will be.
+  std::size_t slot_of(const EvaluationTable& table, std::span<const double> design, std::uint64_t hash) const;
+
+  std::vector<Slot> slots_ = std::vector<Slot>(64);  // open addressing, a power of two, at most half full
   std::size_t count_ = 0;
 };
 
