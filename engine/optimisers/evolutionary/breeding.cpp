@@ -50,8 +50,11 @@ void Breeder::offspring(std::uint32_t generation, std::span<const std::int64_t> 
   else
     share_pieces(count, breed_some);
   const std::size_t end = table.size() + most_new;
-  for (std::size_t k = 0; k < count; ++k)
+  constexpr std::size_t kAhead = 8;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k + kAhead < count) known_.prefetch(child(k + kAhead));
     if (!add(generation, static_cast<std::uint32_t>(k), child(k), table, end - table.size(), children)) break;
+  }
 }
 
 void Breeder::breed(const Pool& pool, std::size_t first, std::size_t second, Stream& stream,

@@ -36,6 +36,10 @@ std::int64_t KnownDesigns::find(const EvaluationTable& table, std::span<const do
   return slots_[slot_of(table, design, hash_of(design))].row;
 }
 
+void KnownDesigns::prefetch(std::span<const double> design) const {
+  __builtin_prefetch(&slots_[hash_of(design) & (slots_.size() - 1)]);
+}
+
 void KnownDesigns::insert(const EvaluationTable& table, std::size_t row) {
   if (2 * ++count_ > slots_.size()) {
     const auto old = std::exchange(slots_, std::vector<Slot>(2 * slots_.size()));

@@ -13,6 +13,8 @@ class KnownDesigns {
  public:
   /// The row whose design equals `design` bit for bit, or -1. `table` is the one given to `insert`.
   std::int64_t find(const EvaluationTable& table, std::span<const double> design) const;
+  /// Begins to fetch what find() will look at, which is seldom in the processor's cache.
+  void prefetch(std::span<const double> design) const;
   /// Remembers a row that `find` does not know yet.
   void insert(const EvaluationTable& table, std::size_t row);
 
