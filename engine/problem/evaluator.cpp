@@ -179,7 +179,7 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
                            table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);
   };
   constexpr double kWaiting = 0.05, kWorthClaiming = 1e-3;  // of all ranks' time; s
-  constexpr double kLong = 0.1;  // s, of a thread: what may delay it is unknown, and claims are at most 2 % of it
+  constexpr double kLong = 0.1;  // s, of a thread: what may delay it is unknown, and claims are some 3 % of it at most
   double longest = 0, threads = 0;
   for (std::size_t rank = 0; rank < ranks; ++rank) {
     const auto team = static_cast<double>(threads_of_ranks_[rank]);
