@@ -16,7 +16,7 @@ import random
 OWN = {1000: 0.6e-3, 10000: 7.0e-3, 100000: 82e-3}
 ALONE = {1000: 0.55e-3, 10000: 6.2e-3, 100000: 68e-3}
 # Designs of a generation, generations, seconds alone, of two at once, by two ranks: turns.py.
-MEASURED = {"survey.toml": (197, 1, 2.37, 2.99, 1.55), "population.toml": (10000, 41, 1.53, 2.35, 1.63)}
+MEASURED = {"survey.toml": (197, 1, 9.96, 11.27, 5.76), "population.toml": (10000, 41, 1.53, 2.35, 1.63)}
 # Packing, unpacking and hashing a row [s], and the rest of a generation's messages on one host: pkm_messages.
 PER_ROW, PER_GENERATION = 60e-9, 3e-6
 ROW_BYTES = 37
