@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/core/team.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/mechanism/drive_along.hpp"
@@ -41,9 +42,16 @@ Wrench<double> wrench_of(const Options& options) {
   return wrench;
 }
 
+/// Room for the samples' loads, and for what is found by several threads.
 template <class S>
 struct Loads {
+  struct Batch {
+    std::vector<S> loads;
+    std::size_t assembled;
+  };
   std::vector<S> of_samples;
+  std::vector<Batch> batches;
+  std::vector<DriveScratch<S>> of_workers;
 };
 
 class AlongMotion final : public Quantity {
@@ -102,9 +110,33 @@ class AlongMotion final : public Quantity {
   template <class S>
   std::size_t collect(const DesignView<S>& design, std::vector<S>& loads) const {
     loads.clear();
+    if (has_team()) return collect_with_team(design, loads);
     return drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
                           design.scratch.template get<DriveScratch<S>>(),
                           [&](std::size_t, const Drive<S>& drive) { append(drive, loads); });
+  }
+  template <class S>
+  std::size_t collect_with_team(const DesignView<S>& design, std::vector<S>& loads) const {
+    Loads<S>& room = design.scratch.template get<Loads<S>>();
+    room.batches.resize((samples_.size() + kDriveBatch - 1) / kDriveBatch);
+    room.of_workers.resize(workers());
+    share_pieces(room.batches.size(), [&](std::size_t number, std::size_t end, std::size_t worker) {
+      for (; number < end; ++number) {
+        typename Loads<S>::Batch& batch = room.batches[number];
+        batch.loads.clear();
+        const auto some = std::span(samples_).subspan(number * kDriveBatch);
+        batch.assembled = drive_along<S>(
+            *design.mechanism.dynamics(), design.parameters, mode_, some.first(std::min(kDriveBatch, some.size())),
+            wrench_, room.of_workers[worker], [&](std::size_t, const Drive<S>& drive) { append(drive, batch.loads); });
+      }
+    });
+    std::size_t assembled = 0;
+    for (std::size_t number = 0; number < room.batches.size() && assembled == number * kDriveBatch; ++number) {
+      const auto& batch = room.batches[number];
+      loads.insert(loads.end(), batch.loads.begin(), batch.loads.end());
+      assembled += batch.assembled;
+    }
+    return assembled;
   }
   /// Appends those of one sample, of the joints looked at.
   template <class S>

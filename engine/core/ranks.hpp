@@ -41,7 +41,8 @@ std::vector<std::string> all_gather(const std::string& mine);
 /// Seconds that this rank has spent in the two above, waiting for others included.
 double seconds_in_exchange();
 
-/// A number that all ranks and threads count up together. Made collectively; at most 16 at a time.
+/// A number that all ranks and threads count up together. Made and ended collectively, without any of the above in
+/// between; at most 16 at a time.
 class Counter {
  public:
   Counter();

@@ -27,6 +27,9 @@ struct DriveScratch {
   std::vector<PoseDynamics<S>> dynamics;
 };
 
+/// So many samples the mechanism is asked for at once.
+inline constexpr std::size_t kDriveBatch = 32;
+
 /// Calls visit(k, Drive<S>) for the samples in order, as far as the mechanism assembles.
 /// @param parameters  all parameters of the design
 /// @param mode        one of MechanismInfo::modes
@@ -36,13 +39,12 @@ template <class S, class Visit>
 std::size_t drive_along(const Dynamics& mechanism, std::span<const S> parameters, const std::string& mode,
                         std::span<const MotionSample> samples, const Wrench<double>& wrench, DriveScratch<S>& scratch,
                         const Visit& visit) {
-  constexpr std::size_t kBatch = 32;
-  scratch.states.resize(kBatch);
-  scratch.dynamics.resize(kBatch);
+  scratch.states.resize(kDriveBatch);
+  scratch.dynamics.resize(kDriveBatch);
   Wrench<S> load;
   for (std::size_t i = 0; i < 6; ++i) load[i] = S(wrench[i]);
-  for (std::size_t first = 0; first < samples.size(); first += kBatch) {
-    const std::size_t count = std::min(kBatch, samples.size() - first);
+  for (std::size_t first = 0; first < samples.size(); first += kDriveBatch) {
+    const std::size_t count = std::min(kDriveBatch, samples.size() - first);
     const std::span<MotionState<S>> states(scratch.states.data(), count);
     const std::span<PoseDynamics<S>> dynamics(scratch.dynamics.data(), count);
     for (std::size_t k = 0; k < count; ++k) states[k] = {samples[first + k].pose, samples[first + k].velocity};

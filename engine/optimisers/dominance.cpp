@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "engine/core/team_sort.hpp"
 #include "engine/optimisers/diversity.hpp"
 
 namespace pkm {
@@ -126,7 +127,7 @@ std::vector<std::uint32_t> in_order(const Scores& scores) {
   // The first score stands beside the index: most comparisons need no more.
   std::vector<std::pair<double, std::uint32_t>> order(scores.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = {scores[i][0], static_cast<std::uint32_t>(i)};
-  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+  sort_with_team(order, 0, [&](const auto& a, const auto& b) {
     if (a.first != b.first) return a.first < b.first;
     const double *p = scores[a.second], *q = scores[b.second];
     return equal(p, q, scores.objectives) ? a.second < b.second : before(p, q, scores.objectives);

@@ -64,10 +64,14 @@ std::pair<std::size_t, std::size_t> share_of(std::size_t rank, std::size_t ranks
   return {first + rank * count / ranks, first + (rank + 1) * count / ranks};
 }
 
-// The beginning of a rank's message.
-struct Sender {
-  std::uint64_t threads, check;
-};
+// Where chunks of `count` rows begin, and the end: each a share of what is left, as share_pieces() has it, so that few
+// claims keep everybody at work until the end.
+std::vector<std::size_t> chunks_of(std::size_t count, std::size_t threads) {
+  std::vector<std::size_t> begins = {0};
+  while (begins.back() < count)
+    begins.push_back(begins.back() + std::max<std::size_t>(1, (count - begins.back()) / (2 * threads)));
+  return begins;
+}
 
 }  // namespace
 
@@ -104,7 +108,9 @@ void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& t
 
 // Rows that nobody else takes, until none is left.
 std::vector<ParallelEvaluator::Rows> ParallelEvaluator::claim_chunks(const Problem& problem, EvaluationTable& table,
-                                                                     Rows rows, std::size_t chunk) {
+                                                                     Rows rows) {
+  const std::size_t threads = std::accumulate(threads_of_ranks_.begin(), threads_of_ranks_.end(), std::size_t{0});
+  const std::vector<std::size_t> begins = chunks_of(rows.second - rows.first, threads);
   ranks::Counter claimed;
   std::vector<std::vector<Rows>> of_workers;
   with_team(threads_, [&] {
@@ -113,11 +119,11 @@ std::vector<ParallelEvaluator::Rows> ParallelEvaluator::claim_chunks(const Probl
     of_workers.resize(team);
     share_pieces(team, [&](std::size_t, std::size_t, std::size_t worker) {
       while (true) {
-        const std::size_t begin = rows.first + chunk * static_cast<std::size_t>(claimed.next());
-        if (begin >= rows.second) return;
-        const std::size_t end = std::min(rows.second, begin + chunk);
-        evaluate_rows(problem, table, begin, end, scratch_[worker]);
-        of_workers[worker].push_back({begin, end});
+        const auto chunk = static_cast<std::size_t>(claimed.next());
+        if (chunk + 1 >= begins.size()) return;
+        const Rows mine{rows.first + begins[chunk], rows.first + begins[chunk + 1]};
+        evaluate_rows(problem, table, mine.first, mine.second, scratch_[worker]);
+        of_workers[worker].push_back(mine);
       }
     });
   });
@@ -126,41 +132,45 @@ std::vector<ParallelEvaluator::Rows> ParallelEvaluator::claim_chunks(const Probl
   return all;
 }
 
+// A row that every rank has evaluated: whether they compute the same. They tell their threads as well.
+void ParallelEvaluator::compare_ranks(const EvaluationTable& table, std::size_t row) {
+  const std::uint64_t own[2] = {hash_of_rows(table, row, row + 1), static_cast<std::uint64_t>(threads_)};
+  std::uint64_t first_hash = 0;
+  threads_of_ranks_.clear();
+  for (const std::string& message : ranks::all_gather({reinterpret_cast<const char*>(own), sizeof own})) {
+    std::uint64_t others[2];
+    std::memcpy(others, message.data(), sizeof others);
+    if (threads_of_ranks_.empty()) first_hash = others[0];
+    threads_of_ranks_.push_back(others[1]);
+  }
+  if (own[0] != first_hash)
+    ranks::abandon("the design that rank 0 on " + ranks::host(0) + " begins with has other results here: the same " +
+                   "program with the same libraries has to run on every host");
+}
+
 void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first,
                                             Experience& known) {
   const auto ranks = static_cast<std::size_t>(ranks::size()), own = static_cast<std::size_t>(ranks::rank());
   Rows rows{first, table.size()};
-  Sender sender{static_cast<std::uint64_t>(threads_), 0};
-  if (known.each == 0) {  // the first row on every rank: whether they compute the same
+  if (known.each == 0) {
     evaluate_here(problem, table, {first, first + 1}, 0);
-    sender.check = hash_of_rows(table, first, ++rows.first);
+    compare_ranks(table, rows.first++);
   }
   const std::size_t count = rows.second - rows.first;
   std::vector<Rows> done;
   if (known.uneven) {
-    constexpr std::size_t kChunks = 8;  // for each thread: the last ones are short
-    done = claim_chunks(problem, table, rows, std::max<std::size_t>(1, count / (kChunks * known.threads)));
+    done = claim_chunks(problem, table, rows);
   } else {
     done = {share_of(own, ranks, rows.first, count)};
     evaluate_here(problem, table, done.front(), known.each);
   }
   if (rows.first > first && own == 0) done.push_back({first, first + 1});
 
-  std::string message(reinterpret_cast<const char*>(&sender), sizeof sender);
+  std::string message;
   for (const auto& [begin, end] : done) pack_rows(table, begin, end - begin, message);
   std::size_t came = 0;
-  std::vector<double> threads;
-  std::uint64_t check = 0;
-  const std::vector<std::string> messages = ranks::all_gather(message);
-  for (std::size_t rank = 0; rank < ranks; ++rank) {
-    std::memcpy(&sender, messages[rank].data(), sizeof sender);
-    threads.push_back(static_cast<double>(sender.threads));
-    if (rank == 0) check = sender.check;
-    if (rank == own && sender.check != check)
-      ranks::abandon("the design that rank 0 on " + ranks::host(0) + " begins with has other results here: the same " +
-                     "program with the same libraries has to run on every host");
-    for (std::size_t at = sizeof sender; at < messages[rank].size();) came += unpack_rows(messages[rank], at, table);
-  }
+  for (const std::string& each : ranks::all_gather(message))
+    for (std::size_t at = 0; at < each.size();) came += unpack_rows(each, at, table);
   PKM_EXPECTS(came == table.size() - first);
 
   // The same on every rank from here on: the times have been exchanged.
@@ -169,13 +179,16 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
                            table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);
   };
   constexpr double kWaiting = 0.05, kWorthClaiming = 1e-3;  // of all ranks' time; s
-  double longest = 0;
-  for (std::size_t rank = 0; rank < ranks; ++rank)
-    longest = std::max(longest, time_of(share_of(rank, ranks, rows.first, count)) / threads[rank]);
-  const double all = time_of({first, table.size()}), team = std::accumulate(threads.begin(), threads.end(), 0.0);
+  constexpr double kLong = 0.1;  // s, of a thread: what may delay it is unknown, and claims are some 3 % of it at most
+  double longest = 0, threads = 0;
+  for (std::size_t rank = 0; rank < ranks; ++rank) {
+    const auto team = static_cast<double>(threads_of_ranks_[rank]);
+    longest = std::max(longest, time_of(share_of(rank, ranks, rows.first, count)) / team);
+    threads += team;
+  }
+  const double all = time_of({first, table.size()}), even = all / threads;
   known = {.each = std::max(all / static_cast<double>(table.size() - first), 1e-9),
-           .uneven = longest - all / team > std::max(kWaiting * all / team, kWorthClaiming),
-           .threads = static_cast<std::size_t>(team)};
+           .uneven = even > kLong || longest - even > std::max(kWaiting * even, kWorthClaiming)};
 }
 
 }  // namespace pkm

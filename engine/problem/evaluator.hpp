@@ -24,8 +24,9 @@ class Evaluator {
 /// is better without. Threads of one team may call it at once, each with a table of its own.
 ///
 /// Where there are several ranks, all of them hand over the same designs and get the same results. Each computes a
-/// share of the rows: by index, or, where that would leave ranks waiting, small chunks that are claimed in turn. One
-/// design, or some that take less than the messages would, each rank evaluates alone, without a message.
+/// share of the rows: by index, or, where that would leave ranks waiting or claims cost next to nothing, chunks that
+/// are claimed in turn and get smaller towards the end. One design, or some that take less than the messages would,
+/// each rank evaluates alone, without a message.
 class ParallelEvaluator final : public Evaluator {
  public:
   /// @param threads  as for team_size(); within with_team(), 1 or those of the team
@@ -37,17 +38,19 @@ class ParallelEvaluator final : public Evaluator {
  private:
   /// What batches that were shared among ranks have shown: the same on every rank, so that all decide alike.
   struct Experience {
-    double each = 0;                     ///< s, of a design; 0: there was none
-    bool uneven = false;                 ///< shares by index would have left ranks waiting
-    std::size_t threads = 0, alone = 0;  ///< of all ranks; batches since then that each evaluated alone
+    double each = 0;        ///< s, of a design; 0: there was none
+    bool uneven = true;     ///< shares by index would have left ranks waiting
+    std::size_t alone = 0;  ///< batches since then that each rank evaluated alone
   };
   using Rows = std::pair<std::size_t, std::size_t>;  // first, end
 
   void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double each);
   void evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first, Experience& known);
-  std::vector<Rows> claim_chunks(const Problem& problem, EvaluationTable& table, Rows rows, std::size_t chunk);
+  void compare_ranks(const EvaluationTable& table, std::size_t row);
+  std::vector<Rows> claim_chunks(const Problem& problem, EvaluationTable& table, Rows rows);
 
   int threads_;
+  std::vector<std::size_t> threads_of_ranks_;
   std::vector<Scratch> scratch_;          ///< of each worker
   std::array<Experience, 3> experience_;  ///< with each Detail
 };

@@ -31,18 +31,29 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 /// Mean over the variables of the population's standard deviation, in units of the variable's range.
 double diversity(const DesignSpace& space, const EvaluationTable& table, const std::vector<std::int64_t>& population) {
   if (population.empty() || space.dimension() == 0) return 0;
-  double sum = 0;
-  const auto n = static_cast<double>(population.size());
-  for (std::size_t v = 0; v < space.dimension(); ++v) {
-    double mean = 0, square = 0;
-    for (const auto row : population) mean += space.to_unit(v, table.design(static_cast<std::size_t>(row))[v]) / n;
-    for (const auto row : population) {
-      const double d = space.to_unit(v, table.design(static_cast<std::size_t>(row))[v]) - mean;
-      square += d * d / n;
+  const std::size_t members = population.size(), dimension = space.dimension();
+  const auto n = static_cast<double>(members);
+  std::vector<double> units(members * dimension);  // a copy side by side: the table's rows lie far apart
+  const auto gather = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto design = table.design(static_cast<std::size_t>(population[i]));
+      for (std::size_t v = 0; v < dimension; ++v) units[v * members + i] = space.to_unit(v, design[v]);
     }
+  };
+  constexpr std::size_t kWorthSharing = 10'000;
+  if (members < kWorthSharing)
+    gather(0, members);
+  else
+    share_pieces(members, gather);
+  double sum = 0;
+  for (std::size_t v = 0; v < dimension; ++v) {
+    const std::span unit = std::span(units).subspan(v * members, members);
+    double mean = 0, square = 0;
+    for (const double u : unit) mean += u / n;
+    for (const double u : unit) square += (u - mean) * (u - mean) / n;
     sum += std::sqrt(square);
   }
-  return sum / static_cast<double>(space.dimension());
+  return sum / static_cast<double>(dimension);
 }
 
 double feasible_share(const EvaluationTable& table, const std::vector<std::int64_t>& population) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/core/team.hpp"
 #include "engine/survey/plain_voxels.hpp"
 #include "engine/survey/with_slopes.hpp"
 
@@ -11,8 +12,9 @@ namespace {
 
 class SurveySet final : public WithSlopes<SurveySet> {
  public:
-  SurveySet(std::vector<std::unique_ptr<const Surveyor>> members, const Demand& demand)
-      : members_(std::move(members)), fields_(demand.fields) {}
+  /// @param alone  members share nothing out themselves
+  SurveySet(std::vector<std::unique_ptr<const Surveyor>> members, const Demand& demand, bool alone)
+      : members_(std::move(members)), fields_(demand.fields), alone_(alone) {}
   const SlopeSurveyor* slopes() const override { return members_.front()->slopes() ? this : nullptr; }
   std::string why_no_slopes() const override { return members_.front()->why_no_slopes(); }
 
@@ -20,16 +22,26 @@ class SurveySet final : public WithSlopes<SurveySet> {
   friend WithSlopes<SurveySet>;
   template <class S>
   struct Room {
-    Survey<S> one;
+    std::vector<Survey<S>> of_members;
+    std::vector<Scratch> of_workers;
   };
 
   template <class S>
   void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
-    Survey<S>& one = scratch.get<Room<S>>().one;
+    Room<S>& room = scratch.get<Room<S>>();
     survey.clear(fields_);
     const double share = 1.0 / static_cast<double>(members_.size());
+    const bool shared = has_team() && (alone_ || members_.size() >= workers());
+    room.of_members.resize(shared ? members_.size() : 1);
+    if (shared) {
+      room.of_workers.resize(workers());
+      share_pieces(members_.size(), [&](std::size_t k, std::size_t end, std::size_t worker) {
+        for (; k < end; ++k) run_survey(*members_[k], parameters, room.of_workers[worker], room.of_members[k]);
+      });
+    }
     for (std::size_t k = 0; k < members_.size(); ++k) {
-      run_survey(*members_[k], parameters, scratch, one);
+      Survey<S>& one = room.of_members[shared ? k : 0];
+      if (!shared) run_survey(*members_[k], parameters, scratch, one);
       survey.volume += one.volume * share;
       survey.cells += one.cells;
       survey.feasible_cells += one.feasible_cells;
@@ -44,6 +56,7 @@ class SurveySet final : public WithSlopes<SurveySet> {
 
   std::vector<std::unique_ptr<const Surveyor>> members_;
   std::vector<const PoseQuantity*> fields_;
+  bool alone_;
 };
 
 std::unique_ptr<const Surveyor> prepare_one(const Mechanism& mechanism, const SurveyPlan& plan, const Demand& demand) {
@@ -90,7 +103,7 @@ std::unique_ptr<const Surveyor> prepare_survey(const Mechanism& mechanism, const
   std::vector<std::unique_ptr<const Surveyor>> members;
   for (const SurveyPlan& one : single_plans(plan)) members.push_back(prepare_one(mechanism, one, demand));
   if (members.size() == 1) return std::move(members.front());
-  return std::make_unique<SurveySet>(std::move(members), demand);
+  return std::make_unique<SurveySet>(std::move(members), demand, plan.columns() != nullptr);
 }
 
 VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) {

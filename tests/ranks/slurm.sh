@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# slurm.sh PROGRAM FOLDER: a script of experiments/slurm under a Slurm of this host alone, with rank_program's slow designs. A study that comes to its
-# job's time limit is requeued and ends as the one that nobody disturbed. Exit code 77: there is no Slurm, or not root.
+# slurm.sh PROGRAM FOLDER: the scripts of experiments/slurm under a Slurm of this host alone, with rank_program's slow
+# designs. A study that comes to its job's time limit is requeued and ends as the one that nobody disturbed; so do seeds
+# in jobs of their own. Exit code 77: there is no Slurm, or not root.
 set -euo pipefail
 program=$(realpath "$1") folder=$2
 tests=$(realpath "$(dirname -- "${BASH_SOURCE[0]}")/..") scripts=$(realpath "$(dirname -- "${BASH_SOURCE[0]}")/../../experiments/slurm")
@@ -86,3 +87,16 @@ from campaign import digest, state
 assert state("study.h5") == "finished" and digest("study.h5") == digest("straight.h5")
 PY
 echo "a study in several jobs ended as the one in one"
+
+# An array of jobs, one for each seed, and what tells of all.
+sed 's/generations = 500/generations = 5/' study.toml > short.toml
+sbatch --quiet --wait --array 1-2 --cpus-per-task 1 --time 10 --output seeds.out "$scripts/seeds.sbatch" short.toml --quiet ||
+  fail "the jobs of the seeds failed"
+"$program" run short.toml --seeds 2 --seed 1 --resume | grep -q ", 2 of 2 seeds" || fail "not all seeds have ended"
+"$program" run short.toml --seeds 2 --seed 1 --output alone.h5 --quiet
+PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "seeds by jobs and by one process differ"
+from campaign import digest
+for seed in "12":
+    assert digest(f"short-seed-{seed}.h5") == digest(f"alone-seed-{seed}.h5"), seed
+PY
+echo "two seeds in jobs of their own ended as by one process"

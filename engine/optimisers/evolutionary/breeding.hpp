@@ -17,7 +17,7 @@ namespace pkm {
 class Breeder {
  public:
   Breeder(const BreedingPlan& plan, const DesignSpace& space, std::uint64_t seed)
-      : plan_(plan), space_(space), seed_(seed), child_(space.dimension()) {}
+      : plan_(plan), space_(space), seed_(seed) {}
 
   /// The start population: the given designs first (moved into the space), then an even cover. At most `most_new` rows
   /// are added. `members` receives the rows.
@@ -31,18 +31,18 @@ class Breeder {
                  EvaluationTable& table, std::size_t most_new, std::vector<std::int64_t>& children);
 
  private:
-  bool add(std::uint32_t generation, std::uint32_t individual, EvaluationTable& table, std::size_t most_new,
-           std::vector<std::int64_t>& members);
-  bool renew(std::uint32_t generation, std::uint32_t individual, const EvaluationTable& table);
-  void breed(const Pool& pool, std::size_t first, std::size_t second, Stream& stream);
-  void move_into_space();
+  bool add(std::uint32_t generation, std::uint32_t individual, std::span<double> child, EvaluationTable& table,
+           std::size_t most_new, std::vector<std::int64_t>& members);
+  bool renew(std::uint32_t generation, std::uint32_t individual, std::span<double> child, const EvaluationTable& table);
+  void breed(const Pool& pool, std::size_t first, std::size_t second, Stream& stream, std::span<double> child) const;
+  void move_into_space(std::span<double> child) const;
 
   const BreedingPlan& plan_;
   const DesignSpace& space_;
   std::uint64_t seed_;
   KnownDesigns known_;
-  std::vector<double> child_;  // the design being made
-  std::vector<double> pool_;   // designs of the parents, best first
+  std::vector<double> pool_;      // designs of the parents, best first
+  std::vector<double> children_;  // designs as bred, known or not
   std::vector<std::uint32_t> parents_;
 };
 

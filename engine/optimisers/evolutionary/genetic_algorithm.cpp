@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "engine/core/team_sort.hpp"
 #include "engine/optimisers/evolutionary/evolution.hpp"
 #include "engine/optimisers/list.hpp"
 #include "engine/optimisers/option_specs.hpp"
@@ -35,8 +36,8 @@ class Best final : public Survivors {
     const auto parents = static_cast<std::ptrdiff_t>(population_.size());
     for (const std::int64_t row : newcomers)
       population_.push_back(ranked(problem_.objectives(), table_, static_cast<std::size_t>(row)));
+    sort_with_team(population_, static_cast<std::size_t>(parents));
     const auto children = population_.begin() + parents;
-    std::sort(children, population_.end());
     if (children != population_.end() && (best_.row < 0 || *children < best_)) best_ = *children;
     std::inplace_merge(population_.begin(), children, population_.end());
     population_.resize(std::min(population_.size(), plan_.evolution.breeding.population));

@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "engine/core/team_sort.hpp"
 #include "engine/optimisers/diversity.hpp"
 #include "engine/optimisers/evolutionary/evolution.hpp"
 #include "engine/optimisers/front_keeper.hpp"
@@ -46,7 +47,7 @@ class TradeOff final : public Survivors {
     }
     rows_.clear();
     survive_by_fronts();
-    std::sort(others.begin(), others.end());
+    sort_with_team(others);
     for (const Ranked& other : others)
       if (rows_.size() < most()) rows_.push_back(other.row);
     const bool less_broken = !others.empty() && (best_infeasible_.row < 0 || others.front() < best_infeasible_);
@@ -66,7 +67,7 @@ class TradeOff final : public Survivors {
   /// A child that is a design known already has its row: no row counts twice.
   void join(const std::vector<std::int64_t>& children) {
     rows_.insert(rows_.end(), children.begin(), children.end());
-    std::sort(rows_.begin(), rows_.end());
+    sort_with_team(rows_);
     rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
   }
 

@@ -177,12 +177,15 @@ class Run {
     for (std::size_t k = 0; k < stage_.starts().size(); ++k)
       if (!stage_.starts()[k].ended) open.push_back(k);
     if (open.size() < stage_.starts().size() && leads()) stage_.join();  // those that had ended
-    ranks::Counter claims;
-    const auto work = [&] {
-      for (auto k = claims.next(); k < std::ssize(open) && !stage_.stopped(); k = claims.next())
-        run(open[static_cast<std::size_t>(k)]);
-    };
-    share_long_pieces(plan_.side_by_side ? std::min(workers(), open.size()) : 1, work);
+    {
+      ranks::Counter claims, stops;
+      stops_ = &stops;
+      const auto work = [&] {
+        for (auto k = claims.next(); k < std::ssize(open) && !stage_.stopped(); k = claims.next())
+          run(open[static_cast<std::size_t>(k)]);
+      };
+      share_long_pieces(plan_.side_by_side ? std::min(workers(), open.size()) : 1, work);
+    }
     if (ranks::size() > 1) agree();
     return stage_.result(stage_.stopped() ? StopReason::interrupted : reason());
   }
@@ -220,7 +223,7 @@ class Run {
         const auto now = std::chrono::steady_clock::now();
         if (now - asked_ < std::chrono::milliseconds(100)) return !stage_.stopped();
         asked_ = now;
-        if (stops_.next(0) > 0) stage_.stop();
+        if (stops_->next(0) > 0) stage_.stop();
         return !stage_.stopped();
       }
       while (const auto message = ranks::poll()) {
@@ -229,7 +232,7 @@ class Run {
         if (stage == input_.seed) know(*message, sizeof stage);
       }
     }
-    if (!stage_.join()) stops_.next();
+    if (!stage_.join()) stops_->next();
     return !stage_.stopped();
   }
 
@@ -412,7 +415,7 @@ class Run {
   const StageInput& input_;
   EvaluationTable& table_;
   Stage stage_;
-  ranks::Counter stops_;  ///< above 0: rank 0 has stopped
+  ranks::Counter* stops_ = nullptr;  ///< above 0: rank 0 has stopped
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 

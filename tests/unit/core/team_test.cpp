@@ -1,4 +1,4 @@
-#include "engine/core/team.hpp"
+#include "engine/core/team_sort.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -51,6 +51,21 @@ TEST(Team, GivesTheSameBitsWhateverTheThreads) {
   };
   const std::vector<double> alone = results(1);
   for (const int threads : {2, 3, 7}) EXPECT_EQ(results(threads), alone) << threads << " threads";
+}
+
+TEST(Team, SortsAsOneThreadDoes) {
+  for (const int threads : {1, 2, 3, 5})
+    with_team(threads, [&] {
+      for (const std::size_t count : {0, 1, 9'999, 60'001}) {
+        std::vector<std::uint32_t> numbers(count);
+        for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::uint32_t>(i) * 2654435761u;
+        std::vector<std::uint32_t> sorted = numbers;
+        const std::size_t first = count / 7;
+        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first), sorted.end());
+        sort_with_team(numbers, first);
+        EXPECT_EQ(numbers, sorted) << threads << " threads, " << count;
+      }
+    });
 }
 
 TEST(Team, DoesLongPiecesOnceAndWhatTheyShareOut) {

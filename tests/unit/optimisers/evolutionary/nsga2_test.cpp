@@ -7,6 +7,7 @@
 #include "engine/math/hypervolume.hpp"
 #include "engine/optimisers/dominance.hpp"
 #include "engine/problem/front.hpp"
+#include "tests/unit/optimisers/known_problems.hpp"
 #include "tests/unit/optimisers/stage.hpp"
 #include "tests/unit/optimisers/trade_off_problems.hpp"
 
@@ -29,6 +30,23 @@ double volume_of(const TradeOff& known, const Outcome& outcome, const std::vecto
 
 double true_volume(const TradeOff& known) {
   return hypervolume(known.front, known.objectives(), reference_point(known));
+}
+
+TEST(Nsga2, ALargePopulationByATeamHasTheSameBits) {
+  for (const char* name : {"ga", "nsga2"}) {
+    const FunctionProblem problem({{"x", "1", 0, 1}, {"y", "1", 0, 1}},
+                                  std::vector(name == std::string("ga") ? 1 : 2, Direction::minimise), 1,
+                                  [](std::span<const double> x, std::span<double> f, std::span<double> g) {
+                                    f[0] = x[0] * x[0] + x[1];
+                                    if (f.size() > 1) f[1] = (1 - x[0]) * (1 - x[0]) + x[1] * x[1];
+                                    g[0] = x[1] - 0.3;
+                                  });
+    const auto optimiser =
+        make(entry(name), problem, {{"population", std::int64_t{12000}}, {"generations", std::int64_t{2}}});
+    const Outcome alone = run(*optimiser, problem);
+    for (const int threads : {2, 5})
+      with_team(threads, [&] { EXPECT_TRUE(same_bits(run(*optimiser, problem), alone)) << name << ' ' << threads; });
+  }
 }
 
 TEST(Nsga2, FindsTheFrontsOfTheUsualProblems) {

@@ -1,0 +1,34 @@
+// Sorting by a team.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "engine/core/team.hpp"
+
+namespace pkm {
+
+/// Sorts by an order in which no two elements are equal: so there is one result, however it is shared out.
+template <class T, class Less = std::less<>>
+void sort_with_team(std::vector<T>& all, std::size_t first = 0, const Less& less = {}) {
+  constexpr std::size_t kWorthSharing = 5000;  // elements of a run
+  const std::size_t count = all.size() - first;
+  const std::size_t runs = has_team() ? std::bit_floor(std::min(workers(), count / kWorthSharing)) : 0;
+  const auto begin_of = [&](std::size_t run) {
+    return all.begin() + static_cast<std::ptrdiff_t>(first + run * count / std::max<std::size_t>(runs, 1));
+  };
+  if (runs < 2) return std::sort(begin_of(0), all.end(), less);
+  share_pieces(runs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t run = begin; run < end; ++run) std::sort(begin_of(run), begin_of(run + 1), less);
+  });
+  for (std::size_t half = 1; half < runs; half *= 2)
+    share_pieces(runs / (2 * half), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t run = 2 * half * begin; run < 2 * half * end; run += 2 * half)
+        std::inplace_merge(begin_of(run), begin_of(run + half), begin_of(run + 2 * half), less);
+    });
+}
+
+}  // namespace pkm
