@@ -5,6 +5,7 @@
 // 0 is B < 0: A >= 0 and A^2 - B^2 Q >= 0; B > 0: A >= 0 or B^2 Q - A^2 >= 0. That Q >= 0 is a condition of its own.
 #pragma once
 
+#include <compare>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace pkm::graph {
 /// c[0] + c[1] z + c[2] z^2
 struct Quadratic {
   std::array<Node, 3> c;
+
+  auto operator<=>(const Quadratic&) const = default;
 };
 
 /// At least one of them is >= 0.

@@ -41,7 +41,7 @@ std::uint64_t range_of_bits(double from, double to, std::size_t word) {
 Shape shape_of(const graph::Graph& graph, Node leading) {
   const graph::Entry& entry = graph[leading];
   if (!entry.is_number()) return Shape::any;
-  return entry.number < 0 ? Shape::concave : entry.number > 0 ? Shape::any : Shape::line;
+  return entry.number < 0 ? Shape::concave : entry.number > 0 ? Shape::convex : Shape::line;
 }
 
 /// What a step takes, in additions.
@@ -72,22 +72,20 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
     groups[0] &= ~group;
   }
   std::vector<Node> outputs, plain;
-  std::vector<std::vector<std::pair<Shape, graph::Quadratic>>> clauses;
+  std::vector<graph::Clause> clauses;
   for (const Node condition : conditions) {
     const bool along = (graph[condition].groups & groups[kInner]) != 0;
     const auto lower = along ? lowered(graph, condition, groups[kInner]) : std::nullopt;
-    if (!lower) {
+    if (lower)
+      clauses.insert(clauses.end(), lower->begin(), lower->end());
+    else
       plain.push_back(condition);
-      continue;
-    }
-    for (const graph::Clause& clause : *lower) {
-      auto& alternatives = clauses.emplace_back();
-      for (const graph::Quadratic& q : clause) alternatives.emplace_back(shape_of(graph, q.c[2]), q);
-    }
   }
+  std::ranges::sort(clauses);  // what two conditions ask for is asked for once
+  clauses.erase(std::unique(clauses.begin(), clauses.end()), clauses.end());
   outputs = plain;
-  for (const auto& alternatives : clauses)
-    for (const auto& [shape, q] : alternatives) outputs.insert(outputs.end(), q.c.begin(), q.c.end());
+  for (const graph::Clause& clause : clauses)
+    for (const graph::Quadratic& q : clause) outputs.insert(outputs.end(), q.c.begin(), q.c.end());
   program_ = Program(graph, outputs, groups);
 
   std::vector<std::uint32_t> kept;
@@ -106,17 +104,29 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
   kept.insert(kept.end(), handed_down_.begin(), handed_down_.end());
   middle_.emplace(program_, kMiddle, kept);
   inner_.emplace(program_, kInner, inner_conditions_);
+  const graph::Node zero = graph.number(0);
   std::size_t output = plain.size();
-  for (const auto& alternatives : clauses) {
-    Alternatives& made = columns_.emplace_back();
-    for (const auto& [shape, q] : alternatives) {
-      Condition& condition = made.emplace_back(Condition{shape, {}});
+  for (const graph::Clause& clause : clauses) {
+    Alternatives made;
+    std::optional<graph::Operand> constant;  // an alternative that is the same all along
+    for (const graph::Quadratic& q : clause) {
+      ColumnCondition condition{.shape = shape_of(graph, q.c[2])};
       for (graph::Operand& c : condition.c) c = middle_->operand(program_.outputs()[output++]);
+      if (clause.size() == 2 && !constant && q.c[1] == zero && q.c[2] == zero)
+        constant = condition.c[0];
+      else
+        made.push_back(condition);
     }
+    if (constant) {
+      made.front().has_unless = true;
+      made.front().unless = *constant;
+    }
+    if (made.size() == 1)
+      columns_.push_back(made.front());
+    else
+      alternatives_.push_back(made);
   }
-  // those that narrow ranges first; the others take bits away
-  std::ranges::stable_partition(columns_,
-                                [](const Alternatives& a) { return a.size() == 1 && a.front().shape != Shape::any; });
+  std::ranges::stable_sort(columns_, {}, &ColumnCondition::shape);
 }
 
 double CellTest::cost(const std::array<std::int64_t, 3>& cells) const {
@@ -126,7 +136,7 @@ double CellTest::cost(const std::array<std::int64_t, 3>& cells) const {
     passes *= static_cast<double>(cells[axis]);
     sum +=
         passes * cost_of(program_.stages()[stage].steps) * (stage == kOuter ? 4 : 1);  // numbers are slower than rows
-    if (stage == kMiddle) sum += passes * 8 * static_cast<double>(columns_.size());
+    if (stage == kMiddle) sum += passes * 8 * static_cast<double>(columns_.size() + 4 * alternatives_.size());
     ++stage;
   }
   return sum;
@@ -177,68 +187,104 @@ void CellTest::start(const std::vector<double>& inputs, CellRoom& room) const {
   program_.run<double>(0, inputs, room.registers);
 }
 
-void CellTest::test(const VoxelGrid& grid, std::size_t outer, CellRoom& room) const {
+CellTally CellTest::test(const VoxelGrid& grid, std::size_t outer, bool want_bits, CellRoom& room) const {
   const auto [slices, columns, cells] = shape(grid);
-  room.bits.assign(columns * words(cells), 0);
+  if (want_bits) room.bits.assign(columns * words(cells), 0);
   for (const auto& input : program_.stages()[kOuter].inputs)
     room.registers[input.to] = grid.centre(order_[0], static_cast<std::int64_t>(outer));
   program_.run<double>(kOuter, room.registers);
-  if (!std::ranges::all_of(early_, [&](std::uint32_t at) { return room.registers[at] >= 0; })) return;
-  for (std::size_t first = 0; first < columns; first += kRow)
-    test_columns(grid, first, std::min(kRow, columns - first), room);
+  CellTally tally;
+  if (!std::ranges::all_of(early_, [&](std::uint32_t at) { return room.registers[at] >= 0; })) return tally;
+  for (std::size_t first = 0; first < columns; first += kRow) {
+    const CellTally part = test_columns(grid, outer, first, std::min(kRow, columns - first), want_bits, room);
+    tally.cells += part.cells;
+    tally.touches_box = tally.touches_box || part.touches_box;
+  }
+  return tally;
 }
 
-void CellTest::test_columns(const VoxelGrid& grid, std::size_t first, std::size_t count, CellRoom& room) const {
+CellTally CellTest::test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
+                                 bool want_bits, CellRoom& room) const {
   const std::size_t cells = shape(grid)[2], inner = order_.back();
   const ColumnGrid column_grid = {grid.centre(inner, 0), grid.step[inner], static_cast<double>(cells)};
-  std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
+  const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes;
   for (const std::uint32_t slot : middle_->inputs())
-    whole = fill_centres(grid, order_[order_.size() - 2], first, count, &room.middle_rows[slot * kRow]);
+    fill_centres(grid, order_[order_.size() - 2], first, count, &room.middle_rows[slot * kRow]);
   const double* const registers = room.registers.data();
   double* const rows = room.middle_rows.data();
   middle_->run(registers, rows, whole);
 
-  CellRanges ranges, other;
-  ranges.from.fill(0);
-  ranges.to.fill(column_grid.cells);
+  CellRanges& ranges = room.ranges;
+  std::fill_n(ranges.from.begin(), whole, 0.0);
+  std::fill_n(ranges.to.begin(), count, column_grid.cells);
+  std::fill(ranges.to.begin() + static_cast<std::ptrdiff_t>(count),
+            ranges.to.begin() + static_cast<std::ptrdiff_t>(whole), 0.0);
   for (const std::uint32_t at : middle_conditions_) {
     const double* const row = rows + middle_->operand(at).index * kRow;
     for (std::size_t j = 0; j < count; ++j) ranges.to[j] = row[j] >= 0 ? ranges.to[j] : 0;
   }
-  const auto narrow_to = [&](const Condition& condition, CellRanges& to) {
-    with_instruction_set([&]<InstructionSet set> {
-      narrow<set>(condition.shape, condition.c, registers, rows, column_grid, whole, to);
-    });
-  };
   const std::size_t length = words(cells);
-  const auto for_words = [&](const auto& change) {
+  bool has_holes = false;
+  for (const ColumnCondition& condition : columns_) {
+    const bool holes = with_instruction_set(
+        [&]<InstructionSet set> { return narrow<set>(condition, registers, rows, column_grid, whole, ranges); });
+    if (!holes) continue;
+    if (!has_holes) room.hole.assign(count * length, 0);
+    has_holes = true;
     for (std::size_t j = 0; j < count; ++j)
-      for (std::size_t word = 0; word < length; ++word) change(room.bits[(first + j) * length + word], j, word);
-  };
-  const auto end_of_ranges = std::ranges::find_if(
-      columns_, [](const Alternatives& a) { return a.size() > 1 || a.front().shape == Shape::any; });
-  for (auto condition = columns_.begin(); condition != end_of_ranges; ++condition)
-    narrow_to(condition->front(), ranges);
-  for_words([&](std::uint64_t& bits, std::size_t j, std::size_t word) {
-    bits = range_of_bits(ranges.from[j], ranges.to[j], word);
-  });
-  std::vector<std::uint64_t>& some = room.some;
-  for (auto condition = end_of_ranges; condition != columns_.end(); ++condition) {
-    some.assign(count * length, 0);
-    for (const Condition& alternative : *condition) {
-      other.from.fill(0);
-      other.to.fill(column_grid.cells);
-      if (alternative.shape != Shape::any) {
-        other.drop_from.fill(0);
-        other.drop_to.fill(0);
-      }
-      narrow_to(alternative, other);
+      for (std::size_t word = 0; word < length; ++word)
+        room.hole[j * length + word] |= range_of_bits(ranges.hole_from[j], ranges.hole_to[j], word);
+  }
+  CellTally tally;
+  if (!want_bits && !has_holes && alternatives_.empty() && inner_conditions_.empty()) {
+    double sum = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+      const double number = std::max(ranges.to[j] - ranges.from[j], 0.0);
+      sum += number;
+      if (number > 0 && !tally.touches_box)
+        tally.touches_box = ranges.from[j] == 0 || ranges.to[j] == column_grid.cells || at_side(grid, outer, first + j);
+    }
+    tally.cells = static_cast<std::int64_t>(sum);
+    return tally;
+  }
+  if (!want_bits) room.bits.resize((first + count) * length);
+  for (std::size_t j = 0; j < count; ++j)
+    for (std::size_t word = 0; word < length; ++word)
+      room.bits[(first + j) * length + word] =
+          range_of_bits(ranges.from[j], ranges.to[j], word) & ~(has_holes ? room.hole[j * length + word] : 0);
+  find_bits(grid, first, count, column_grid, whole, room);
+  for (std::size_t j = 0; j < count; ++j) {
+    const std::uint64_t* const bits = &room.bits[(first + j) * length];
+    std::int64_t number = 0;
+    for (std::size_t word = 0; word < length; ++word) number += std::popcount(bits[word]);
+    tally.cells += number;
+    if (number == 0 || tally.touches_box) continue;
+    const bool last = (bits[(cells - 1) / 64] >> ((cells - 1) % 64) & 1) != 0;
+    tally.touches_box = (bits[0] & 1) != 0 || last || at_side(grid, outer, first + j);
+  }
+  return tally;
+}
+
+/// What is left of room.bits by conditions with alternatives, and by those that are tested cell by cell.
+void CellTest::find_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
+                         std::size_t whole, CellRoom& room) const {
+  const std::size_t cells = shape(grid)[2], length = words(cells);
+  const double* const rows = room.middle_rows.data();
+  for (const Alternatives& alternatives : alternatives_) {
+    room.some.assign(count * length, 0);
+    CellRanges& other = room.other;
+    for (const ColumnCondition& alternative : alternatives) {
+      std::fill_n(other.from.begin(), whole, 0.0);
+      std::fill_n(other.to.begin(), whole, column_grid.cells);
+      with_instruction_set([&]<InstructionSet set> {
+        narrow<set>(alternative, room.registers.data(), rows, column_grid, whole, other);
+      });
       for (std::size_t j = 0; j < count; ++j)
         for (std::size_t word = 0; word < length; ++word)
-          some[j * length + word] |= range_of_bits(other.from[j], other.to[j], word) &
-                                     ~range_of_bits(other.drop_from[j], other.drop_to[j], word);
+          room.some[j * length + word] |= range_of_bits(other.from[j], other.to[j], word) &
+                                          ~range_of_bits(other.hole_from[j], other.hole_to[j], word);
     }
-    for_words([&](std::uint64_t& bits, std::size_t j, std::size_t word) { bits &= some[j * length + word]; });
+    for (std::size_t i = 0; i < count * length; ++i) room.bits[first * length + i] &= room.some[i];
   }
   if (inner_conditions_.empty()) return;
   for (std::size_t j = 0; j < count; ++j) {

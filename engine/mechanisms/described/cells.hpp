@@ -19,8 +19,15 @@ namespace pkm::described {
 /// What a worker overwrites.
 struct CellRoom {
   std::vector<double> registers, middle_rows, rows;
-  std::vector<std::uint64_t> bits;  ///< of one slice: a bit for each cell, words() words for each column
-  std::vector<std::uint64_t> some;  ///< where one of several alternatives holds
+  std::vector<std::uint64_t> bits;  ///< of a slice, where they are asked for: words() words for each column
+  std::vector<std::uint64_t> some, hole;
+  CellRanges ranges, other;
+};
+
+/// Feasible cells of a slice.
+struct CellTally {
+  std::int64_t cells = 0;
+  bool touches_box = false;
 };
 
 /// Loops over the swept coordinates: the outer one of three, the middle one, and the innermost, along columns.
@@ -39,30 +46,32 @@ class CellTest {
   /// The cell of the grid, by axis, of these three.
   std::array<std::int64_t, 3> cell(std::size_t outer, std::size_t middle, std::size_t inner) const;
   static std::size_t words(std::size_t cells) { return (cells + 63) / 64; }
-  /// Whether a slice is on the box's outside, and a column of it.
+  /// Whether a column is on the box's outside.
   bool at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const;
 
   /// Computes what no swept coordinate changes.
   /// @param inputs  of the design, with held coordinates
   void start(const std::vector<double>& inputs, CellRoom& room) const;
   /// Finds the cells of a slice, after start().
-  void test(const VoxelGrid& grid, std::size_t outer, CellRoom& room) const;
+  /// @param want_bits  whether room.bits is to be set, too
+  CellTally test(const VoxelGrid& grid, std::size_t outer, bool want_bits, CellRoom& room) const;
 
  private:
-  struct Condition {
-    Shape shape;
-    std::array<graph::Operand, 3> c;
-  };
-  using Alternatives = std::vector<Condition>;  ///< one of them has to hold
+  using Alternatives = std::vector<ColumnCondition>;  ///< one of them has to hold
 
-  void test_columns(const VoxelGrid& grid, std::size_t first, std::size_t count, CellRoom& room) const;
+  /// Columns [first, first + count) of a slice.
+  CellTally test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count, bool want_bits,
+                         CellRoom& room) const;
+  void find_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
+                 std::size_t whole, CellRoom& room) const;
   void test_cells(const VoxelGrid& grid, std::uint64_t* bits, std::size_t cells, CellRoom& room) const;
   double cost(const std::array<std::int64_t, 3>& cells) const;
 
   std::vector<std::size_t> order_;  ///< axes
   graph::Program program_;
   std::vector<std::uint32_t> early_, middle_conditions_, inner_conditions_, handed_down_;  ///< registers
-  std::vector<Alternatives> columns_;
+  std::vector<ColumnCondition> columns_;    ///< lines first, which cost least
+  std::vector<Alternatives> alternatives_;  ///< one of each has to hold
   std::optional<graph::RowStage> middle_, inner_;
 };
 

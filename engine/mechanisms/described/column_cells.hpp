@@ -14,19 +14,27 @@ struct ColumnGrid {
   double first, step, cells;
 };
 
-/// What is known of a condition's leading coefficient.
-enum class Shape { line, concave, any };
+/// What is known of a condition's leading coefficient: it is 0, a number < 0, a number > 0, or anything.
+enum class Shape { line, concave, convex, any };
 
-/// By column: cells [from, to) without [drop_from, drop_to), whole numbers. Lines and concave conditions drop none.
-struct CellRanges {
-  std::array<double, graph::kRow> from, to, drop_from, drop_to;
+/// c[0] + c[1] z + c[2] z^2 >= 0, or `unless` >= 0, which is the same all along a column.
+struct ColumnCondition {
+  Shape shape = Shape::any;
+  std::array<graph::Operand, 3> c{};
+  bool has_unless = false;
+  graph::Operand unless{};
 };
 
-/// Narrows `from` and `to` to where c[0] + c[1] z + c[2] z^2 >= 0 and, of Shape::any, sets what is to be dropped, for
-/// `count` columns, whole lanes. A condition that is undefined holds nowhere.
+/// By column, whole numbers: cells [from, to) without those of the hole, [hole_from, hole_to).
+struct CellRanges {
+  std::array<double, graph::kRow> from, to, hole_from, hole_to;
+};
+
+/// Narrows `from` and `to` to where a condition holds, for `count` columns, whole lanes; a condition that is undefined
+/// holds nowhere. True where a hole is left inside of some column's range: then holes are set, in all columns.
 /// @param registers, rows  as graph::RowStage has them
 template <InstructionSet set>
-void narrow(Shape shape, const std::array<graph::Operand, 3>& c, const double* registers, const double* rows,
-            const ColumnGrid& grid, std::size_t count, CellRanges& ranges);
+bool narrow(const ColumnCondition& condition, const double* registers, const double* rows, const ColumnGrid& grid,
+            std::size_t count, CellRanges& ranges);
 
 }  // namespace pkm::described

@@ -4,9 +4,10 @@
 namespace pkm::described {
 
 template <InstructionSet set>
-void narrow(Shape shape, const std::array<graph::Operand, 3>& c, const double* registers, const double* rows,
-            const ColumnGrid& grid, std::size_t count, CellRanges& ranges) {
+bool narrow(const ColumnCondition& condition, const double* registers, const double* rows, const ColumnGrid& grid,
+            std::size_t count, CellRanges& ranges) {
   using L = LanesOf<set>;
+  const auto& [shape, c, has_unless, unless] = condition;
   const L none(0.0), all(grid.cells);
   const double per_step = 1 / grid.step;
   const auto load = [&](const graph::Operand& operand, std::size_t k) __attribute__((always_inline)) {
@@ -18,9 +19,15 @@ void narrow(Shape shape, const std::array<graph::Operand, 3>& c, const double* r
   };
   const auto first_at = [&](const L& t) __attribute__((always_inline)) { return ceil(greater(t, none)); };
   const auto end_at = [&](const L& t) __attribute__((always_inline)) { return floor(lesser(t, all - 1.0)) + 1.0; };
+  const double leading = shape == Shape::any || shape == Shape::line ? 0 : registers[c[2].index];
+  double deepest = 0;  // cells of the greatest hole
   for (std::size_t k = 0; k < count; k += kLanes) {
+    const L before_from = L::load(&ranges.from[k]), before_to = L::load(&ranges.to[k]);
+    none.store(&ranges.hole_from[k]);
+    none.store(&ranges.hole_to[k]);
+    if (!(greatest(before_to - before_from) > 0)) continue;
     const L c0 = load(c[0], k), b = load(c[1], k);
-    L from = none, to = all;
+    L from = none, to = all, hole_from = none, hole_to = none;
     if (shape == Shape::line) {
       const L end = place(-c0 / b);
       from = select(b > 0.0, first_at(end), none);
@@ -29,6 +36,20 @@ void narrow(Shape shape, const std::array<graph::Operand, 3>& c, const double* r
       to = select(flat, select(c0 >= 0.0, all, none), to);
       const L number = c0 + b;
       to = select(number >= number, to, none);
+    } else if (shape != Shape::any) {
+      const L discriminant = b * b - (4.0 * leading) * c0, root = root_or_zero(discriminant);
+      const double half = 0.5 / (leading < 0 ? -leading : leading);
+      const L centre = b * (-0.5 / leading), reach = root * half;
+      const L low = place(centre - reach), high = place(centre + reach);
+      if (shape == Shape::concave) {
+        from = first_at(low);
+        to = select(discriminant >= 0.0, end_at(high), none);
+      } else {
+        const auto open = discriminant > 0.0;
+        hole_from = select(open, greater(floor(low) + 1.0, none), none);
+        hole_to = select(open, ceil(high), none);
+        to = select(discriminant >= discriminant, to, none);
+      }
     } else {
       // The roots q / a and c0 / q lose no digits; of a line, a = 0, the first is infinite.
       const L a = load(c[2], k) + 0.0;
@@ -36,24 +57,42 @@ void narrow(Shape shape, const std::array<graph::Operand, 3>& c, const double* r
       const L q = (b + select(b < 0.0, -root, root)) * -0.5;
       const L r1 = q / a, r2 = c0 / q;
       const L low = place(lesser(r1, r2)), high = place(greater(r1, r2));
-      const auto concave = a < 0.0;
+      const auto concave = a<0.0, open = discriminant> 0.0;
       from = select(concave, first_at(low), none);
       to = select(concave, select(discriminant >= 0.0, end_at(high), none), all);
-      if (shape == Shape::any) {
-        const auto flat = (a <= 0.0) & (a >= 0.0) & (b <= 0.0) & (b >= 0.0);
-        to = select(flat, select(c0 >= 0.0, all, none), to);
-        const auto open = discriminant > 0.0;
-        select(open, select(concave, none, greater(floor(low) + 1.0, none)), none).store(&ranges.drop_from[k]);
-        select(open, select(concave, none, ceil(high)), none).store(&ranges.drop_to[k]);
-      }
+      hole_from = select(open, select(concave, none, greater(floor(low) + 1.0, none)), none);
+      hole_to = select(open, select(concave, none, ceil(high)), none);
+      const auto flat = (a <= 0.0) & (a >= 0.0) & (b <= 0.0) & (b >= 0.0);
+      to = select(flat, select(c0 >= 0.0, all, none), to);
       to = select(discriminant >= discriminant, to, none);
     }
-    greater(L::load(&ranges.from[k]), from).store(&ranges.from[k]);
-    lesser(L::load(&ranges.to[k]), to).store(&ranges.to[k]);
+    if (has_unless) {
+      const auto always = load(unless, k) >= 0.0;
+      from = select(always, none, from);
+      to = select(always, all, to);
+      hole_to = select(always, none, hole_to);
+    }
+    from = greater(before_from, from);
+    to = lesser(before_to, to);
+    if (shape == Shape::convex || shape == Shape::any) {  // what of the hole reaches over an end shortens the range
+      const auto is_hole = hole_from < hole_to;
+      from = select(is_hole & (hole_from <= from), greater(from, hole_to), from);
+      to = select(is_hole & (hole_to >= to), lesser(to, hole_from), to);
+      const auto inside = is_hole & (from < hole_from) & (hole_to < to);
+      hole_from = select(inside, hole_from, none);
+      hole_to = select(inside, hole_to, none);
+      hole_from.store(&ranges.hole_from[k]);
+      hole_to.store(&ranges.hole_to[k]);
+      const double depth = greatest(hole_to - hole_from);
+      deepest = depth > deepest ? depth : deepest;
+    }
+    from.store(&ranges.from[k]);
+    to.store(&ranges.to[k]);
   }
+  return deepest > 0;
 }
 
-template void narrow<PKM_INSTRUCTION_SET>(Shape, const std::array<graph::Operand, 3>&, const double*, const double*,
-                                          const ColumnGrid&, std::size_t, CellRanges&);
+template bool narrow<PKM_INSTRUCTION_SET>(const ColumnCondition&, const double*, const double*, const ColumnGrid&,
+                                          std::size_t, CellRanges&);
 
 }  // namespace pkm::described

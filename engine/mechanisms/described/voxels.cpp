@@ -59,8 +59,10 @@ class DescribedVoxels final : public VoxelSurveyor {
                   [&](std::size_t piece, Survey<double>& part, std::size_t worker) {
                     Room& room = rooms[worker];
                     if (room.repeat != piece / slices) start(inputs, held, piece / slices, room);
-                    test_.test(grid, piece % slices, room.cells);
-                    add_slice(parameters, grid, piece % slices, measure, room, part);
+                    const CellTally tally = test_.test(grid, piece % slices, demand_.needs_samples(), room.cells);
+                    part.feasible_cells += tally.cells;
+                    part.touches_box = part.touches_box || tally.touches_box;
+                    if (demand_.needs_samples()) add_slice(parameters, grid, piece % slices, measure, room, part);
                   });
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
@@ -72,7 +74,7 @@ class DescribedVoxels final : public VoxelSurveyor {
     test_.start(inputs_of(parameters), room);
     const auto [slices, columns, cells] = test_.shape(grid);
     for (std::size_t slice = 0; slice < slices; ++slice) {
-      test_.test(grid, slice, room);
+      test_.test(grid, slice, true, room);
       for_each_cell(room, columns, cells, [&](std::size_t j, std::size_t k) {
         const auto cell = test_.cell(slice, j, k);
         map.feasible[static_cast<std::size_t>((cell[0] * map.cells[1] + cell[1]) * map.cells[2] + cell[2])] = 1;
@@ -157,21 +159,10 @@ class DescribedVoxels final : public VoxelSurveyor {
           visit(j, word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
   }
 
-  /// Counts the feasible cells of a slice, and adds their samples.
+  /// Adds the samples of a slice.
   void add_slice(std::span<const double> parameters, const VoxelGrid& grid, std::size_t slice, double measure,
                  Room& room, Survey<double>& to) const {
     const auto [slices, columns, cells] = test_.shape(grid);
-    const std::size_t words = CellTest::words(cells);
-    for (std::size_t j = 0; j < columns; ++j) {
-      const std::uint64_t* const bits = &room.cells.bits[j * words];
-      std::int64_t count = 0;
-      for (std::size_t word = 0; word < words; ++word) count += std::popcount(bits[word]);
-      to.feasible_cells += count;
-      if (count == 0 || to.touches_box) continue;
-      const bool last = (bits[(cells - 1) / 64] >> ((cells - 1) % 64) & 1) != 0;
-      to.touches_box = test_.at_side(grid, slice, j) || (bits[0] & 1) != 0 || last;
-    }
-    if (!demand_.needs_samples()) return;
     for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
       const auto cell = test_.cell(slice, j, k);
       Pose<double> pose(e_.model.inputs.coordinates);
