@@ -55,9 +55,10 @@ bool is_positive(const Graph& graph, Node node) {
     case Code::divide:
       return each();
     case Code::sqrt:
+    case Code::abs:
       return true;
     default:
-      return entry.operation->name == "abs";
+      return false;
   }
 }
 
@@ -141,7 +142,7 @@ class Lowering {
   std::optional<Term> inside_of_abs(const Term& term) {
     const Entry entry = graph_[term.node()];
     if (!entry.operation || (entry.groups & z_) == 0) return {};
-    if (entry.operation->name == "abs") return Term(graph_, entry.arguments[0]);
+    if (entry.operation->code == Code::abs) return Term(graph_, entry.arguments[0]);
     if (entry.operation->code != Code::divide || !is_positive(graph_, entry.arguments[1])) return {};
     const auto inner = inside_of_abs(Term(graph_, entry.arguments[0]));
     if (!inner) return {};

@@ -154,7 +154,8 @@ const std::vector<Operation>& functions() {
       make<1>("log10", [](const auto& x) { return log(x) / 2.302585092994045684; }),
       make<1>(
           "sqrt", [](const auto& x) { return sqrt(x); }, 0, Code::sqrt),
-      make<1>("abs", [](const auto& x) { return magnitude(x); }),
+      make<1>(
+          "abs", [](const auto& x) { return magnitude(x); }, 0, Code::abs),
       make<1>("sign",
               [](const auto& x) {
                 const double a = value_of(x);

@@ -12,7 +12,7 @@
 namespace pkm::graph {
 
 /// For those who compute many values side by side (rows_kernel.cpp); `other`: by its rule alone.
-enum class Code : unsigned char { add, subtract, multiply, divide, negate, sqrt, min, max, other };
+enum class Code : unsigned char { add, subtract, multiply, divide, negate, sqrt, abs, min, max, other };
 
 /// What an operation makes of x[0], ..., x[count - 1].
 template <class S>

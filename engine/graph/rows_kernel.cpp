@@ -58,6 +58,9 @@ void run_rows(std::span<const RowStep> steps, const double* registers, double* r
       case Code::sqrt:
         one([](const L& x) __attribute__((always_inline)) { return sqrt(x); });
         break;
+      case Code::abs:
+        one([](const L& x) __attribute__((always_inline)) { return select(x < 0.0, -x, x); });
+        break;
       case Code::min:  // undefined where one is
         two([](const L& x, const L& y)
                 __attribute__((always_inline)) { return select(y >= y, select(y < x, y, x), y); });

@@ -107,6 +107,13 @@ PKM_LANES Lanes<W> floor(const Lanes<W>& x) {
 }
 PKM_LANES Lanes<W> ceil(const Lanes<W>& x) { return -floor(-x); }
 
+PKM_LANES bool any(const LaneMask<W>& mask) {
+  long long lane[kLanes], bits = 0;
+  std::memcpy(lane, mask.part, sizeof lane);
+  for (const long long each : lane) bits |= each;
+  return bits != 0;
+}
+
 /// All lanes, from the first.
 PKM_LANES double least(const Lanes<W>& x) {
   double lane[kLanes], r = 0;

@@ -20,12 +20,12 @@ bool narrow(const ColumnCondition& condition, const double* registers, const dou
   const auto first_at = [&](const L& t) __attribute__((always_inline)) { return ceil(greater(t, none)); };
   const auto end_at = [&](const L& t) __attribute__((always_inline)) { return floor(lesser(t, all - 1.0)) + 1.0; };
   const double leading = shape == Shape::any || shape == Shape::line ? 0 : registers[c[2].index];
-  double deepest = 0;  // cells of the greatest hole
+  bool has_holes = false;
   for (std::size_t k = 0; k < count; k += kLanes) {
     const L before_from = L::load(&ranges.from[k]), before_to = L::load(&ranges.to[k]);
     none.store(&ranges.hole_from[k]);
     none.store(&ranges.hole_to[k]);
-    if (!(greatest(before_to - before_from) > 0)) continue;
+    if (!any(before_from < before_to)) continue;
     const L c0 = load(c[0], k), b = load(c[1], k);
     L from = none, to = all, hole_from = none, hole_to = none;
     if (shape == Shape::line) {
@@ -83,13 +83,12 @@ bool narrow(const ColumnCondition& condition, const double* registers, const dou
       hole_to = select(inside, hole_to, none);
       hole_from.store(&ranges.hole_from[k]);
       hole_to.store(&ranges.hole_to[k]);
-      const double depth = greatest(hole_to - hole_from);
-      deepest = depth > deepest ? depth : deepest;
+      has_holes = has_holes || any(inside);
     }
     from.store(&ranges.from[k]);
     to.store(&ranges.to[k]);
   }
-  return deepest > 0;
+  return has_holes;
 }
 
 template bool narrow<PKM_INSTRUCTION_SET>(const ColumnCondition&, const double*, const double*, const ColumnGrid&,
