@@ -44,6 +44,33 @@ Shape shape_of(const graph::Graph& graph, Node leading) {
   return entry.number < 0 ? Shape::concave : entry.number > 0 ? Shape::convex : Shape::line;
 }
 
+/// Leaves out clauses that others imply, makes one of those that differ in their constants alone, and moves those that
+/// do not depend on z to `plain`.
+void simplify(graph::Graph& graph, std::vector<graph::Clause>& clauses, std::vector<Node>& plain) {
+  const Node zero = graph.number(0);
+  std::vector<graph::Quadratic> single;
+  for (const graph::Clause& clause : clauses)
+    if (clause.size() == 1) single.push_back(clause.front());
+  std::erase_if(clauses, [&](const graph::Clause& clause) {
+    return clause.size() == 1 || std::ranges::any_of(clause, [&](const graph::Quadratic& q) {
+             return std::ranges::find(single, q) != single.end();
+           });
+  });
+  std::ranges::sort(clauses);
+  clauses.erase(std::unique(clauses.begin(), clauses.end()), clauses.end());
+  std::ranges::sort(single, {}, [](const graph::Quadratic& q) { return std::pair(q.c[1], q.c[2]); });
+  for (std::size_t i = 0; i < single.size();) {
+    graph::Quadratic all = single[i];
+    for (++i; i < single.size() && single[i].c[1] == all.c[1] && single[i].c[2] == all.c[2]; ++i)
+      if (single[i].c[0] != all.c[0])
+        all.c[0] = graph.apply(graph::operation("min"), std::array{all.c[0], single[i].c[0]});
+    if (all.c[1] == zero && all.c[2] == zero)
+      plain.push_back(all.c[0]);
+    else
+      clauses.push_back({all});
+  }
+}
+
 /// What a step takes, in additions.
 double cost_of(const std::vector<Program::Step>& steps) {
   double sum = 0;
@@ -81,8 +108,7 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
     else
       plain.push_back(condition);
   }
-  std::ranges::sort(clauses);  // what two conditions ask for is asked for once
-  clauses.erase(std::unique(clauses.begin(), clauses.end()), clauses.end());
+  simplify(graph, clauses, plain);
   outputs = plain;
   for (const graph::Clause& clause : clauses)
     for (const graph::Quadratic& q : clause) outputs.insert(outputs.end(), q.c.begin(), q.c.end());

@@ -8,6 +8,11 @@ bool narrow(const ColumnCondition& condition, const double* registers, const dou
             std::size_t count, CellRanges& ranges) {
   using L = LanesOf<set>;
   const auto& [shape, c, has_unless, unless] = condition;
+  if (has_unless && !unless.row && registers[unless.index] >= 0) {  // it narrows nothing
+    for (double& end : ranges.hole_to) end = 0;
+    for (double& end : ranges.hole_from) end = 0;
+    return false;
+  }
   const L none(0.0), all(grid.cells);
   const double per_step = 1 / grid.step;
   const auto load = [&](const graph::Operand& operand, std::size_t k) __attribute__((always_inline)) {
