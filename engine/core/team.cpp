@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
+#include <chrono>
+#include <cstdint>
 #include <exception>
 #include <latch>
 #include <mutex>
@@ -18,15 +19,16 @@
 namespace pkm {
 namespace {
 
-class Helpers;
+class Room;
 
 // Threads that take this one's pieces, itself included: many for the one that runs a region's body, else one.
 thread_local std::size_t members = 1;
-// Within a long piece: the threads that have none left.
-thread_local Helpers* helpers = nullptr;
+// Where they wait.
+thread_local Room* room = nullptr;
+// Then only threads that have no long piece left take its pieces.
+thread_local bool in_long_piece = false;
 
-/// Pieces that are being shared out, by one task for each further thread, which claims some at a time. A task for every
-/// few pieces (taskloop) is queued and fetched under a lock, and took up to 9 points more: benchmarks/README.md.
+/// Pieces that are being shared out: each thread that takes part claims some at a time.
 struct Pieces {
   WorkRef work;
   std::size_t count, threads;
@@ -42,7 +44,7 @@ struct Pieces {
       if (!next.compare_exchange_weak(begin, end, std::memory_order_relaxed)) continue;
       try {
         work(begin, end, number);
-      } catch (...) {  // no exception may leave a task
+      } catch (...) {
 #pragma omp critical(pkm_failure)
         failure = std::current_exception();
       }
@@ -51,12 +53,15 @@ struct Pieces {
   }
 };
 
-/// Where the threads that work on long pieces leave what they share out, for those that have no piece left.
-class Helpers {
+/// Where threads without work wait for pieces that others share out: awake for a moment, then asleep. OpenMP's own
+/// barriers keep them awake for milliseconds by default, and where other programs use the cores, the scheduler makes
+/// threads that never sleep wait when at last they have work: benchmarks/README.md.
+class Room {
  public:
-  explicit Helpers(std::size_t pieces) : running_(pieces) {}
+  /// @param works  that have to end before those who help may leave
+  explicit Room(std::size_t works) : running_(works) {}
 
-  bool waiting() const { return waiting_.load(std::memory_order_relaxed) > 0; }
+  bool has_guests() const { return waiting_.load(std::memory_order_relaxed) > 0; }
 
   /// Works on them with whoever waits; returns when all are done.
   void share(Pieces& pieces) {
@@ -65,11 +70,11 @@ class Helpers {
       const std::lock_guard guard(mutex_);
       offers_.push_back(&offer);
     }
-    changed_.notify_all();
+    tell();
     pieces.take();
     std::unique_lock lock(mutex_);
     std::erase(offers_, &offer);
-    changed_.wait(lock, [&] { return offer.guests == 0; });
+    while (offer.guests > 0) await_change(lock);
   }
 
   void ended_one() {
@@ -77,17 +82,17 @@ class Helpers {
       const std::lock_guard guard(mutex_);
       --running_;
     }
-    changed_.notify_all();
+    tell();
   }
 
-  /// Helps until every long piece has ended.
+  /// Helps until every work has ended.
   void help() {
     ++waiting_;
     std::unique_lock lock(mutex_);
     while (running_ > 0) {
       const auto open = std::ranges::find_if(offers_, [](const Offer* o) { return o->pieces.next < o->pieces.count; });
       if (open == offers_.end()) {
-        changed_.wait(lock);
+        await_change(lock);
         continue;
       }
       Offer& offer = **open;
@@ -95,8 +100,7 @@ class Helpers {
       lock.unlock();
       offer.pieces.take();
       lock.lock();
-      --offer.guests;
-      changed_.notify_all();
+      if (--offer.guests == 0) tell();
     }
     --waiting_;
   }
@@ -107,10 +111,37 @@ class Helpers {
     int guests = 0;  ///< that work on them
   };
 
+  void tell() {
+    changes_.fetch_add(1, std::memory_order_release);
+    changes_.notify_all();
+  }
+
+  /// Waits until tell() is called after the lock was taken.
+  void await_change(std::unique_lock<std::mutex>& lock) {
+    constexpr auto kAwake = std::chrono::microseconds(100);
+    constexpr int kLooks = 64;  // between two looks at the clock
+    const std::uint32_t old = changes_.load(std::memory_order_relaxed);
+    lock.unlock();
+    const auto changed = [&] { return changes_.load(std::memory_order_acquire) != old; };
+    for (const auto end = std::chrono::steady_clock::now() + kAwake; std::chrono::steady_clock::now() < end;)
+      for (int i = 0; i < kLooks; ++i) {
+        if (changed()) return lock.lock();
+        pause();
+      }
+    changes_.wait(old, std::memory_order_acquire);
+    lock.lock();
+  }
+
+  static void pause() {
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+  }
+
   std::mutex mutex_;
-  std::condition_variable changed_;
   std::vector<Offer*> offers_;
   std::size_t running_;
+  std::atomic<std::uint32_t> changes_ = 0;
   std::atomic<int> waiting_ = 0;
 };
 
@@ -151,17 +182,21 @@ void with_team(int threads, WorkRef body) {
   const int size = team_size(threads);
   if (size == 1 || omp_in_parallel()) return body(0, 1, 0);
   expect_threads(size);
+  Room waiting(1);
   std::exception_ptr failure = nullptr;
 #pragma omp parallel num_threads(size)
-#pragma omp master  // the others wait at the region's end, and take tasks there
-  {
+  if (omp_get_thread_num() > 0) {
+    waiting.help();
+  } else {
     members = static_cast<std::size_t>(omp_get_num_threads());
+    room = &waiting;
     try {
       body(0, 1, 0);
     } catch (...) {  // none may leave a region
       failure = std::current_exception();
     }
     members = 1;
+    waiting.ended_one();
   }
   if (failure) std::rethrow_exception(failure);
 }
@@ -169,7 +204,7 @@ void with_team(int threads, WorkRef body) {
 WithoutTeam::WithoutTeam() : before_(std::exchange(members, 1)) {}
 WithoutTeam::~WithoutTeam() { members = before_; }
 
-bool has_team() { return members > 1 && (!helpers || helpers->waiting()); }
+bool has_team() { return members > 1 && (!in_long_piece || room->has_guests()); }
 
 std::size_t workers() { return members; }
 
@@ -181,32 +216,23 @@ void share_pieces(std::size_t pieces, WorkRef work) {
     return;
   }
   Pieces shared{work, pieces, members};
-  if (helpers) {
-    helpers->share(shared);
-  } else {
-    const std::size_t others = std::min(members, pieces) - 1;
-#pragma omp taskgroup
-    {
-#pragma omp taskloop grainsize(1) nogroup shared(shared)
-      for (std::size_t other = 0; other < others; ++other) shared.take();
-      shared.take();
-    }
-  }
+  room->share(shared);
   if (shared.failure) std::rethrow_exception(shared.failure);
 }
 
 void share_long_pieces(std::size_t pieces, WorkRef work) {
-  if (pieces < 2 || members == 1 || helpers) {
+  if (pieces < 2 || members == 1 || in_long_piece) {
     for (std::size_t piece = 0; piece < pieces; ++piece) work(piece, piece + 1, worker());
     return;
   }
-  Helpers helping(pieces);
+  Room helping(pieces);
   const std::size_t team = members;
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure = nullptr;
-  const auto serve = [&] {
+  const auto serve = [&](std::size_t, std::size_t) {
     const std::size_t before = std::exchange(members, team);
-    helpers = &helping;
+    Room* const outside = std::exchange(room, &helping);
+    in_long_piece = true;
     for (std::size_t piece = next++; piece < pieces; piece = next++) {
       try {
         work(piece, piece + 1, worker());
@@ -217,15 +243,12 @@ void share_long_pieces(std::size_t pieces, WorkRef work) {
       helping.ended_one();
     }
     helping.help();
-    helpers = nullptr;
+    in_long_piece = false;
+    room = outside;
     members = before;
   };
-#pragma omp taskgroup
-  {
-#pragma omp taskloop grainsize(1) nogroup
-    for (std::size_t other = 1; other < team; ++other) serve();
-    serve();
-  }
+  Pieces shares{serve, team, team};  // one for each thread
+  room->share(shares);
   if (failure) std::rethrow_exception(failure);
 }
 
