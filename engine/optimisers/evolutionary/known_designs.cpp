@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "engine/core/error.hpp"
+
 namespace pkm {
 namespace {
 
@@ -18,28 +20,31 @@ std::uint32_t hash_of(std::span<const double> design) {
 
 }  // namespace
 
-std::size_t KnownDesigns::slot_of(const EvaluationTable& table, std::span<const double> design) const {
+template <class Sought>
+std::size_t KnownDesigns::slot_of(std::uint32_t hash, const Sought& is_sought) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t i = hash_of(design) & mask;
-  const auto is_other = [&](std::int64_t row) {
-    const auto known = table.design(static_cast<std::size_t>(row));
-    return std::memcmp(known.data(), design.data(), design.size_bytes()) != 0;
-  };
-  while (slots_[i] != kEmpty && is_other(slots_[i])) i = (i + 1) & mask;
+  std::size_t i = hash & mask;
+  while (slots_[i].row != kEmpty && !is_sought(slots_[i])) i = (i + 1) & mask;
   return i;
 }
 
 std::int64_t KnownDesigns::find(const EvaluationTable& table, std::span<const double> design) const {
-  return slots_[slot_of(table, design)];
+  const std::uint32_t hash = hash_of(design);
+  const Slot& slot = slots_[slot_of(hash, [&](const Slot& known) {
+    return known.hash == hash && std::memcmp(table.design(known.row).data(), design.data(), design.size_bytes()) == 0;
+  })];
+  return slot.row == kEmpty ? -1 : std::int64_t{slot.row};
 }
 
 void KnownDesigns::insert(const EvaluationTable& table, std::size_t row) {
+  PKM_EXPECTS(row < kEmpty);
+  const auto place = [this](const Slot& slot) { slots_[slot_of(slot.hash, [](const Slot&) { return false; })] = slot; };
   if (2 * ++count_ > slots_.size()) {
-    const auto old = std::exchange(slots_, std::vector(2 * slots_.size(), kEmpty));
-    for (const std::int64_t known : old)
-      if (known != kEmpty) slots_[slot_of(table, table.design(static_cast<std::size_t>(known)))] = known;
+    const auto old = std::exchange(slots_, std::vector<Slot>(2 * slots_.size()));
+    for (const Slot& known : old)
+      if (known.row != kEmpty) place(known);
   }
-  slots_[slot_of(table, table.design(row))] = static_cast<std::int64_t>(row);
+  place({hash_of(table.design(row)), static_cast<std::uint32_t>(row)});
 }
 
 }  // namespace pkm

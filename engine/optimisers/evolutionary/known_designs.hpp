@@ -17,11 +17,17 @@ class KnownDesigns {
   void insert(const EvaluationTable& table, std::size_t row);
 
  private:
-  /// Where the design's row is, or will be.
-  std::size_t slot_of(const EvaluationTable& table, std::span<const double> design) const;
+  /// The hash stands beside the row, so that other designs, far apart in memory, are seldom looked at.
+  struct Slot {
+    std::uint32_t hash = 0, row = kEmpty;
+  };
+  static constexpr std::uint32_t kEmpty = 0xffffffff;
 
-  static constexpr std::int64_t kEmpty = -1;
-  std::vector<std::int64_t> slots_ = std::vector(64, kEmpty);  // open addressing, a power of two, at most half full
+  /// The first slot from the hash on that is free or for which is_sought(slot).
+  template <class Sought>
+  std::size_t slot_of(std::uint32_t hash, const Sought& is_sought) const;
+
+  std::vector<Slot> slots_ = std::vector<Slot>(64);  // open addressing, a power of two, at most half full
   std::size_t count_ = 0;
 };
 
