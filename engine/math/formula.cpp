@@ -25,7 +25,7 @@ S Formula::value(std::span<const S> values, std::vector<S>& stack) const {
         break;
       case Step::Kind::operation:
         top -= count;
-        *top = std::get<formula::Rule<S>>(operation->rules)(top, count);
+        std::get<formula::Rule<S>>(operation->rules)(top, count);
         ++top;
         break;
       case Step::Kind::jump_if_zero: {

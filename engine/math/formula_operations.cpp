@@ -102,15 +102,17 @@ S extreme(std::span<const S> x) {
 
 /// F as a rule. What depends on constants alone is constant, even where the operation has no slope (sqrt at 0).
 template <std::size_t arguments, class F, class S>
-S rule(const S* x, std::size_t count) {
+void rule(S* x, std::size_t count) {
   if constexpr (!std::is_same_v<S, double>)
     if (count <= 2 && is_constant(x[0]) && is_constant(x[count - 1])) {
-      const double values[2] = {value_of(x[0]), value_of(x[count - 1])};
-      return S(rule<arguments, F>(values, count));
+      double values[2] = {value_of(x[0]), value_of(x[count - 1])};
+      rule<arguments, F>(values, count);
+      x[0] = S(values[0]);
+      return;
     }
-  if constexpr (arguments == 0) return F()(std::span<const S>(x, count));
-  if constexpr (arguments == 1) return F()(x[0]);
-  if constexpr (arguments == 2) return F()(x[0], x[1]);
+  if constexpr (arguments == 0) x[0] = F()(std::span<const S>(x, count));
+  if constexpr (arguments == 1) x[0] = F()(x[0]);
+  if constexpr (arguments == 2) x[0] = F()(x[0], x[1]);
 }
 
 template <std::size_t arguments, class F>

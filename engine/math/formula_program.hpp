@@ -11,9 +11,9 @@
 
 namespace pkm::formula {
 
-/// What an operation makes of x[0], ..., x[count - 1].
+/// What an operation makes of x[0], ..., x[count - 1], left in x[0].
 template <class S>
-using Rule = S (*)(const S* x, std::size_t count);
+using Rule = void (*)(S* x, std::size_t count);
 
 /// A function, an operator or a sign.
 struct Operation {
