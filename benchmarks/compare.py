@@ -53,6 +53,11 @@ def ask(program, *options):
         sys.exit(f"{program}: {error}")
 
 
+def exactly(name):
+    """As an expression of POSIX, to which more escapes than these are errors."""
+    return "^" + re.sub(r"([][.*^$+?(){}|\\])", r"\\\1", name) + "$"
+
+
 def run_in_turns(programs, rounds, pattern):
     """The times of each program."""
     lists = [ask(program, "--benchmark_list_tests", f"--benchmark_filter={pattern}").split() for program in programs]
@@ -61,7 +66,7 @@ def run_in_turns(programs, rounds, pattern):
         for _ in range(rounds):
             for program, known, mine in zip(programs, lists, times):
                 if name in known:
-                    result = ask(program, f"--benchmark_filter=^{re.escape(name)}$", "--benchmark_format=json",
+                    result = ask(program, f"--benchmark_filter={exactly(name)}", "--benchmark_format=json",
                                  "--benchmark_min_time=0.05")
                     for run, values in repetitions(json.loads(result)).items():
                         mine.setdefault(run, []).extend(values)

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
+#include <chrono>
+#include <cstdint>
 #include <exception>
 #include <latch>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -15,102 +15,137 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/error.hpp"
+
 namespace pkm {
 namespace {
 
-class Helpers;
+class Room;
 
 // Threads that take this one's pieces, itself included: many for the one that runs a region's body, else one.
 thread_local std::size_t members = 1;
-// Within a long piece: the threads that have none left.
-thread_local Helpers* helpers = nullptr;
+// Where they wait.
+thread_local Room* room = nullptr;
+// Then only threads that have no long piece left take its pieces.
+thread_local bool in_long_piece = false;
 
-/// Pieces that are being shared out, by one task for each further thread, which claims some at a time. A task for every
-/// few pieces (taskloop) is queued and fetched under a lock, and took up to 9 points more: benchmarks/README.md.
-struct Pieces {
-  WorkRef work;
-  std::size_t count, threads;
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure = nullptr;
+/// Waits until the value is another one: awake for a moment, then asleep. OpenMP's own barriers keep threads awake for
+/// milliseconds by default, and where other programs use the cores, the scheduler makes threads that never sleep wait
+/// when at last they have work: benchmarks/README.md.
+void await_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
+  constexpr auto kAwake = std::chrono::microseconds(100);
+  constexpr int kLooks = 64;  // between two looks at the clock
+  const auto end = std::chrono::steady_clock::now() + kAwake;
+  do {
+    for (int i = 0; i < kLooks; ++i) {
+      if (value.load(std::memory_order_acquire) != old) return;
+#if defined(__x86_64__)
+      __builtin_ia32_pause();
+#endif
+    }
+  } while (std::chrono::steady_clock::now() < end);
+  value.wait(old, std::memory_order_acquire);
+}
 
-  /// Works on them until none is left.
-  void take() {
+/// What one thread shares out: pieces, of which each thread that takes part claims some at a time. A thread that is
+/// pushed off its core before it has claimed any is not waited for, so an offer stays when its pieces are done.
+class Offer {
+ public:
+  void open(std::uint32_t pieces, const WorkRef& work) {
+    const std::uint64_t job = (next_.load(std::memory_order_relaxed) >> 32) + 1;
+    work_.store(&work, std::memory_order_release);
+    pieces_.store(pieces, std::memory_order_release);
+    done_.store(0, std::memory_order_release);
+    next_.store(job << 32, std::memory_order_release);
+  }
+
+  /// Works on the pieces until none is left.
+  void take(std::uint32_t threads) {
     const WithoutTeam alone;
     const auto number = static_cast<std::size_t>(omp_get_thread_num());
-    for (std::size_t begin = next.load(std::memory_order_relaxed); begin < count;) {
-      const std::size_t end = begin + std::max<std::size_t>(1, (count - begin) / (2 * threads));
-      if (!next.compare_exchange_weak(begin, end, std::memory_order_relaxed)) continue;
+    for (std::uint64_t next = next_.load(std::memory_order_acquire);;) {
+      const WorkRef* const work = work_.load(std::memory_order_acquire);
+      const std::uint32_t pieces = pieces_.load(std::memory_order_acquire), begin = static_cast<std::uint32_t>(next);
+      if (begin >= pieces) return;
+      const std::uint32_t count = std::max<std::uint32_t>(1, (pieces - begin) / (2 * threads));
+      // Fails where the job has ended, too: what was read then belongs to none, or to another.
+      if (!next_.compare_exchange_weak(next, next + count, std::memory_order_acquire, std::memory_order_acquire))
+        continue;
       try {
-        work(begin, end, number);
-      } catch (...) {  // no exception may leave a task
+        (*work)(begin, begin + count, number);
+      } catch (...) {
 #pragma omp critical(pkm_failure)
-        failure = std::current_exception();
+        failure_ = std::current_exception();
       }
-      begin = next.load(std::memory_order_relaxed);
+      if (done_.fetch_add(count, std::memory_order_acq_rel) + count == pieces) done_.notify_one();
+      next = next_.load(std::memory_order_acquire);
     }
   }
+
+  /// Returns when all are done. Throws what one of them has thrown.
+  void close() {
+    const std::uint32_t pieces = pieces_.load(std::memory_order_relaxed);
+    for (std::uint32_t done = done_.load(std::memory_order_acquire); done != pieces;
+         done = done_.load(std::memory_order_acquire))
+      await_change(done_, done);
+    next_.store(next_.load(std::memory_order_relaxed) | kNoPiece, std::memory_order_relaxed);
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+
+  static constexpr std::uint32_t kNoPiece = 0xffffffff;
+
+ private:
+  std::atomic<std::uint64_t> next_ = kNoPiece;  ///< the job's number, and its first piece that nobody has claimed
+  std::atomic<const WorkRef*> work_ = nullptr;
+  std::atomic<std::uint32_t> pieces_ = 0, done_ = 0;
+  std::exception_ptr failure_ = nullptr;
 };
 
-/// Where the threads that work on long pieces leave what they share out, for those that have no piece left.
-class Helpers {
+/// Where threads without work wait for what others share out.
+class Room {
  public:
-  explicit Helpers(std::size_t pieces) : running_(pieces) {}
+  /// @param works  that have to end before those who help may leave
+  Room(std::size_t works, std::size_t threads) : running_(works), offers_(threads) {}
 
-  bool waiting() const { return waiting_.load(std::memory_order_relaxed) > 0; }
+  bool has_guests() const { return waiting_.load(std::memory_order_relaxed) > 0; }
 
-  /// Works on them with whoever waits; returns when all are done.
-  void share(Pieces& pieces) {
-    Offer offer{pieces};
-    {
-      const std::lock_guard guard(mutex_);
-      offers_.push_back(&offer);
-    }
-    changed_.notify_all();
-    pieces.take();
-    std::unique_lock lock(mutex_);
-    std::erase(offers_, &offer);
-    changed_.wait(lock, [&] { return offer.guests == 0; });
+  /// Has pieces done by this thread and whoever waits.
+  void share(std::size_t pieces, const WorkRef& work) {
+    PKM_EXPECTS(pieces < Offer::kNoPiece);
+    Offer& mine = offers_[static_cast<std::size_t>(omp_get_thread_num())];
+    mine.open(static_cast<std::uint32_t>(pieces), work);
+    tell();
+    mine.take(threads());
+    mine.close();
   }
 
   void ended_one() {
-    {
-      const std::lock_guard guard(mutex_);
-      --running_;
-    }
-    changed_.notify_all();
+    running_.fetch_sub(1, std::memory_order_acq_rel);
+    tell();
   }
 
-  /// Helps until every long piece has ended.
+  /// Helps until every work has ended.
   void help() {
     ++waiting_;
-    std::unique_lock lock(mutex_);
-    while (running_ > 0) {
-      const auto open = std::ranges::find_if(offers_, [](const Offer* o) { return o->pieces.next < o->pieces.count; });
-      if (open == offers_.end()) {
-        changed_.wait(lock);
-        continue;
-      }
-      Offer& offer = **open;
-      ++offer.guests;
-      lock.unlock();
-      offer.pieces.take();
-      lock.lock();
-      --offer.guests;
-      changed_.notify_all();
+    for (;;) {
+      const std::uint32_t seen = changes_.load(std::memory_order_acquire);
+      if (running_.load(std::memory_order_acquire) == 0) break;
+      for (Offer& offer : offers_) offer.take(threads());
+      await_change(changes_, seen);
     }
     --waiting_;
   }
 
  private:
-  struct Offer {
-    Pieces& pieces;
-    int guests = 0;  ///< that work on them
-  };
+  std::uint32_t threads() const { return static_cast<std::uint32_t>(offers_.size()); }
+  void tell() {
+    changes_.fetch_add(1, std::memory_order_acq_rel);
+    changes_.notify_all();
+  }
 
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<Offer*> offers_;
-  std::size_t running_;
+  std::atomic<std::size_t> running_;
+  std::vector<Offer> offers_;  ///< of each thread
+  std::atomic<std::uint32_t> changes_ = 0;
   std::atomic<int> waiting_ = 0;
 };
 
@@ -151,17 +186,21 @@ void with_team(int threads, WorkRef body) {
   const int size = team_size(threads);
   if (size == 1 || omp_in_parallel()) return body(0, 1, 0);
   expect_threads(size);
+  Room waiting(1, static_cast<std::size_t>(size));
   std::exception_ptr failure = nullptr;
 #pragma omp parallel num_threads(size)
-#pragma omp master  // the others wait at the region's end, and take tasks there
-  {
+  if (omp_get_thread_num() > 0) {
+    waiting.help();
+  } else {
     members = static_cast<std::size_t>(omp_get_num_threads());
+    room = &waiting;
     try {
       body(0, 1, 0);
     } catch (...) {  // none may leave a region
       failure = std::current_exception();
     }
     members = 1;
+    waiting.ended_one();
   }
   if (failure) std::rethrow_exception(failure);
 }
@@ -169,7 +208,7 @@ void with_team(int threads, WorkRef body) {
 WithoutTeam::WithoutTeam() : before_(std::exchange(members, 1)) {}
 WithoutTeam::~WithoutTeam() { members = before_; }
 
-bool has_team() { return members > 1 && (!helpers || helpers->waiting()); }
+bool has_team() { return members > 1 && (!in_long_piece || room->has_guests()); }
 
 std::size_t workers() { return members; }
 
@@ -180,33 +219,22 @@ void share_pieces(std::size_t pieces, WorkRef work) {
     if (pieces > 0) work(0, pieces, worker());
     return;
   }
-  Pieces shared{work, pieces, members};
-  if (helpers) {
-    helpers->share(shared);
-  } else {
-    const std::size_t others = std::min(members, pieces) - 1;
-#pragma omp taskgroup
-    {
-#pragma omp taskloop grainsize(1) nogroup shared(shared)
-      for (std::size_t other = 0; other < others; ++other) shared.take();
-      shared.take();
-    }
-  }
-  if (shared.failure) std::rethrow_exception(shared.failure);
+  room->share(pieces, work);
 }
 
 void share_long_pieces(std::size_t pieces, WorkRef work) {
-  if (pieces < 2 || members == 1 || helpers) {
+  if (pieces < 2 || members == 1 || in_long_piece) {
     for (std::size_t piece = 0; piece < pieces; ++piece) work(piece, piece + 1, worker());
     return;
   }
-  Helpers helping(pieces);
   const std::size_t team = members;
+  Room helping(pieces, team);
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure = nullptr;
-  const auto serve = [&] {
+  const auto serve = [&](std::size_t, std::size_t) {
     const std::size_t before = std::exchange(members, team);
-    helpers = &helping;
+    Room* const outside = std::exchange(room, &helping);
+    in_long_piece = true;
     for (std::size_t piece = next++; piece < pieces; piece = next++) {
       try {
         work(piece, piece + 1, worker());
@@ -217,15 +245,11 @@ void share_long_pieces(std::size_t pieces, WorkRef work) {
       helping.ended_one();
     }
     helping.help();
-    helpers = nullptr;
+    in_long_piece = false;
+    room = outside;
     members = before;
   };
-#pragma omp taskgroup
-  {
-#pragma omp taskloop grainsize(1) nogroup
-    for (std::size_t other = 1; other < team; ++other) serve();
-    serve();
-  }
+  room->share(team, serve);  // one for each thread
   if (failure) std::rethrow_exception(failure);
 }
 

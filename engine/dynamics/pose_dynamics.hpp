@@ -78,7 +78,12 @@ M undetermined(M like) {
 /// J^-T f; NaN where J is singular to working precision.
 template <class S, std::size_t N>
 AxisVector<S, N> at_joints(const PoseDynamics<S, N>& d, const AxisVector<S, N>& f) {
-  return is_singular(d.J) ? undetermined(f) : solve(transpose(d.J), f);
+  auto eliminated = transpose(d.J);
+  auto forces = f;
+  eliminate(eliminated, forces);
+  if (is_singular(d.J, eliminated)) return undetermined(f);
+  substitute_back(eliminated, forces);
+  return forces;
 }
 
 /// Forces tau of the actuators for an acceleration Xddot under a wrench on the platform, by virtual work [N]; NaN where
@@ -92,8 +97,11 @@ AxisVector<S, N> drive_forces(const PoseDynamics<S, N>& d, const std::type_ident
 /// Inertia as the joints feel it [kg]; symmetric to the last bit. NaN where J is singular to working precision.
 template <class S, std::size_t N>
 AxisMatrix<S, N> joint_inertia(const PoseDynamics<S, N>& d) {
-  if (is_singular(d.J)) return undetermined(d.M_X);
-  const AxisMatrix<S, N> half = solve(transpose(d.J), d.M_X);   // J^-T M_X
+  auto eliminated = transpose(d.J);
+  AxisMatrix<S, N> half = d.M_X;
+  eliminate(eliminated, half);
+  if (is_singular(d.J, eliminated)) return undetermined(d.M_X);
+  substitute_back(eliminated, half);                            // J^-T M_X
   AxisMatrix<S, N> M = solve(transpose(d.J), transpose(half));  // J^-T (J^-T M_X)^T
   for (std::size_t i = 0; i < M.rows(); ++i)
     for (std::size_t j = 0; j < i; ++j) M(i, j) = M(j, i) = (M(i, j) + M(j, i)) * S(0.5);

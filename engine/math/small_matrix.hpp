@@ -199,32 +199,52 @@ Vector<S, 3> cross(const Vector<S, 3>& a, const Vector<S, 3>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 
-/// X with a X = b, by elimination; the largest value of a column leads. Infinite or NaN where `a` is singular.
-template <SmallMatrix A, SmallMatrix B>
-B solve(A a, B b) {
+/// Makes `a` an upper triangle by taking rows from rows, and does the same to the rows of b; the largest value of a
+/// column leads.
+template <SmallMatrix A, SmallMatrix... B>
+void eliminate(A& a, B&... b) {
   using S = typename A::Scalar;
-  PKM_EXPECTS(a.rows() == a.cols() && a.rows() == b.rows());
-  const std::size_t n = a.rows(), columns = b.cols();
+  PKM_EXPECTS(a.rows() == a.cols() && ((a.rows() == b.rows()) && ...));
+  const std::size_t n = a.rows();
   for (std::size_t k = 0; k < n; ++k) {
     std::size_t lead = k;
     for (std::size_t i = k + 1; i < n; ++i)
       if (std::fabs(value_of(a(i, k))) > std::fabs(value_of(a(lead, k)))) lead = i;
+    const auto exchange = [k, lead](auto& m, std::size_t first) {
+      for (std::size_t j = first; j < m.cols(); ++j) std::swap(m(k, j), m(lead, j));
+    };
     if (lead != k) {
-      for (std::size_t j = k; j < n; ++j) std::swap(a(k, j), a(lead, j));
-      for (std::size_t j = 0; j < columns; ++j) std::swap(b(k, j), b(lead, j));
+      exchange(a, k);
+      (exchange(b, 0), ...);
     }
     const S inverse = S(1.0) / a(k, k);
     for (std::size_t i = k + 1; i < n; ++i) {
       const S factor = a(i, k) * inverse;
-      for (std::size_t j = k + 1; j < n; ++j) a(i, j) = a(i, j) - factor * a(k, j);
-      for (std::size_t j = 0; j < columns; ++j) b(i, j) = b(i, j) - factor * b(k, j);
+      const auto take = [&factor, i, k](auto& m, std::size_t first) {
+        for (std::size_t j = first; j < m.cols(); ++j) m(i, j) = m(i, j) - factor * m(k, j);
+      };
+      take(a, k + 1);
+      (take(b, 0), ...);
     }
   }
+}
+
+/// b becomes X with u X = b, where u is an upper triangle; what stands below does not count.
+template <SmallMatrix A, SmallMatrix B>
+void substitute_back(const A& u, B& b) {
+  const std::size_t n = u.rows();
   for (std::size_t k = n; k-- > 0;)
-    for (std::size_t j = 0; j < columns; ++j) {
-      for (std::size_t i = k + 1; i < n; ++i) b(k, j) = b(k, j) - a(k, i) * b(i, j);
-      b(k, j) = b(k, j) / a(k, k);
+    for (std::size_t j = 0; j < b.cols(); ++j) {
+      for (std::size_t i = k + 1; i < n; ++i) b(k, j) = b(k, j) - u(k, i) * b(i, j);
+      b(k, j) = b(k, j) / u(k, k);
     }
+}
+
+/// X with a X = b. Infinite or NaN where `a` is singular.
+template <SmallMatrix A, SmallMatrix B>
+B solve(A a, B b) {
+  eliminate(a, b);
+  substitute_back(a, b);
   return b;
 }
 

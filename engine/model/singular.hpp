@@ -15,9 +15,28 @@ namespace pkm {
 
 inline constexpr double kSingular = 1e-12;
 
-/// Also where an element is not finite. @param J  square
+/// Enough for rcond(J) to exceed 10 kSingular, from what eliminate() has left of J or of its transpose, and soon told:
+/// with x = 1 / |u_kk| and r = |u_kj| / |u_kk| for the greatest of each, no element of U^-1 exceeds x (1 + r)^(n - 1),
+/// and none of L^-1 exceeds 2^(n - 1), because no factor exceeds 1. Sums stand for the greatest: they keep NaN.
 template <SmallMatrix M>
-bool is_singular(const M& J) {
+bool is_clearly_regular(const M& J, const M& u) {
+  const std::size_t n = J.rows();
+  double all = 0, beside = 0, inverse = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) all += std::fabs(value_of(J(i, j)));
+    for (std::size_t j = i + 1; j < n; ++j) beside += std::fabs(value_of(u(i, j)));
+    inverse += 1 / std::fabs(value_of(u(i, i)));
+  }
+  double bound = static_cast<double>(n * n) * all * inverse;
+  for (std::size_t k = 1; k < n; ++k) bound *= 2 * (1 + beside * inverse);
+  return bound <= 0.1 / kSingular;
+}
+
+/// Also where an element is not finite. @param J  square
+/// @param eliminated  what eliminate() has left of J or of its transpose
+template <SmallMatrix M>
+bool is_singular(const M& J, const M& eliminated) {
+  if (is_clearly_regular(J, eliminated)) return false;
   const std::size_t n = J.rows();
   using Plain = MatrixOf<double, M::kRows, M::kColumns, M::kFixed>;
   auto values = Plain::zero(n, n);
@@ -32,6 +51,14 @@ bool is_singular(const M& J) {
     return most;
   };
   return !(norm(values) * norm(solve(values, Plain::identity(n))) <= 1 / kSingular);
+}
+
+/// The same without one.
+template <SmallMatrix M>
+bool is_singular(const M& J) {
+  M u = J;
+  eliminate(u);
+  return is_singular(J, u);
 }
 
 }  // namespace pkm

@@ -105,6 +105,7 @@ void check_indices(const StudyContents& study) {
   require(best.row == -1 || (is_row(best.stage, study.stages.size()) &&
                              is_row(best.row, study.stages[static_cast<std::size_t>(best.stage)].table.size())),
           "/best", "row is no row of evaluations");
+  require(!study.final || !study.final->best || best.row >= 0, "/best", "there is none, but in /final there is one");
   if (study.final) check_final(*study.final, !study.stages.empty());
 }
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -30,6 +31,29 @@ namespace {
 /// How the program calls itself to parse a study file that may crash the parser.
 constexpr const char* kCheckFile = "--check-study-on-standard-input";
 constexpr std::size_t kLongestProgram = 40;  // bytes of its name in messages
+
+struct Command {
+  std::string_view name;
+  AddCommand* add;
+  bool evaluates = false;  ///< many designs, so that the instruction set counts
+};
+
+constexpr Command kCommands[] = {{"run", add_run, true},
+                                 {"resume", add_resume, true},
+                                 {"check", add_check},
+                                 {"evaluate", add_evaluate, true},
+                                 {"pose", add_pose},
+                                 {"forward", add_forward},
+                                 {"dynamics", add_dynamics},
+                                 {"coupling", add_coupling, true},
+                                 {"trajectory", add_trajectory},
+                                 {"simulate", add_simulate},
+                                 {"workspace", add_workspace},
+                                 {"show", add_show},
+                                 {"report", add_report},
+                                 {"export", add_export},
+                                 {"list", add_list},
+                                 {"new", add_new}};
 
 /// For comparisons: results are the same on all.
 void add_instruction_set(CLI::App& command) {
@@ -64,11 +88,14 @@ void run(const std::vector<std::string>& arguments, Session& session) {
       "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint to go on from, 4 nothing "
       "feasible.\n"
       "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml");
-  for (AddCommand* const add :
-       {add_run, add_resume, add_check, add_evaluate, add_pose, add_forward, add_dynamics, add_coupling, add_trajectory,
-        add_simulate, add_workspace, add_show, add_report, add_export, add_list, add_new})
-    add(app, session);
-  for (const char* name : {"run", "resume", "evaluate", "coupling"}) add_instruction_set(*app.get_subcommand(name));
+  // To declare all commands takes longer than to carry out most of them: where one is named, the others are left out.
+  const auto named =
+      arguments.empty() ? std::end(kCommands) : std::ranges::find(kCommands, arguments[0], &Command::name);
+  for (const Command& command : kCommands) {
+    if (named != std::end(kCommands) && &command != named) continue;
+    command.add(app, session);
+    if (command.evaluates) add_instruction_set(*app.get_subcommand(std::string(command.name)));
+  }
   parse_command_line(app, arguments);
   std::cout.flush();
   if (!std::cout) throw std::runtime_error("the results cannot be written to the standard output");

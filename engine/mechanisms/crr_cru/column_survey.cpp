@@ -78,12 +78,13 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
                       Survey<S>& survey) const {
     const Geometry<S>& g = s.design.g;
     const Masses<S> b = masses(planned_.mass_model, parameters);
+    std::vector<S>* const conditioning = survey.find(kConditioning);
     InertiaFrame<S> frame;
     S angle(0.0), index(0.0);
     const auto set_phi = [&](const S& phi) {
       angle = phi;
       frame = inertia_frame(g, b, phi);
-      if (planned_.with_conditioning) index = planned_.conditioning_at(g, phi);
+      if (conditioning) index = planned_.conditioning_at(g, phi);
     };
     if (!s.cuts.outer_is_phi) set_phi(s.held);
     for (const Piece<S>& piece : scratch.pieces)
@@ -96,7 +97,7 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
           if (!(value_of(measure) > 0)) return;
           survey.weight.push_back(measure);
           if (planned_.demand.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
-          if (planned_.with_conditioning) survey.find(kConditioning)->push_back(index);
+          if (conditioning) conditioning->push_back(index);
           add_inertia(joint_inertia(g, b, frame, at, planned_.mode), survey);
         });
       }

@@ -164,17 +164,25 @@ struct SampleContents {
   bool told_apart() const { return inertia || poses; }
 };
 
+/// A survey that takes samples, its field looked up once for all of them.
+template <class S>
+struct Sampled {
+  explicit Sampled(Survey<S>& to) : survey(to), conditioning(to.find(kConditioning)) {}
+  Survey<S>& survey;
+  std::vector<S>* conditioning;  ///< null where it was not demanded
+};
+
 /// Adds one sample of what was demanded.
 /// @param inertia   of inertia_values()
 /// @param mirrored  the pose is that of `inertia` with theta -> -theta (mirrored in y): the two sliders of each rail
 ///                  change places
 template <class S>
 void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S>& pose, const S& conditioning,
-                const std::vector<S>& inertia, bool mirrored, Survey<S>& survey) {
-  survey.weight.push_back(weight);
-  if (contents.conditioning) survey.find(kConditioning)->push_back(conditioning);
-  if (contents.poses) survey.pose.push_back(pose);
-  if (contents.inertia) add_inertia(inertia, mirrored, survey);
+                const std::vector<S>& inertia, bool mirrored, const Sampled<S>& to) {
+  to.survey.weight.push_back(weight);
+  if (to.conditioning) to.conditioning->push_back(conditioning);
+  if (contents.poses) to.survey.pose.push_back(pose);
+  if (contents.inertia) add_inertia(inertia, mirrored, to.survey);
 }
 
 /// Which of the two planes y and L0 - y are sampled, where y <= L0/2 is the frame's.
@@ -200,17 +208,17 @@ struct Node {
 
 template <class S>
 void add_samples(const Frame<S>& f, const SampleContents<S>& contents, const Images& images, const S& weight,
-                 const Node<S>& n, const S& index, std::array<std::vector<S>, 2>& inertia, Survey<S>& survey) {
+                 const Node<S>& n, const S& index, std::array<std::vector<S>, 2>& inertia, const Sampled<S>& to) {
   const Geometry<S>& g = f.g;
   auto& [here, across] = inertia;
   if (!contents.told_apart()) {
-    add_sample(contents, S(weight * images.count()), {}, index, here, false, survey);
+    add_sample(contents, S(weight * images.count()), {}, index, here, false, to);
     return;
   }
   const auto find = [&](const std::array<S, 2>& at_x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c,
                         std::vector<S>& values) {
     if (contents.inertia)
-      inertia_values(joint_inertia(g, contents.masses, n.sin_theta, n.cos_theta, at_x, sigma, z_c), survey, values);
+      inertia_values(joint_inertia(g, contents.masses, n.sin_theta, n.cos_theta, at_x, sigma, z_c), to.survey, values);
   };
   find(n.x, n.sigma, n.z_c, here);
   find({n.x[1], n.x[0]}, {n.sigma[1], n.sigma[0]}, {n.z_c[1], n.z_c[0]}, across);
@@ -219,12 +227,12 @@ void add_samples(const Frame<S>& f, const SampleContents<S>& contents, const Ima
     if (images.planes != Planes::both && images.planes != plane) continue;
     const S y = plane == Planes::near ? f.y : S(g.L0 - f.y);
     if (images.symmetric || plane == Planes::near) {
-      add_sample(contents, weight, {x, y, z, n.theta}, index, here, false, survey);
-      add_sample(contents, weight, {x_across, y, z, S(-n.theta)}, index, across, true, survey);
+      add_sample(contents, weight, {x, y, z, n.theta}, index, here, false, to);
+      add_sample(contents, weight, {x_across, y, z, S(-n.theta)}, index, across, true, to);
     }
     if (images.symmetric || plane == Planes::far) {
-      add_sample(contents, weight, {x, y, z, S(-n.theta)}, index, here, true, survey);
-      add_sample(contents, weight, {x_across, y, z, n.theta}, index, across, false, survey);
+      add_sample(contents, weight, {x, y, z, S(-n.theta)}, index, here, true, to);
+      add_sample(contents, weight, {x_across, y, z, n.theta}, index, across, false, to);
     }
   }
 }
@@ -237,6 +245,7 @@ void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes,
             const GaussRule& theta_rule, const GaussRule& inner_rule, const ClearanceTest* test,
             ColumnScratch<S>& scratch, Survey<S>& survey) {
   find_pieces(f, scratch.breaks, scratch.pieces);
+  const Sampled<S> to(survey);
   for (const Piece<S>& piece : scratch.pieces)
     for (std::size_t i = 0; i < theta_rule.node.size(); ++i) {
       const auto [theta, theta_jacobian] = map_node(piece, theta_rule.node[i]);
@@ -267,7 +276,7 @@ void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes,
                                (inner_rule.weight[k] * inner_rule.weight[n]);
                 const Node<S> node{theta, s, c, col.x, col.sigma, {poses.z_c[0][n], poses.z_c[1][n]}};
                 add_samples(f, contents, images, each, node, contents.conditioning ? poses.index[n] : S(0.0),
-                            scratch.inertia, survey);
+                            scratch.inertia, to);
               }
             }
           }

@@ -188,6 +188,7 @@ class OfVoxels final : public VoxelSurveyor {
     share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t worker) {
       VoxelWorker& own = scratch.workers[worker];
       ColumnConditioning<double>& poses = own.poses;
+      const Sampled<double> to(part);
       counter_.visit_block(
           at, block, halves, own.columns, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
             const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
@@ -207,7 +208,7 @@ class OfVoxels final : public VoxelSurveyor {
                 inertia_values(joint_inertia(g, wanted.masses, s, c, x_j, sigma, {poses.z_c[0][n], poses.z_c[1][n]}),
                                part, own.inertia);
               add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
-                         wanted.conditioning ? poses.index[n] : 0, own.inertia, false, part);
+                         wanted.conditioning ? poses.index[n] : 0, own.inertia, false, to);
             }
           });
     });

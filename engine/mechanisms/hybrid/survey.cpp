@@ -40,7 +40,7 @@ class Conditioning {
     poses_.clear();
   }
 
-  void add(const S& z, const S& beta, const S& weight) {
+  [[gnu::always_inline]] void add(const S& z, const S& beta, const S& weight) {
     if (!index_ || !(value_of(weight) > 0)) return;
     survey_.weight.push_back(weight);
     if constexpr (std::is_same_v<S, double>) {

@@ -4,36 +4,37 @@
 #include <cstring>
 #include <utility>
 
+#include "engine/core/error.hpp"
+
 namespace pkm {
 namespace {
 
-std::uint64_t hash_of(std::span<const double> design) {
+std::uint32_t hash_of(std::span<const double> design) {
   std::uint64_t h = design.size();
   for (const double x : design) {
     h = (h ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
     h ^= h >> 32;
   }
   h *= 0x9e3779b97f4a7c15u;
-  return h ^ h >> 32;
+  return static_cast<std::uint32_t>(h ^ h >> 32);
 }
 
 }  // namespace
 
-std::size_t KnownDesigns::slot_of(const EvaluationTable& table, std::span<const double> design,
-                                  std::uint64_t hash) const {
+template <class Sought>
+std::size_t KnownDesigns::slot_of(std::uint32_t hash, const Sought& is_sought) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t i = hash & mask;
-  const auto is_other = [&](const Slot& slot) {
-    if (slot.hash != hash) return true;
-    const auto known = table.design(static_cast<std::size_t>(slot.row));
-    return std::memcmp(known.data(), design.data(), design.size_bytes()) != 0;
-  };
-  while (slots_[i].row != kEmpty && is_other(slots_[i])) i = (i + 1) & mask;
+  while (slots_[i].row != kEmpty && !is_sought(slots_[i])) i = (i + 1) & mask;
   return i;
 }
 
 std::int64_t KnownDesigns::find(const EvaluationTable& table, std::span<const double> design) const {
-  return slots_[slot_of(table, design, hash_of(design))].row;
+  const std::uint32_t hash = hash_of(design);
+  const Slot& slot = slots_[slot_of(hash, [&](const Slot& known) {
+    return known.hash == hash && std::memcmp(table.design(known.row).data(), design.data(), design.size_bytes()) == 0;
+  })];
+  return slot.row == kEmpty ? -1 : std::int64_t{slot.row};
 }
 
 void KnownDesigns::prefetch(std::span<const double> design) const {
@@ -41,19 +42,14 @@ void KnownDesigns::prefetch(std::span<const double> design) const {
 }
 
 void KnownDesigns::insert(const EvaluationTable& table, std::size_t row) {
+  PKM_EXPECTS(row < kEmpty);
+  const auto place = [this](const Slot& slot) { slots_[slot_of(slot.hash, [](const Slot&) { return false; })] = slot; };
   if (2 * ++count_ > slots_.size()) {
     const auto old = std::exchange(slots_, std::vector<Slot>(2 * slots_.size()));
-    const std::size_t mask = slots_.size() - 1;
-    for (const Slot& known : old) {
-      if (known.row == kEmpty) continue;
-      std::size_t i = known.hash & mask;
-      while (slots_[i].row != kEmpty) i = (i + 1) & mask;
-      slots_[i] = known;
-    }
+    for (const Slot& known : old)
+      if (known.row != kEmpty) place(known);
   }
-  const auto design = table.design(row);
-  const std::uint64_t hash = hash_of(design);
-  slots_[slot_of(table, design, hash)] = {hash, static_cast<std::int64_t>(row)};
+  place({hash_of(table.design(row)), static_cast<std::uint32_t>(row)});
 }
 
 }  // namespace pkm

@@ -19,16 +19,15 @@ class KnownDesigns {
   void insert(const EvaluationTable& table, std::size_t row);
 
  private:
-  /// The hash is beside the row: to tell designs apart, and to move rows when there are more slots, takes no look at
-  /// the table, most of which is not in the processor's cache.
+  /// The hash stands beside the row, so that other designs, far apart in memory, are seldom looked at.
   struct Slot {
-    std::uint64_t hash = 0;
-    std::int64_t row = kEmpty;
+    std::uint32_t hash = 0, row = kEmpty;
   };
-  static constexpr std::int64_t kEmpty = -1;
+  static constexpr std::uint32_t kEmpty = 0xffffffff;
 
-  /// Where the design's row is, or will be.
-  std::size_t slot_of(const EvaluationTable& table, std::span<const double> design, std::uint64_t hash) const;
+  /// The first slot from the hash on that is free or for which is_sought(slot).
+  template <class Sought>
+  std::size_t slot_of(std::uint32_t hash, const Sought& is_sought) const;
 
   std::vector<Slot> slots_ = std::vector<Slot>(64);  // open addressing, a power of two, at most half full
   std::size_t count_ = 0;

@@ -1,8 +1,11 @@
 #include "tests/campaigns/fuzz/record_mutator.hpp"
 
+#include <algorithm>
+
 #include "engine/storage/file_seal.hpp"
 #include "engine/storage/hdf5_image.hpp"
 #include "engine/storage/schema.hpp"
+#include "engine/storage/study_file.hpp"
 
 namespace pkm::fuzz {
 namespace {
@@ -23,7 +26,12 @@ void fit(DesignRecord& design, const ProblemRecord& problem) {
   design.reports.resize(problem.reports.size());
 }
 
-/// Gives every array the sizes that the problem says.
+bool is_row(std::int64_t row, const StageRecord& stage) {
+  return row >= 0 && row < static_cast<std::int64_t>(stage.table.size());
+}
+
+/// Gives every array the sizes that the problem says. What other files point to, of rows that are not there, is left
+/// out: it cannot be written.
 void fit(StudyContents& study) {
   for (StageRecord& stage : study.stages) {
     EvaluationTable table(study.problem.shape(stage.table.shape().detail));
@@ -31,8 +39,16 @@ void fit(StudyContents& study) {
     table.status = stage.table.status;
     table.seconds = stage.table.seconds;
     stage.table = std::move(table);
-    if (stage.front && !stage.front->reference.empty()) stage.front->reference.resize(study.problem.objectives.size());
+    if (!stage.front) continue;
+    const auto has_row = [&stage](std::int64_t row) { return is_row(row, stage); };
+    if (study.problem.objectives.empty() || !std::ranges::all_of(stage.front->rows, has_row))
+      stage.front.reset();
+    else if (!stage.front->reference.empty())
+      stage.front->reference.resize(study.problem.objectives.size());
   }
+  const auto stages = static_cast<std::int64_t>(study.stages.size());
+  if (study.best.stage < 0 || study.best.stage >= stages || !is_row(study.best.row, study.best_stage()))
+    study.best = {};
   if (!study.final) return;
   FinalRecord& final = *study.final;
   for (auto* design : {&final.best, &final.rounded, &final.baseline, &final.best_exact, &final.baseline_exact})
@@ -76,11 +92,7 @@ void change(StudyContents& study, std::mt19937& engine) {
 
 std::string with_other_record(const std::string& file, int schema, std::mt19937& engine) {
   try {
-    StudyContents study;
-    {  // both are files of one name in HDF5's eyes
-      const ImageReader reader(file, schema);
-      schema::describe(reader, study);
-    }
+    StudyContents study = parse_study(file, schema);  // refuses what could not be written
     change(study, engine);
     fit(study);
     ImageWriter writer(kSealBytes);

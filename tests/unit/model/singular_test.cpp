@@ -1,7 +1,10 @@
 // The one criterion of singular Jacobians.
 #include "engine/model/singular.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -36,6 +39,37 @@ TEST(SingularJacobian, DoesNotDependOnTheUnitOrTheScalar) {
   dual(1, 0) = dual(0, 0);
   dual(1, 1) = dual(0, 1);
   EXPECT_TRUE(is_singular(dual));
+}
+
+TEST(SingularJacobian, IsToldSoonWhereItIsFarFromSingularAndOnlyThere) {
+  using Matrix4 = Matrix<double, 4, 4>;
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  int soon = 0, later = 0;
+  for (int k = 0; k < 1000; ++k) {
+    Matrix4 J;
+    for (double& element : J) element = uniform(engine);
+    for (std::size_t j = 0; j < 4; ++j) J(3, j) = J(0, j) + J(3, j) * std::pow(10.0, -k % 18);
+    for (const Matrix4& factored : {J, transpose(J)}) {
+      Matrix4 u = factored;
+      eliminate(u);
+      const Matrix4 inverse = solve(J, Matrix4::identity());
+      double most = 0, most_of_inverse = 0;  // no row's sum is less
+      for (std::size_t e = 0; e < J.size(); ++e) {
+        most = std::max(most, std::fabs(J[e]));
+        most_of_inverse = std::max(most_of_inverse, std::fabs(inverse[e]));
+      }
+      if (is_clearly_regular(J, u)) {
+        ++soon;
+        EXPECT_LT(16 * most * most_of_inverse, 1 / kSingular);
+        EXPECT_FALSE(is_singular(J));
+      } else {
+        ++later;
+      }
+    }
+  }
+  EXPECT_GT(soon, 100);
+  EXPECT_GT(later, 100);
 }
 
 }  // namespace

@@ -127,6 +127,11 @@ TEST(WriteFailure, WhatNobodyCouldReadIsNotWritten) {
   study.stages[0].generations.best_row.push_back(3);
   EXPECT_EQ(storage_error([&] { write_study(path, study); }),
             path + ": cannot be written (/stages/1: generations have arrays of different lengths)");
+  study = test::sample_study();
+  study.final.emplace().best.emplace();
+  study.best = {};
+  EXPECT_EQ(storage_error([&] { write_study(path, study); }),
+            path + ": cannot be written (/best: there is none, but in /final there is one)");
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
