@@ -1,5 +1,7 @@
 #include "engine/limbs/limb.hpp"
 
+#include "engine/math/scalar.hpp"
+
 namespace pkm::limbs {
 namespace {
 
@@ -61,18 +63,31 @@ Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, c
 }
 
 Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
-                   const Term& branch, const Term& middle, const Term& q) {
+                   const Term& branch, const std::optional<std::array<Term, 2>>& range, const Term& q) {
   const Vector3 v = seen(ends, ends.B - ends.A), beside = cross(axis, zero);
   const Term u = dot(v, zero), w = dot(v, beside);
   const Term h = sqrt(u * u + w * w), k = (dot(v, v) + crank * crank - rod * rod) / (crank * 2.0);
+  const Term middle = range ? ((*range)[0] + (*range)[1]) * 0.5 : Term(q.graph(), 0.0);
   const Term angle = atan2(w, u) + branch * acos(k / h);
   const Term joint = middle + call(graph::turn(), angle - middle);
   const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
-  return {.joint = joint,
-          .conditions = {{"reaches", "m", h - k}, {"unfolds", "m", h + k}},
-          .closure = rod_closure(v - arm(q), rod),
-          .C = ends.A + arm(joint),
-          .S = ends.A};
+  Limb limb = {.joint = joint,
+               .conditions = {{"reaches", "m", h - k}, {"unfolds", "m", h + k}},
+               .closure = rod_closure(v - arm(q), rod),
+               .C = ends.A + arm(joint),
+               .S = ends.A};
+  if (!range) return limb;
+  const Term pi(q.graph(), kPi);
+  const Term from = call(graph::operation("max"), (*range)[0], middle - pi);
+  const Term to = call(graph::operation("min"), (*range)[1], middle + pi);
+  limb.crank_range = CrankRange{.at_min = rod_closure(v - arm(from), rod),
+                                .at_max = rod_closure(v - arm(to), rod),
+                                .after_min = cos(from) * w - sin(from) * u,
+                                .before_max = sin(to) * u - cos(to) * w,
+                                .half_turn = pi - (to - from),
+                                .reach = u * u + w * w - k * k,
+                                .branch = branch};
+  return limb;
 }
 
 }  // namespace pkm::limbs

@@ -20,6 +20,19 @@ struct Condition {
   Term margin;
 };
 
+/// Where a crank's range ends, as surfaces that the platform's point passes: what a survey needs of the range without
+/// the angle. The closure f(q) = |v - crank(q)|^2 - rod^2 is <= 0 between the two angles phi -+ acos(k / h) that
+/// assemble, phi = atan2(w, u). So one of them is in [q_min, q_max], which is less than a turn, where f changes its
+/// sign in that direction between the ends; both are where f >= 0 at both ends, phi is in the range and the limb
+/// reaches; and both are where f <= 0 at both ends and phi + pi is in the range.
+struct CrankRange {
+  Term at_min, at_max;         ///< f at the ends
+  Term after_min, before_max;  ///< (u, w) is at most half a turn after q_min, before q_max
+  Term half_turn;              ///< >= 0: the range is at most half a turn
+  Term reach;                  ///< h^2 - k^2
+  Term branch;
+};
+
 struct Limb {
   Term joint;                         ///< undefined where a condition is < 0
   std::vector<Condition> conditions;  ///< for it to assemble
@@ -27,6 +40,7 @@ struct Limb {
   Term closure;
   Vector3 C;  ///< where the rod begins: the crank's end, the elbow, the slide; of a telescope A
   Vector3 S;  ///< the slide; of cranks and telescopes A
+  std::optional<CrankRange> crank_range{};
 };
 
 /// The ends of a limb.
@@ -46,8 +60,9 @@ Limb slider(const Ends& ends, const Vector3& e, const Term& q);
 Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, const Term& l_1, const Term& l_2,
                       const Term& branch, const Term& q);
 /// q = atan2(w, u) + branch acos(k / h) with u = v . zero, w = v . (axis x zero), h = hypot(u, w) and
-/// k = (|v|^2 + crank^2 - rod^2) / (2 crank), in the turn nearest to `middle`. axis and zero are unit vectors.
+/// k = (|v|^2 + crank^2 - rod^2) / (2 crank), in the turn nearest to the range's middle, or to 0. axis and zero are
+/// unit vectors.
 Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
-                   const Term& branch, const Term& middle, const Term& q);
+                   const Term& branch, const std::optional<std::array<Term, 2>>& range, const Term& q);
 
 }  // namespace pkm::limbs

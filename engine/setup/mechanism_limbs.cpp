@@ -192,14 +192,11 @@ class LimbReader {
     const Vector3 zero_way = direction(table_.at("zero", "the crank's direction at q = 0, [x, y, z]"), copy, false);
     refuse_oblique(zero_way, axis, "zero", "axis");
     const Term length = formula("crank", "m", "the crank's length"), rod = formula("rod", "m", "the rod's length");
-    Term middle = zero();
-    if (const auto range = table_.find("range")) {
-      const auto [from, to] = range_of(*range, "rad");
-      middle = (from + to) * 0.5;
-    }
+    std::optional<std::array<Term, 2>> ends;
+    if (const auto range = table_.find("range")) ends = range_of(*range, "rad");
     form = "q = atan2(w, u) + branch acos(k / hypot(u, w)), k = (|v|^2 + crank^2 - rod^2) / (2 crank)";
     beyond_ = length + rod;
-    return limbs::crank_and_rod(at, axis, zero_way, length, rod, branch(), middle, q);
+    return limbs::crank_and_rod(at, axis, zero_way, length, rod, branch(), ends, q);
   }
 
   std::array<Term, 2> range_of(const ConfigValue& range, const std::string& unit) const {
@@ -255,6 +252,15 @@ class LimbReader {
     model.closures.push_back(limb.closure.node());
     model.info.closed_forms.push_back(drive_ + ": " + form);
     add_range(joint, model.info.joints.back().unit, limb.joint);
+    if (limb.crank_range) {
+      const limbs::CrankRange& r = *limb.crank_range;
+      described::CoveredRange covered{r.at_min.node(),    r.at_max.node(), r.after_min.node(), r.before_max.node(),
+                                      r.half_turn.node(), r.reach.node(),  r.branch.node(),    {}};
+      for (const auto& condition : limb.conditions) covered.conditions.push_back(condition.margin.node());
+      for (std::size_t i = model.margins.size() - 2; i < model.margins.size(); ++i)
+        covered.conditions.push_back(model.margins[i].node);
+      model.crank_ranges.push_back(covered);
+    }
     add_passive_joint("joint_base", name, limb.C, at.B);
     add_passive_joint("joint_platform", name, at.B, limb.C);
     for (const std::string& mass : kMasses)

@@ -71,6 +71,20 @@ void simplify(graph::Graph& graph, std::vector<graph::Clause>& clauses, std::vec
   }
 }
 
+/// The surfaces of a crank's range along z; none: they are no quadratics, or not along z.
+std::optional<std::array<graph::Quadratic, 4>> surfaces_of(graph::Graph& graph, const CoveredRange& crank, Groups z) {
+  if ((graph[crank.reach].groups & z) == 0 || (graph[crank.half_turn].groups & ~Inputs::kDesign) != 0 ||
+      !graph[crank.branch].is_number())
+    return {};
+  std::array<graph::Quadratic, 4> surfaces;
+  for (std::size_t k = 0; const Node node : {crank.at_min, crank.at_max, crank.after_min, crank.before_max}) {
+    const auto found = lowered(graph, node, z);
+    if (!found || found->size() != 1 || found->front().size() != 1) return {};
+    surfaces[k++] = found->front().front();
+  }
+  return surfaces;
+}
+
 /// What a step takes, in additions.
 double cost_of(const std::vector<Program::Step>& steps) {
   double sum = 0;
@@ -90,7 +104,20 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
   std::vector<std::optional<double>> signs(model.inputs.sign(0));
   for (const double sign : model.signs[mode]) signs.emplace_back(sign);
   std::vector<Node> conditions = conditions_of(model);
+  const std::size_t own = conditions.size();
+  for (const CoveredRange& crank : model.crank_ranges) {
+    conditions.insert(conditions.end(), {crank.at_min, crank.at_max, crank.after_min, crank.before_max, crank.half_turn,
+                                         crank.reach, crank.branch});
+    conditions.insert(conditions.end(), crank.conditions.begin(), crank.conditions.end());
+  }
   graph::Graph graph = with_numbers(model.graph, signs, conditions);
+  std::vector<CoveredRange> ranges;
+  for (std::size_t at = own; const CoveredRange& crank : model.crank_ranges) {
+    const Node* const n = &conditions[at];
+    ranges.push_back({n[0], n[1], n[2], n[3], n[4], n[5], n[6], {n + 7, n + 7 + crank.conditions.size()}});
+    at += 7 + crank.conditions.size();
+  }
+  conditions.resize(own);
 
   std::array<Groups, 4> groups{~Groups{0}, 0, 0, 0};
   for (std::size_t i = 0; i < order_.size(); ++i) {
@@ -98,6 +125,15 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
     group = Inputs::coordinate_group(static_cast<std::size_t>(swept[order_[i]]));
     groups[0] &= ~group;
   }
+  std::vector<std::array<graph::Quadratic, 4>> surfaces;
+  std::erase_if(ranges, [&](const CoveredRange& crank) {
+    const auto found = surfaces_of(graph, crank, groups[kInner]);
+    if (!found) return true;
+    surfaces.push_back(*found);
+    std::erase_if(conditions,
+                  [&](Node node) { return std::ranges::find(crank.conditions, node) != crank.conditions.end(); });
+    return false;
+  });
   std::vector<Node> outputs, plain;
   std::vector<graph::Clause> clauses;
   for (const Node condition : conditions) {
@@ -112,6 +148,10 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
   outputs = plain;
   for (const graph::Clause& clause : clauses)
     for (const graph::Quadratic& q : clause) outputs.insert(outputs.end(), q.c.begin(), q.c.end());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    for (const graph::Quadratic& q : surfaces[i]) outputs.insert(outputs.end(), q.c.begin(), q.c.end());
+    outputs.insert(outputs.end(), {ranges[i].half_turn, ranges[i].reach});
+  }
   program_ = Program(graph, outputs, groups);
 
   std::vector<std::uint32_t> kept;
@@ -129,7 +169,10 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
   handed_down_.erase(std::unique(handed_down_.begin(), handed_down_.end()), handed_down_.end());
   kept.insert(kept.end(), handed_down_.begin(), handed_down_.end());
   middle_.emplace(program_, kMiddle, kept);
-  inner_.emplace(program_, kInner, inner_conditions_);
+  std::vector<std::uint32_t> tested = inner_conditions_;
+  for (const std::uint32_t at : program_.outputs())
+    if (program_.stage_of()[at] == kInner) tested.push_back(at);
+  inner_.emplace(program_, kInner, tested);
   const graph::Node zero = graph.number(0);
   std::size_t output = plain.size();
   for (const graph::Clause& clause : clauses) {
@@ -153,6 +196,17 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
       alternatives_.push_back(made);
   }
   std::ranges::stable_sort(columns_, {}, &ColumnCondition::shape);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    std::array<ColumnCondition, 4> conditions_of_range;
+    for (std::size_t k = 0; k < 4; ++k) {
+      conditions_of_range[k].shape = shape_of(graph, surfaces[i][k].c[2]);
+      for (graph::Operand& c : conditions_of_range[k].c) c = middle_->operand(program_.outputs()[output++]);
+    }
+    const auto& [at_min, at_max, after_min, before_max] = conditions_of_range;
+    cranks_.push_back({at_min, at_max, after_min, before_max, program_.outputs()[output],
+                       program_.outputs()[output + 1], graph[ranges[i].branch].number < 0});
+    output += 2;
+  }
 }
 
 double CellTest::cost(const std::array<std::int64_t, 3>& cells) const {
@@ -162,7 +216,8 @@ double CellTest::cost(const std::array<std::int64_t, 3>& cells) const {
     passes *= static_cast<double>(cells[axis]);
     sum +=
         passes * cost_of(program_.stages()[stage].steps) * (stage == kOuter ? 4 : 1);  // numbers are slower than rows
-    if (stage == kMiddle) sum += passes * 8 * static_cast<double>(columns_.size() + 4 * alternatives_.size());
+    if (stage == kMiddle)
+      sum += passes * 8 * static_cast<double>(columns_.size() + 4 * alternatives_.size() + 8 * cranks_.size());
     ++stage;
   }
   return sum;
@@ -262,7 +317,7 @@ CellTally CellTest::test_columns(const VoxelGrid& grid, std::size_t outer, std::
         room.hole[j * length + word] |= range_of_bits(ranges.hole_from[j], ranges.hole_to[j], word);
   }
   CellTally tally;
-  if (!want_bits && !has_holes && alternatives_.empty() && inner_conditions_.empty()) {
+  if (!want_bits && !has_holes && alternatives_.empty() && cranks_.empty() && inner_conditions_.empty()) {
     double sum = 0;
     for (std::size_t j = 0; j < count; ++j) {
       const double number = std::max(ranges.to[j] - ranges.from[j], 0.0);
@@ -278,7 +333,7 @@ CellTally CellTest::test_columns(const VoxelGrid& grid, std::size_t outer, std::
     for (std::size_t word = 0; word < length; ++word)
       room.bits[(first + j) * length + word] =
           range_of_bits(ranges.from[j], ranges.to[j], word) & ~(has_holes ? room.hole[j * length + word] : 0);
-  find_bits(grid, first, count, column_grid, whole, room);
+  find_bits(grid, first, count, column_grid, room);
   for (std::size_t j = 0; j < count; ++j) {
     const std::uint64_t* const bits = &room.bits[(first + j) * length];
     std::int64_t number = 0;
@@ -291,51 +346,95 @@ CellTally CellTest::test_columns(const VoxelGrid& grid, std::size_t outer, std::
   return tally;
 }
 
-/// What is left of room.bits by conditions with alternatives, and by those that are tested cell by cell.
-void CellTest::find_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
-                         std::size_t whole, CellRoom& room) const {
-  const std::size_t cells = shape(grid)[2], length = words(cells);
-  const double* const rows = room.middle_rows.data();
-  for (const Alternatives& alternatives : alternatives_) {
-    room.some.assign(count * length, 0);
-    CellRanges& other = room.other;
-    for (const ColumnCondition& alternative : alternatives) {
-      std::fill_n(other.from.begin(), whole, 0.0);
-      std::fill_n(other.to.begin(), whole, column_grid.cells);
-      with_instruction_set([&]<InstructionSet set> {
-        narrow<set>(alternative, room.registers.data(), rows, column_grid, whole, other);
-      });
-      for (std::size_t j = 0; j < count; ++j)
-        for (std::size_t word = 0; word < length; ++word)
-          room.some[j * length + word] |= range_of_bits(other.from[j], other.to[j], word) &
-                                          ~range_of_bits(other.hole_from[j], other.hole_to[j], word);
-    }
-    for (std::size_t i = 0; i < count * length; ++i) room.bits[first * length + i] &= room.some[i];
-  }
-  if (inner_conditions_.empty()) return;
-  for (std::size_t j = 0; j < count; ++j) {
-    std::uint64_t* const bits = &room.bits[(first + j) * length];
-    if (std::all_of(bits, bits + length, [](std::uint64_t word) { return word == 0; })) continue;
-    for (const std::uint32_t at : handed_down_) room.registers[at] = rows[middle_->operand(at).index * kRow + j];
-    test_cells(grid, bits, cells, room);
+void CellTest::bits_of(const ColumnCondition& condition, const ColumnGrid& column_grid, std::size_t count,
+                       CellRoom& room, std::vector<std::uint64_t>& bits) const {
+  const std::size_t whole = (count + kLanes - 1) / kLanes * kLanes,
+                    length = words(static_cast<std::size_t>(column_grid.cells));
+  CellRanges& ranges = room.other;
+  std::fill_n(ranges.from.begin(), whole, 0.0);
+  std::fill_n(ranges.to.begin(), whole, column_grid.cells);
+  with_instruction_set([&]<InstructionSet set> {
+    narrow<set>(condition, room.registers.data(), room.middle_rows.data(), column_grid, whole, ranges);
+  });
+  bits.resize(count * length);
+  for (std::size_t j = 0; j < count; ++j)
+    for (std::size_t word = 0; word < length; ++word)
+      bits[j * length + word] = range_of_bits(ranges.from[j], ranges.to[j], word) &
+                                ~range_of_bits(ranges.hole_from[j], ranges.hole_to[j], word);
+}
+
+/// What limbs::CrankRange says of the cells of some columns.
+void CellTest::find_crank_bits(std::size_t i, const ColumnGrid& column_grid, std::size_t count, CellRoom& room) const {
+  const Crank& crank = cranks_[i];
+  bits_of(crank.at_min, column_grid, count, room, room.at_min);
+  bits_of(crank.at_max, column_grid, count, room, room.at_max);
+  bits_of(crank.after_min, column_grid, count, room, room.after_min);
+  bits_of(crank.before_max, column_grid, count, room, room.before_max);
+  const bool is_half = room.registers[crank.half_turn] >= 0;
+  std::vector<std::uint64_t>&in = room.in_range[i], &maybe = room.if_reached[i];
+  in.resize(room.at_min.size());
+  maybe.resize(room.at_min.size());
+  for (std::size_t k = 0; k < in.size(); ++k) {
+    const std::uint64_t f1 = room.at_min[k], f2 = room.at_max[k], p1 = room.after_min[k], p2 = room.before_max[k];
+    const std::uint64_t middle = is_half ? p1 & p2 : p1 | p2, opposite = is_half ? ~p1 & ~p2 : ~p1 | ~p2;
+    in[k] = crank.is_first ? f1 & ~f2 : ~f1 & f2;
+    maybe[k] = (f1 & f2 & middle) | (~f1 & ~f2 & opposite);
   }
 }
 
-void CellTest::test_cells(const VoxelGrid& grid, std::uint64_t* bits, std::size_t cells, CellRoom& room) const {
+/// What is left of room.bits by conditions with alternatives, by cranks, and by what is tested cell by cell.
+void CellTest::find_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
+                         CellRoom& room) const {
+  const std::size_t length = words(shape(grid)[2]);
+  std::uint64_t* const bits = &room.bits[first * length];
+  for (const Alternatives& alternatives : alternatives_) {
+    room.some.assign(count * length, 0);
+    for (const ColumnCondition& alternative : alternatives) {
+      bits_of(alternative, column_grid, count, room, room.hole);
+      for (std::size_t k = 0; k < count * length; ++k) room.some[k] |= room.hole[k];
+    }
+    for (std::size_t k = 0; k < count * length; ++k) bits[k] &= room.some[k];
+  }
+  room.in_range.resize(cranks_.size());
+  room.if_reached.resize(cranks_.size());
+  for (std::size_t i = 0; i < cranks_.size(); ++i) {
+    find_crank_bits(i, column_grid, count, room);
+    for (std::size_t k = 0; k < count * length; ++k) bits[k] &= room.in_range[i][k] | room.if_reached[i][k];
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    bool is_open = false;
+    for (std::size_t k = j * length; k < (j + 1) * length; ++k) {
+      is_open = is_open || (!inner_conditions_.empty() && bits[k] != 0);
+      for (const auto& maybe : room.if_reached) is_open = is_open || (bits[k] & maybe[k]) != 0;
+    }
+    if (!is_open) continue;
+    for (const std::uint32_t at : handed_down_)
+      room.registers[at] = room.middle_rows[middle_->operand(at).index * kRow + j];
+    test_cells(grid, first, j, room);
+  }
+}
+
+/// Column first + j; j counts in what find_bits() found of cranks.
+void CellTest::test_cells(const VoxelGrid& grid, std::size_t column_0, std::size_t j, CellRoom& room) const {
   static_assert(kRow == 64);  // a row is a word
-  for (std::size_t word = 0; word < words(cells); ++word) {
-    if (bits[word] == 0) continue;
+  const std::size_t cells = shape(grid)[2], length = words(cells);
+  for (std::size_t word = 0; word < length; ++word) {
+    std::uint64_t& bits = room.bits[(column_0 + j) * length + word];
+    if (bits == 0) continue;
     const std::size_t first = word * kRow, count = std::min(kRow, cells - first);
     std::size_t whole = kLanes;
     for (const std::uint32_t slot : inner_->inputs())
       whole = fill_centres(grid, order_.back(), first, count, &room.rows[slot * kRow]);
     inner_->run(room.registers.data(), room.rows.data(), whole);
-    for (const std::uint32_t condition : inner_conditions_) {
+    const auto holds = [&](std::uint32_t condition) {
       const double* const row = &room.rows[inner_->operand(condition).index * kRow];
-      std::uint64_t holds = 0;
-      for (std::size_t k = 0; k < count; ++k) holds |= static_cast<std::uint64_t>(row[k] >= 0) << k;
-      bits[word] &= holds;
-    }
+      std::uint64_t found = 0;
+      for (std::size_t k = 0; k < count; ++k) found |= static_cast<std::uint64_t>(row[k] >= 0) << k;
+      return found;
+    };
+    for (const std::uint32_t condition : inner_conditions_) bits &= holds(condition);
+    for (std::size_t i = 0; i < cranks_.size(); ++i)
+      bits &= room.in_range[i][j * length + word] | (room.if_reached[i][j * length + word] & holds(cranks_[i].reach));
   }
 }
 

@@ -20,7 +20,8 @@ namespace pkm::described {
 struct CellRoom {
   std::vector<double> registers, middle_rows, rows;
   std::vector<std::uint64_t> bits;  ///< of a slice, where they are asked for: words() words for each column
-  std::vector<std::uint64_t> some, hole;
+  std::vector<std::uint64_t> some, hole, at_min, at_max, after_min, before_max;
+  std::vector<std::vector<std::uint64_t>> in_range, if_reached;  ///< by crank
   CellRanges ranges, other;
 };
 
@@ -59,12 +60,23 @@ class CellTest {
  private:
   using Alternatives = std::vector<ColumnCondition>;  ///< one of them has to hold
 
+  /// limbs::CrankRange
+  struct Crank {
+    ColumnCondition at_min, at_max, after_min, before_max;
+    std::uint32_t half_turn, reach;  ///< registers
+    bool is_first;                   ///< the joint is the first of the two angles that assemble
+  };
+
   /// Columns [first, first + count) of a slice.
   CellTally test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count, bool want_bits,
                          CellRoom& room) const;
   void find_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
-                 std::size_t whole, CellRoom& room) const;
-  void test_cells(const VoxelGrid& grid, std::uint64_t* bits, std::size_t cells, CellRoom& room) const;
+                 CellRoom& room) const;
+  /// The cells in which one condition holds, of `count` columns.
+  void bits_of(const ColumnCondition& condition, const ColumnGrid& column_grid, std::size_t count, CellRoom& room,
+               std::vector<std::uint64_t>& bits) const;
+  void find_crank_bits(std::size_t crank, const ColumnGrid& column_grid, std::size_t count, CellRoom& room) const;
+  void test_cells(const VoxelGrid& grid, std::size_t first, std::size_t column, CellRoom& room) const;
   double cost(const std::array<std::int64_t, 3>& cells) const;
 
   std::vector<std::size_t> order_;  ///< axes
@@ -72,6 +84,7 @@ class CellTest {
   std::vector<std::uint32_t> early_, middle_conditions_, inner_conditions_, handed_down_;  ///< registers
   std::vector<ColumnCondition> columns_;    ///< lines first, which cost least
   std::vector<Alternatives> alternatives_;  ///< one of each has to hold
+  std::vector<Crank> cranks_;
   std::optional<graph::RowStage> middle_, inner_;
 };
 

@@ -43,6 +43,12 @@ struct DescribedLink {
   Node radius;
 };
 
+/// limbs::CrankRange, and the conditions that it stands for in a survey.
+struct CoveredRange {
+  Node at_min, at_max, after_min, before_max, half_turn, reach, branch;
+  std::vector<Node> conditions;
+};
+
 /// What the design's size is, for workspace-ratio.
 struct DescribedSize {
   Node node;
@@ -59,6 +65,7 @@ struct Model {
   std::vector<Result> margins;  ///< >= 0 where it is feasible
   std::vector<Result> angles;   ///< of passive joints
   std::vector<Node> defined;    ///< >= 0 where formulas have a value: 0 times them
+  std::vector<CoveredRange> crank_ranges;
   std::vector<DescribedLink> links;
   std::vector<DesignMarginInfo> tests;
   std::vector<Node> test_nodes;
