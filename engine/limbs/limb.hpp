@@ -23,8 +23,8 @@ struct Condition {
 /// Where a crank's range ends, as surfaces that the platform's point passes: what a survey needs of the range without
 /// the angle. The closure f(q) = |v - crank(q)|^2 - rod^2 is <= 0 between the two angles phi -+ acos(k / h) that
 /// assemble, phi = atan2(w, u). So one of them is in [q_min, q_max], which is less than a turn, where f changes its
-/// sign in that direction between the ends; both are where f >= 0 at both ends, phi is in the range and the limb
-/// reaches; and both are where f <= 0 at both ends and phi + pi is in the range.
+/// sign in that direction between the ends; and both are, where the limb reaches, if f >= 0 at both ends and phi is in
+/// the range, or f <= 0 at both ends and phi + pi is.
 struct CrankRange {
   Term at_min, at_max;         ///< f at the ends
   Term after_min, before_max;  ///< (u, w) is at most half a turn after q_min, before q_max
