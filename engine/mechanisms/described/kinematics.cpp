@@ -137,7 +137,8 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
 
   std::copy(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at.joints),
             inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
-  const AxisMatrix<double> Jq = derivatives(e.closures, inputs, at.joint(0), at.joints) * -1.0;
+  const AxisMatrix<double> Jq =
+      AxisMatrix<double>::zero(at.joints, at.joints) - derivatives(e.closures, inputs, at.joint(0), at.joints);
   const AxisMatrix<double> G = derivatives(e.closures, inputs, at.coordinate(0), at.coordinates);
   report.Jq = Jq;
   report.G = G;
@@ -227,6 +228,9 @@ std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const dou
     if (!solved) continue;
     for (std::size_t i = 0; i < at.coordinates; ++i)
       if (model.info.coordinates[i].turns()) (*solved)[i] = wrapped((*solved)[i]);
+    const double size = std::fabs(*std::ranges::max_element(*solved, {}, [](double x) { return std::fabs(x); }));
+    for (double& x : *solved)
+      if (std::fabs(x) < 1e-14 * size) x = 0;  // rounding alone
     // which working mode gives these joints
     std::string mode;
     for (std::size_t k = 0; k < model.info.modes.size() && mode.empty(); ++k) {
