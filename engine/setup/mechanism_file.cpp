@@ -252,9 +252,13 @@ Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismD
 }
 
 void read_links(const ConfigValue& root, MechanismDraft& draft) {
+  std::vector<std::string> turning = {"platform"};
+  for (const NamedLimb& limb : draft.limbs)
+    for (const std::string& part : limb.parts) turning.push_back(limb.name + "." + part);
   for (const ConfigValue& table : tables_of(root, "link")) {
     table.allow({"name", "from", "to", "radius", "group", "mass", "inertia"});
     const std::string& name = table.at("name", "the link's name").text("the link's name");
+    turning.push_back(name);
     const Vector3 from = read_point(table.at("from", "a point"), name, draft),
                   to = read_point(table.at("to", "a point"), name, draft);
     const Term radius = draft.scope.of_design(table.at("radius", "the link's radius"), "m", name);
@@ -271,10 +275,6 @@ void read_links(const ConfigValue& root, MechanismDraft& draft) {
     if (const auto mass = table.find("mass")) draft.scope.of_design(*mass, "kg", name);
     if (const auto inertia = table.find("inertia")) draft.scope.of_design(*inertia, "kg m^2", name);
   }
-  std::vector<std::string> turning = {"platform"};
-  for (const described::DescribedLink& link : draft.model.links) turning.push_back(link.name);
-  for (const NamedLimb& limb : draft.limbs)
-    for (const std::string& part : limb.parts) turning.push_back(limb.name + "." + part);
   for (const ConfigValue& table : tables_of(root, "body")) {
     table.allow({"name", "centre", "mass", "inertia", "rotation"});
     const std::string& name = table.at("name", "the body's name").text("the body's name");
