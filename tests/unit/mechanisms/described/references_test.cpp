@@ -162,6 +162,21 @@ TEST(DescribedFiles, AreAllComparedWithSomething) {
   EXPECT_EQ(with_references().size(), 8u);  // the other four with the built-in mechanisms
 }
 
+TEST(DescribedBox, IsThatOfTheDefaultMode) {
+  const auto box_of = [](const std::string& signs) {
+    const auto mechanism = read_mechanism_toml(
+        "[mechanism]\nname = \"slide\"\n[parameters]\nl = { default = 2, min = 1, max = 3 }\n"
+        "[platform]\ncoordinates = { x = \"along x\" }\n[modes]\ne = [" +
+            signs +
+            "]\n[survey]\nbox = { x = [\"e*l\", \"e*l + 1\"] }\n"
+            "[[limb]]\nname = \"q\"\ndrive = \"formula\"\njoint = \"x + e\"\n",
+        "slide.toml");
+    return (*mechanism->ranges(std::vector{2.0}))[0];
+  };
+  EXPECT_EQ(box_of("\"+\", \"-\""), (std::array{2.0, 3.0}));
+  EXPECT_EQ(box_of("\"-\", \"+\""), (std::array{-2.0, -1.0}));
+}
+
 double length(const PlacedLink& link) {
   const Point3<double> way = difference(link.body.axis.to, link.body.axis.from);
   return std::sqrt(dot(way, way));
