@@ -299,7 +299,7 @@ class LimbReader {
       const auto [from, to] = range_of(*range, "m");
       link("rail", kFramePart, at.A + *e_ * from, at.A + *e_ * to);
     }
-    link("platform's arm", kPlatformPart, draft_.origin, at.B);
+    if (!table_.has("end")) link("platform's arm", kPlatformPart, draft_.origin, at.B);
   }
 
   /// Where the platform's frame has to be for the limb to reach: a box about A, or about the rail.
