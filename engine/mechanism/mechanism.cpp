@@ -65,12 +65,16 @@ std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const st
     return sweep;
   };
   std::vector<Sweep> sweeps = {sweep_over(usual)};
+  const auto add = [&sweeps](const Sweep& sweep) {
+    const auto hides = [&](const Sweep& other) { return std::ranges::includes(other.held, sweep.held); };
+    if (std::ranges::none_of(sweeps, hides)) sweeps.push_back(sweep);
+  };
   for (std::size_t count = 3; count >= 1; --count)
     for (int bits = (1 << n) - 1; bits > 0; --bits) {
       std::vector<int> swept;
       for (int i = 0; i < n; ++i)
         if (bits & (1 << (n - 1 - i))) swept.push_back(i);
-      if (swept.size() == count && swept != usual) sweeps.push_back(sweep_over(swept));
+      if (swept.size() == count) add(sweep_over(swept));
     }
   return sweeps;
 }

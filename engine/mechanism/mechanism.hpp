@@ -103,7 +103,7 @@ Refusal no_joint_forces(const Mechanism& mechanism);
 const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan);
 
 /// Every sweep over three coordinates, over two and over one, in this order, for mechanisms that are surveyed cell by
-/// cell.
+/// cell; but for those that no plan can ask for (sweep_of), since an earlier one holds what they hold, too.
 /// @param usual  comes first: the swept coordinates
 std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual);
 

@@ -14,6 +14,7 @@ struct NamedLimb {
   std::string name;                              ///< "arm2"
   std::string group;                             ///< "arm": all copies
   std::map<std::string, limbs::Vector3> points;  ///< "A", "B", "C", "S"
+  std::vector<std::string> parts;                ///< "crank", "rod"
 };
 
 /// What the sections build up together.

@@ -174,8 +174,6 @@ void read_let(const ConfigValue& root, MechanismDraft& draft) {
 
 void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   described::Model& model = draft.model;
-  platform.allow(
-      {"coordinates", "characteristic_length", "characteristic_radius", "size", "origin", "mass", "centre", "inertia"});
   if (const auto origin = platform.find("origin")) draft.origin = draft.scope.point(*origin, "origin");
   if (const auto length = platform.find("characteristic_length")) {
     model.length = draft.scope.of_design(*length, "m", "characteristic_length").node();
@@ -225,6 +223,21 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
   }
 }
 
+/// Refuses signs that double the working modes for nothing.
+void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft) {
+  const auto all = root.find("modes");
+  if (!all) return;
+  described::Model& model = draft.model;
+  std::vector<graph::Node> used = model.joints;
+  for (const described::Result& margin : model.margins) used.push_back(margin.node);
+  used = model.graph.reachable(used);
+  for (std::size_t i = 0; i < all->keys().size(); ++i) {
+    const std::string& name = all->keys()[i];
+    if (!std::ranges::binary_search(used, model.graph.input(model.inputs.sign(i))))
+      throw all->find(name)->refusal("no formula of a joint or a margin has the sign '" + name + "'");
+  }
+}
+
 /// [x, y, z] or a limb's point, "arm1.C".
 Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft) {
   if (!value.is_text()) return draft.scope.point(value, what);
@@ -239,15 +252,24 @@ Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismD
 }
 
 void read_links(const ConfigValue& root, MechanismDraft& draft) {
+  std::vector<std::string> turning = {"platform"};
+  for (const NamedLimb& limb : draft.limbs)
+    for (const std::string& part : limb.parts) turning.push_back(limb.name + "." + part);
   for (const ConfigValue& table : tables_of(root, "link")) {
     table.allow({"name", "from", "to", "radius", "group", "mass", "inertia"});
     const std::string& name = table.at("name", "the link's name").text("the link's name");
+    turning.push_back(name);
     const Vector3 from = read_point(table.at("from", "a point"), name, draft),
                   to = read_point(table.at("to", "a point"), name, draft);
     const Term radius = draft.scope.of_design(table.at("radius", "the link's radius"), "m", name);
     std::string part = kFramePart;
-    if (const auto group = table.find("group"))
-      part = group->is_list() ? group->elements("names").at(0).text("a name") : group->text("a name");
+    if (const auto group = table.find("group")) {
+      constexpr const char* kExpected = "a name or a list of names";
+      const auto groups = group->is_list() ? group->elements(kExpected) : std::vector{*group};
+      if (groups.empty()) throw group->error(kExpected);
+      for (const ConfigValue& each : groups) each.text(kExpected);
+      part = groups.front().text(kExpected);
+    }
     const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
     draft.model.links.push_back({name, part, nodes(from), nodes(to), radius.node()});
     if (const auto mass = table.find("mass")) draft.scope.of_design(*mass, "kg", name);
@@ -260,7 +282,7 @@ void read_links(const ConfigValue& root, MechanismDraft& draft) {
     draft.scope.of_design(table.at("mass", "the body's mass"), "kg", name);
     if (const auto inertia = table.find("inertia"))
       for (const ConfigValue& each : inertia->elements("three values")) draft.scope.of_design(each, "kg m^2", name);
-    if (const auto rotation = table.find("rotation")) rotation->text("\"platform\" or a link");
+    if (const auto rotation = table.find("rotation")) rotation->word(turning);
   }
 }
 
@@ -308,8 +330,9 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         const auto ends = range.elements("[from, to]");
         if (ends.size() != 2) throw range.error("[from, to]");
         const std::string& unit = model.info.coordinates[i].unit;
-        model.box[i] = {draft.scope.of_design(ends[0], unit, name).node(),
-                        draft.scope.of_design(ends[1], unit, name).node()};
+        const Term from = draft.scope.of_design(ends[0], unit, name), to = draft.scope.of_design(ends[1], unit, name);
+        draft.scope.refuse_empty(range, from, to);
+        model.box[i] = {from.node(), to.node()};
       }
     }
   }
@@ -374,13 +397,16 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   draft.model.inputs.limits = 0;
   read_limits(root, draft);
   const ConfigValue platform = root.at("platform", "a table [platform] with its coordinates");
-  platform.expect_table("a table [platform]");
+  platform.expect_table("a table [platform]")
+      .allow({"coordinates", "characteristic_length", "characteristic_radius", "size", "origin", "mass", "centre",
+              "inertia"});
   read_coordinates(platform, draft);
   read_modes(root, draft);
   read_let(root, draft);
   read_platform(platform, draft);
   read_limbs(root, draft);
   read_margins(root, draft);
+  refuse_idle_signs(root, draft);
   read_links(root, draft);
   read_survey(root, draft);
   draft.scope.note_domains();

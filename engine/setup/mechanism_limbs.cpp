@@ -29,6 +29,7 @@ class LimbReader {
 
   void read() {
     allow_keys();
+    refuse_known(name_);
     if (drive_ == "formula") return read_formulas();
     for (const Rotation& copy : copies()) read_copy(copy);
   }
@@ -40,6 +41,8 @@ class LimbReader {
       keys.insert(keys.end(), more.begin(), more.end());
     };
     if (drive_ == "formula") {
+      if (const auto copies = table_.find("copies"))
+        throw copies->refusal("a limb of formulas has no copies; it may have several joints");
       also({"joints", "joint", "unit"});
     } else {
       also({"copies", "base", "platform", "end", "across", "across_in", "radius", "joint_base", "joint_platform",
@@ -53,8 +56,8 @@ class LimbReader {
 
   Term zero() const { return draft_.zero(); }
   Term number(double x) const { return {draft_.model.graph, x}; }
-  Term formula(const char* key, const char* unit, const char* expected) const {
-    return draft_.scope.formula(table_.at(key, expected), unit, name_);
+  Term length(const char* key, const char* expected) const {
+    return draft_.scope.of_design(table_.at(key, expected), "m", name_);
   }
 
   /// How each copy is turned in its frames.
@@ -100,14 +103,14 @@ class LimbReader {
   limbs::Ends ends(const Rotation& copy) const {
     if (const auto both = table_.find("platform"); both && table_.has("end"))
       throw both->refusal("a limb ends at `platform` (in the platform's frame) or at `end` (in the base's), not both");
-    const Vector3 base = copy * draft_.scope.point(table_.at("base", "the base point [x, y, z]"), name_);
+    const Vector3 base = copy * draft_.scope.point_of_design(table_.at("base", "the base point [x, y, z]"), name_);
     Vector3 B = base;
     if (const auto end = table_.find("end")) {
       if (is_copied_) throw end->refusal("copies end at `platform`; `end` is one point of the base's frame");
       B = draft_.scope.point(*end, name_);
     } else {
-      B = draft_.origin +
-          draft_.turn * (copy * draft_.scope.point(table_.at("platform", "the platform's point [x, y, z]"), name_));
+      const ConfigValue platform = table_.at("platform", "the platform's point [x, y, z]");
+      B = draft_.origin + draft_.turn * (copy * draft_.scope.point_of_design(platform, name_));
     }
     limbs::Ends ends{.A = base, .B = B, .across = {}};
     if (const auto across = table_.find("across"))
@@ -129,15 +132,20 @@ class LimbReader {
     return model.term(model.graph.input(model.inputs.joint(model.inputs.joints++), Inputs::kJoints));
   }
   void refuse_oblique(const Vector3& a, const Vector3& b, const char* key, const char* other) const {
-    const Term product = dot(a, b);
-    const graph::Entry& entry = draft_.model.graph[product.node()];
-    if (entry.is_number() && std::fabs(entry.number) > 1e-9)
-      throw table_.find(key)->refusal(std::string("`") + key + "` has to be normal to `" + other + "`");
+    if (std::fabs(draft_.scope.at_default(dot(a, b))) > 1e-9)
+      throw table_.find(key)->refusal(std::string("`") + key + "` has to be normal to " + other);
+  }
+
+  void refuse_known(const std::string& name) const {
+    for (const NamedLimb& limb : draft_.limbs)
+      if (limb.name == name || limb.group == name)
+        throw table_.find("name")->refusal("there is already a limb called '" + name + "'");
   }
 
   void read_copy(const Rotation& copy) {
     const std::size_t number = ++copies_read_;
     const std::string name = is_copied_ ? name_ + std::to_string(number) : name_;
+    refuse_known(name);
     std::string joint = name;
     if (const auto given = table_.find("joint_name"))
       joint = given->text("the joint's name") + (is_copied_ ? std::to_string(number) : "");
@@ -162,13 +170,14 @@ class LimbReader {
       throw along->refusal("a slide has a `direction` or, with `links`, runs `along`");
     const ConfigValue way = along ? *along : table_.at("direction", "the slide's direction [x, y, z]");
     const Vector3 e = direction(way, copy, false);
-    if (at.across) refuse_oblique(e, *at.across, along ? "along" : "direction", "across");
+    if (at.across) refuse_oblique(e, *at.across, along ? "along" : "direction", "`across`");
     e_ = e;
     if (const auto links = table_.find("links")) {
       if (const auto rod = table_.find("rod")) throw rod->refusal("a limb has a `rod` or `links`, not both");
       const auto lengths = links->elements("two lengths [l_1, l_2]");
       if (lengths.size() != 2) throw links->error("two lengths [l_1, l_2]");
-      const Term l_1 = draft_.scope.formula(lengths[0], "m", name_), l_2 = draft_.scope.formula(lengths[1], "m", name_);
+      const Term l_1 = draft_.scope.of_design(lengths[0], "m", name_),
+                 l_2 = draft_.scope.of_design(lengths[1], "m", name_);
       Vector3 axis = e;
       if (const auto given = table_.find("axis")) axis = direction(*given, copy, false);
       form = "q = (B - A) . e, two links across e";
@@ -181,7 +190,7 @@ class LimbReader {
       form = "q = (B - A) . e";
       return limbs::slider(at, e, q);
     }
-    const Term rod = formula("rod", "m", "the rod's length");
+    const Term rod = length("rod", "the rod's length");
     form = "q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), s = v . e, v = B - A";
     beyond_ = rod;
     return limbs::slider_and_rod(at, e, rod, branch(), q);
@@ -190,24 +199,25 @@ class LimbReader {
   Limb crank(const limbs::Ends& at, const Rotation& copy, const Term& q, std::string& form) {
     const Vector3 axis = direction(table_.at("axis", "the pivot's axis [x, y, z]"), copy, false);
     const Vector3 zero_way = direction(table_.at("zero", "the crank's direction at q = 0, [x, y, z]"), copy, false);
-    refuse_oblique(zero_way, axis, "zero", "axis");
-    const Term length = formula("crank", "m", "the crank's length"), rod = formula("rod", "m", "the rod's length");
+    refuse_oblique(zero_way, axis, "zero", "`axis`");
+    if (at.across) {
+      refuse_oblique(*at.across, zero_way, "across", "the crank's motion, along its `axis`");
+      refuse_oblique(*at.across, cross(axis, zero_way), "across", "the crank's motion, along its `axis`");
+    }
+    const Term crank = length("crank", "the crank's length"), rod = length("rod", "the rod's length");
     std::optional<std::array<Term, 2>> ends;
     if (const auto range = table_.find("range")) ends = range_of(*range, "rad");
     form = "q = atan2(w, u) + branch acos(k / hypot(u, w)), k = (|v|^2 + crank^2 - rod^2) / (2 crank)";
-    beyond_ = length + rod;
-    return limbs::crank_and_rod(at, axis, zero_way, length, rod, branch(), ends, q);
+    beyond_ = crank + rod;
+    return limbs::crank_and_rod(at, axis, zero_way, crank, rod, branch(), ends, q);
   }
 
   std::array<Term, 2> range_of(const ConfigValue& range, const std::string& unit) const {
     constexpr const char* kExpected = "two numbers or formulas [least, greatest]";
     const auto ends = range.elements(kExpected);
     if (ends.size() != 2) throw range.error(kExpected);
-    const Term from = draft_.scope.formula(ends[0], unit, name_), to = draft_.scope.formula(ends[1], unit, name_);
-    const auto& graph = draft_.model.graph;
-    if (graph[from.node()].is_number() && graph[to.node()].is_number() &&
-        graph[from.node()].number > graph[to.node()].number)
-      throw range.error("the least value before the greatest");
+    const Term from = draft_.scope.of_design(ends[0], unit, name_), to = draft_.scope.of_design(ends[1], unit, name_);
+    draft_.scope.refuse_empty(range, from, to);
     return {from, to};
   }
   void add_range(const std::string& joint, const std::string& unit, const Term& q) {
@@ -231,7 +241,7 @@ class LimbReader {
     const auto limit = [&](const char* end, const auto& margin) {
       if (const auto value = table->find(end))
         draft_.model.margins.push_back(
-            {what + " " + end, "rad", margin(draft_.scope.formula(*value, "rad", name)).node()});
+            {what + " " + end, "rad", margin(draft_.scope.of_design(*value, "rad", name)).node()});
     };
     limit("min", [&](const Term& least) { return angle - least; });
     limit("max", [&](const Term& greatest) { return greatest - angle; });
@@ -265,9 +275,18 @@ class LimbReader {
     add_passive_joint("joint_platform", name, at.B, limb.C);
     for (const std::string& mass : kMasses)
       if (const auto given = table_.find(mass)) draft_.scope.of_design(*given, "kg", name);
-    draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}});
+    draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts()});
     add_links(name, limb, at);
     add_reach(limb, at, model.info.joints.back().unit);
+  }
+
+  /// Its bodies, as [[body]] names them.
+  std::vector<std::string> parts() const {
+    if (drive_ == "telescope") return {"leg"};
+    if (drive_ == "crank") return {"crank", "rod"};
+    if (table_.has("links")) return {"slider", "first_link", "second_link"};
+    if (table_.has("rod")) return {"slider", "rod"};
+    return {"slider"};
   }
 
   void add_links(const std::string& name, const Limb& limb, const limbs::Ends& at) {
@@ -286,7 +305,7 @@ class LimbReader {
       const auto [from, to] = range_of(*range, "m");
       link("rail", kFramePart, at.A + *e_ * from, at.A + *e_ * to);
     }
-    link("platform's arm", kPlatformPart, draft_.origin, at.B);
+    if (!table_.has("end")) link("platform's arm", kPlatformPart, draft_.origin, at.B);
   }
 
   /// Where the platform's frame has to be for the limb to reach: a box about A, or about the rail.
@@ -327,7 +346,7 @@ class LimbReader {
       if (joints->keys().empty()) throw joints->error("at least one joint");
       for (const std::string& name : joints->keys()) read_formula(name, *joints->find(name), in);
     }
-    draft_.limbs.push_back({name_, name_, {}});
+    draft_.limbs.push_back({name_, name_, {}, {}});
     draft_.reaches.emplace_back();
   }
   void read_formula(const std::string& name, const ConfigValue& text, const std::string& unit) {

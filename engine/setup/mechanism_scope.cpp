@@ -5,6 +5,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/graph/formula_reader.hpp"
 #include "engine/graph/formula_words.hpp"
+#include "engine/graph/program.hpp"
 
 namespace pkm {
 
@@ -13,8 +14,11 @@ using graph::Node, limbs::Term, limbs::Vector3;
 void MechanismScope::add(const ConfigValue& at, const std::string& name, Node node) {
   if (!graph::may_be_name(name))
     throw at.refusal("'" + name + "' is no name for formulas: letters, digits and '_', none of the functions nor pi");
-  if (knows(name)) throw at.refusal("there is already something called '" + name + "'");
+  if (const auto known = std::ranges::find(names_, name); known != names_.end())
+    throw at.refusal("'" + name + "' is the name of " + origins_[static_cast<std::size_t>(known - names_.begin())] +
+                     " already");
   names_.push_back(name);
+  origins_.push_back(at.place().key + " (" + at.line() + ")");
   nodes_.push_back(node);
 }
 
@@ -35,27 +39,63 @@ Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, 
 
 Term MechanismScope::of_design(const ConfigValue& value, const std::string& unit, const std::string& what) {
   const Term term = formula(value, unit, what);
-  if ((model_.graph[term.node()].groups & ~described::Inputs::kDesign) != 0)
-    throw value.error("a formula of parameters alone, without coordinates");
+  std::vector<std::string> moving;
+  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)
+    if (model_.graph[term.node()].groups & described::Inputs::coordinate_group(i))
+      moving.push_back("'" + model_.info.coordinates[i].name + "'");
+  if (!moving.empty()) throw value.error("a formula of parameters alone, which this is not for " + join(moving));
   return term;
 }
 
+namespace {
+
+constexpr const char* kPoint = "three numbers or formulas [x, y, z]";
+constexpr const char* kDirection = "a direction, three numbers or formulas [x, y, z] that are not all 0";
+
+/// [x, y, z], each read by `read`.
+template <class Read>
+Vector3 three(const ConfigValue& value, const char* expected, const Read& read) {
+  const std::vector<ConfigValue> elements = value.elements(expected);
+  if (elements.size() != 3) throw value.error(expected);
+  return {read(elements[0]), read(elements[1]), read(elements[2])};
+}
+
+}  // namespace
+
 Vector3 MechanismScope::point(const ConfigValue& value, const std::string& what) {
-  constexpr const char* kExpected = "three numbers or formulas [x, y, z]";
-  const std::vector<ConfigValue> elements = value.elements(kExpected);
-  if (elements.size() != 3) throw value.error(kExpected);
-  return {formula(elements[0], "m", what), formula(elements[1], "m", what), formula(elements[2], "m", what)};
+  return three(value, kPoint, [&](const ConfigValue& each) { return formula(each, "m", what); });
+}
+
+Vector3 MechanismScope::point_of_design(const ConfigValue& value, const std::string& what) {
+  return three(value, kPoint, [&](const ConfigValue& each) { return of_design(each, "m", what); });
 }
 
 Vector3 MechanismScope::direction(const ConfigValue& value, const std::string& what) {
-  constexpr const char* kExpected = "a direction, three numbers or formulas [x, y, z] that are not all 0";
-  const std::vector<ConfigValue> elements = value.elements(kExpected);
-  if (elements.size() != 3) throw value.error(kExpected);
-  const Vector3 v = {formula(elements[0], "1", what), formula(elements[1], "1", what), formula(elements[2], "1", what)};
+  const Vector3 v = three(value, kDirection, [&](const ConfigValue& each) { return of_design(each, "1", what); });
   const Term length = limbs::length(v);
-  if (length.is(0)) throw value.error(kExpected);
+  if (!(at_default(length) > 0)) throw value.error(kDirection);
   known_to_exist(length.node());
   return v / length;
+}
+
+double MechanismScope::at_default(const Term& term) const {
+  const graph::Node node = term.node();
+  const graph::Program program(model_.graph, {&node, 1});
+  std::vector<double> inputs(model_.inputs.count(), 1), registers;
+  for (std::size_t i = 0; i < model_.info.parameters.size(); ++i) inputs[i] = model_.info.parameters[i].nominal;
+  for (std::size_t i = 0; i < model_.info.limits.size(); ++i)
+    inputs[model_.inputs.limit(i)] = model_.info.limits[i].inactive;
+  for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)  // nothing special about this pose
+    inputs[model_.inputs.coordinate(i)] = 0.37 + 0.11 * static_cast<double>(i);
+  program.run_all<double>(inputs, registers);
+  return registers[program.outputs().front()];
+}
+
+void MechanismScope::refuse_empty(const ConfigValue& range, const Term& from, const Term& to) const {
+  const double least = at_default(from), greatest = at_default(to);
+  if (least > greatest)
+    throw range.error("the least value before the greatest; the default parameters make it [" + shortest(least) + ", " +
+                      shortest(greatest) + "]");
 }
 
 void MechanismScope::known_to_exist(Node node) {

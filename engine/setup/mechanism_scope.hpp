@@ -26,10 +26,16 @@ class MechanismScope {
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// The same of parameters alone.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// Three of them, [x, y, z].
+  /// Three formulas, [x, y, z].
   limbs::Vector3 point(const ConfigValue& value, const std::string& what);
-  /// A direction, scaled to length 1. @param node_of  formula or of_design
+  /// The same of parameters alone.
+  limbs::Vector3 point_of_design(const ConfigValue& value, const std::string& what);
+  /// A direction of parameters alone, scaled to length 1.
   limbs::Vector3 direction(const ConfigValue& value, const std::string& what);
+  /// What a formula is for the default parameters at some pose, for what has to hold at every pose.
+  double at_default(const limbs::Term& term) const;
+  /// Refuses a range that the default parameters turn round.
+  void refuse_empty(const ConfigValue& range, const limbs::Term& from, const limbs::Term& to) const;
 
   /// Roots and the like that a limb is made of: its own conditions say where they exist.
   void known_to_exist(graph::Node node);
@@ -47,6 +53,7 @@ class MechanismScope {
   described::Model& model_;
   std::vector<std::string> names_;
   std::vector<graph::Node> nodes_;
+  std::vector<std::string> origins_;  ///< "parameters.a (line 7)"
   std::vector<Watched> watched_;
   std::unordered_set<graph::Node> seen_;
 };

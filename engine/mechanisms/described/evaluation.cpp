@@ -83,6 +83,7 @@ std::optional<S> Evaluation::of_design(const Program& program, std::span<const S
   for (std::size_t i = 0; i < model.inputs.limits; ++i)
     values[model.inputs.limit(i)] =
         model.replaced[i] ? parameters[*model.replaced[i]] : S(model.info.limits[i].inactive);
+  for (std::size_t i = 0; i < model.inputs.signs; ++i) values[model.inputs.sign(i)] = S(model.signs.front()[i]);
   return outputs_of(program, values).front();
 }
 

@@ -22,7 +22,7 @@ struct Evaluation {
   /// The graph's inputs for a design; coordinates and joints are 0.
   template <class S>
   std::vector<S> inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode) const;
-  /// What a program of the design alone gives; none where it has no output.
+  /// What a program of the design alone gives in the default working mode; none where it has no output.
   template <class S>
   std::optional<S> of_design(const graph::Program& program, std::span<const S> parameters) const;
   /// Range of a coordinate that holds the workspace.

@@ -10,12 +10,15 @@ namespace pkm::described {
 PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                         std::size_t mode, const LimitSpec& limits);
 
+/// @param inputs  with the pose
+bool assembles_at(const Evaluation& evaluation, const std::vector<double>& inputs);
+
 /// Absent where the pose does not assemble or they are infinite.
 std::optional<Influence<double>> influence_at(const Evaluation& evaluation, std::span<const double> parameters,
                                               const Pose<double>& pose, std::size_t mode);
 
-/// Poses for joint values by Newton's method on the closures, from the nominal pose and from a grid of poses in the
-/// description's box, each once: those that it finds need not be all.
+/// Poses for joint values by Newton's method on the closures, from some 64 poses of the description's box for each
+/// working mode that has formulas of its own, each once: those that it finds need not be all.
 std::vector<AssemblyMode> assemblies_of(const Evaluation& evaluation, std::span<const double> parameters,
                                         const AxisVector<double>& joints);
 

@@ -27,6 +27,8 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
     }
     return all;
   }
+  /// The survey's box may be less than what the limbs reach.
+  std::optional<std::array<double, 2>> reach(std::span<const double>, int) const override { return {}; }
   std::optional<double> middle(std::span<const double> parameters, int coordinate) const override {
     return e_.of_design<double>(e_.middle[static_cast<std::size_t>(coordinate)], parameters);
   }
@@ -68,6 +70,7 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
                                 const std::string& mode) const override {
     std::vector<double> inputs = e_.inputs(parameters, no_limits(info()), number_of_mode(info(), mode));
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+    if (!assembles_at(e_, inputs)) return {};
     const std::vector<double> values = outputs_of(e_.links, inputs);
     if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); })) return {};
     std::vector<PlacedLink> links;

@@ -90,7 +90,7 @@ TEST_P(InfluenceContract, AreAbsentOutOfReach) {
   EXPECT_FALSE(mechanism().velocities()->influence(parameters(), test::far_pose(info()), info().modes[0]));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, InfluenceContract, testing::ValuesIn(test::mechanisms()),
+INSTANTIATE_TEST_SUITE_P(All, InfluenceContract, testing::ValuesIn(test::mechanisms_and_files()),
                          [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "engine/survey/survey_set.hpp"
 #include "engine/survey/voxel_grid.hpp"
 #include "tests/own_mechanisms/all.hpp"
+#include "tests/unit/mechanisms/described/files.hpp"
 
 namespace pkm::test {
 
@@ -28,6 +29,22 @@ inline const MechanismList& mechanisms() {
   }();
   return list;
 }
+
+/// Those of files besides.
+inline const MechanismList& mechanisms_and_files() {
+  static const MechanismList list = [] {
+    MechanismList all = mechanisms();
+    for (const std::string& name : mechanism_files()) {
+      std::string text = text_of_mechanism(name);
+      text.insert(text.find('"') + 1, "file-");  // some have the name of a user's
+      all.push_back(read_mechanism_toml(text, name + ".toml"));
+    }
+    return all;
+  }();
+  return list;
+}
+
+inline bool is_of_file(const MechanismInfo& info) { return info.name.starts_with("file-"); }
 
 inline std::vector<double> nominal(const MechanismInfo& info) {
   std::vector<double> values;
@@ -71,14 +88,23 @@ inline SurveyPlan best_plan(const Mechanism& mechanism, std::int64_t cells = 10)
   return best_plan(mechanism, mechanism.info().sweeps.front(), cells);
 }
 
-/// Sweeps to look at: all; where every cell of any sweep is tested alike, the first of each unit.
+/// Sweeps to look at: all; where every cell of any sweep is tested alike, the first of each unit. Of files, whose boxes
+/// have any middle, the first that is not empty.
 inline std::vector<Sweep> sweeps(const Mechanism& mechanism) {
   const MechanismInfo& info = mechanism.info();
-  if (mechanism.voxels()) return info.sweeps;
+  if (mechanism.voxels() && !is_of_file(info)) return info.sweeps;
+  const auto has_cells = [&](const Sweep& sweep) {
+    const VoxelMap map = voxel_map(mechanism, nominal(info), voxels(info, sweep, 10));
+    return std::ranges::count(map.feasible, 1) > 0;
+  };
   std::vector<Sweep> some;
   std::set<std::string> units;
-  for (const Sweep& sweep : info.sweeps)
-    if (units.insert(unit_of_product(info, sweep.swept)).second) some.push_back(sweep);
+  for (const Sweep& sweep : info.sweeps) {
+    const std::string unit = unit_of_product(info, sweep.swept);
+    if (units.contains(unit) || (is_of_file(info) && !has_cells(sweep))) continue;
+    units.insert(unit);
+    some.push_back(sweep);
+  }
   return some;
 }
 /// For traces of failures: "sweep of x y".

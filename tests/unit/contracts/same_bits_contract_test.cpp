@@ -128,7 +128,7 @@ TEST_P(SameBitsContract, SurveysAndSlopesByATeam) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SameBitsContract, testing::ValuesIn(test::mechanisms()),
+INSTANTIATE_TEST_SUITE_P(All, SameBitsContract, testing::ValuesIn(test::mechanisms_and_files()),
                          [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
 
 }  // namespace

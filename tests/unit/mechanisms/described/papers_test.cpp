@@ -1,0 +1,271 @@
+// The four mechanisms of the papers as files against the built-in ones: the same joints, verdicts, Jacobians,
+// thresholds and cells. What files have no counterpart of: clearances of links, whose limit is set to what cuts
+// nothing; the phase theta0 of the hybrid's auxiliary chain, which limits no pose; and the hybrid's conditioning, which
+// leaves its carriage out. Its own box follows the working mode closely, so both count in the golden ones.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "engine/survey/survey_set.hpp"
+#include "tests/unit/contracts/everything.hpp"
+#include "tests/unit/mechanisms/crr_cru/golden.hpp"
+#include "tests/unit/mechanisms/described/files.hpp"
+#include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
+#include "tests/unit/mechanisms/hybrid/golden.hpp"
+
+namespace pkm {
+namespace {
+
+using Json = nlohmann::json;
+
+struct GoldenPose {
+  std::vector<double> design;
+  Pose<double> pose;
+};
+struct GoldenGrid {
+  std::vector<double> design;
+  LimitSpec limits;
+  VoxelOptions voxels;
+  std::vector<HeldCoordinate> held;
+  std::int64_t feasible;  ///< -1: it counts clearances, too
+};
+
+Pose<double> pose_of(const Json& x) { return {x[0], x[1], x[2], x[3]}; }
+std::array<std::int64_t, 3> cells_of(const Json& x) { return {x[0], x[1], x[2]}; }
+
+class PaperMechanism : public ::testing::TestWithParam<std::string> {
+ protected:
+  const Mechanism& own() const {
+    return **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m->info().name == GetParam(); });
+  }
+  const Mechanism& file() const { return *test::described(GetParam()); }
+
+  /// The file's signs as the built-in mechanism calls the mode.
+  static std::string own_mode(const std::string& signs) {
+    if (GetParam() == "4ppa-2par") {
+      const auto word = [](char sign) { return std::string(sign == '+' ? "lower" : "upper"); };
+      return word(signs[0]) + "," + word(signs[2]);
+    }
+    if (GetParam() == "2t1r-p-hybrid") return signs.substr(0, 5) + (signs[6] == '+' ? "" : "/-");
+    return signs;
+  }
+  std::vector<double> of_file(const std::vector<double>& design) const {
+    std::vector<double> same;
+    for (const Parameter& p : file().info().parameters)
+      same.push_back(design[static_cast<std::size_t>(find_named(own().info().parameters, p.name) -
+                                                     own().info().parameters.data())]);
+    return same;
+  }
+  LimitSpec of_file(const LimitSpec& limits) const {
+    LimitSpec same = no_limits(file().info());
+    for (std::size_t i = 0; i < own().info().limits.size(); ++i) {
+      const LimitInfo* const limit = find_named(file().info().limits, own().info().limits[i].name);
+      if (!limit) continue;
+      const auto at = static_cast<std::size_t>(limit - file().info().limits.data());
+      same.given[at] = limits.given[i];
+      same.derived[at] = limits.derived[i];
+    }
+    return same;
+  }
+  LimitSpec without_clearance(LimitSpec limits) const {
+    for (std::size_t i = 0; i < limits.given.size(); ++i)
+      if (own().info().limits[i].group == "clearance") limits.given[i] = kNoClearance;
+    return limits;
+  }
+
+  std::vector<GoldenPose> golden_poses() const {
+    std::vector<GoldenPose> all;
+    if (GetParam() == "4ppa-2par") {
+      for (const Json& entry : testing::golden()["kinematics"])
+        all.push_back({testing::design_of(entry), pose_of(entry["pose"])});
+    } else if (GetParam() == "2t1r-p-hybrid") {
+      for (const char* const list : {"ik", "jac", "feasibility", "quality"})
+        for (const Json& entry : testing::hybrid::golden()[list])
+          all.push_back({testing::hybrid::design_of(entry), pose_of(entry["X"])});
+    } else {
+      for (const char* const list : {"cases", "feasibility"})
+        for (const Json& entry : testing::crr::golden()[list])
+          if (entry["mechanism"] == GetParam()) all.push_back({testing::crr::design_of(entry), pose_of(entry["X"])});
+    }
+    return all;
+  }
+  std::vector<GoldenGrid> golden_grids() const {
+    std::vector<GoldenGrid> all;
+    const LimitSpec none = without_clearance(no_limits(own().info()));
+    if (GetParam() == "4ppa-2par") {
+      for (const Json& entry : testing::golden()["workspace"])
+        for (const Json& grid : entry["voxel"])
+          all.push_back({testing::design_of(entry),
+                         without_clearance(testing::limits_of(entry)),
+                         {.cells = cells_of(grid["cells"])},
+                         {},
+                         grid["feasible"]});
+      auto paper = testing::nominal();
+      all.push_back({paper, none, {.cells = {32, 34, 60}}, {}, 12412});
+      for (const auto& [name, value] : std::map<std::string, double>{{"a", 0.3}, {"b", 1}, {"l_u", 0.7}, {"l_d", 0.7}})
+        paper[static_cast<std::size_t>(find_named(own().info().parameters, name) - own().info().parameters.data())] =
+            value;
+      all.push_back({paper, none, {.cells = {32, 34, 60}}, {}, 12564});
+    } else if (GetParam() == "2t1r-p-hybrid") {
+      for (const Json& entry : testing::hybrid::golden()["workspace"])
+        for (const Json& grid : entry["grids"]) {
+          VoxelOptions voxels{.cells = cells_of(grid["shape"]), .box = Box{}};
+          for (std::size_t k = 0; k < 3; ++k) (*voxels.box)[k] = {entry["box"][k][0], entry["box"][k][1]};
+          all.push_back({testing::hybrid::design_of(entry), none, voxels, {}, -1});
+        }
+    } else {
+      for (const Json& entry : testing::crr::golden()["dci_stats"]) {
+        if (entry["mechanism"] != GetParam()) continue;
+        VoxelOptions voxels{.cells = cells_of(entry["n"]), .box = Box{}};
+        for (std::size_t k = 0; k < 3; ++k) (*voxels.box)[k] = {entry["lo"][k], entry["hi"][k]};
+        all.push_back({testing::crr::design_of(entry),
+                       without_clearance(testing::crr::limit_spec(entry["smin"], entry["cmin"])),
+                       voxels,
+                       {{.coordinate = 3, .kind = HeldCoordinate::Kind::value, .value = entry["phi"]}},
+                       entry["feasible"]});
+      }
+    }
+    return all;
+  }
+
+  struct Compared {
+    int joints = 0, feasible = 0, slopes = 0, conditioned = 0;
+  };
+  void expect_same(const std::vector<double>& design, const Pose<double>& pose, const LimitSpec& limits,
+                   Compared& compared) const {
+    for (const std::string& mode : file().info().modes) {
+      SCOPED_TRACE(test::words(file().info(), pose) + " in mode " + mode);
+      const PoseReport mine = file().inspect(of_file(design), pose, mode, of_file(limits)),
+                       theirs = own().inspect(design, pose, own_mode(mode), limits);
+      EXPECT_EQ(mine.feasible, theirs.feasible) << "'" << mine.reason << "', '" << theirs.reason << "'";
+      compared.feasible += mine.feasible;
+      if (!theirs.assembles || !mine.assembles) continue;
+      for (std::size_t i = 0; i < 4; ++i, ++compared.joints)
+        EXPECT_NEAR((*mine.joints)[i], (*theirs.joints)[i], 1e-12 * (1 + std::fabs((*theirs.joints)[i])));
+      if (mine.J && theirs.J) {
+        double largest = 1;
+        for (const double slope : *theirs.J) largest = std::fmax(largest, std::fabs(slope));
+        for (std::size_t i = 0; i < 4; ++i)
+          for (std::size_t j = 0; j < 4; ++j, ++compared.slopes)
+            EXPECT_NEAR((*mine.J)(i, j), (*theirs.J)(i, j), 1e-10 * largest) << i << j;
+      }
+      if (mine.conditioning && theirs.conditioning && GetParam() != "2t1r-p-hybrid") {
+        EXPECT_NEAR(*mine.conditioning, *theirs.conditioning, 1e-9);
+        ++compared.conditioned;
+      }
+    }
+  }
+};
+
+TEST_P(PaperMechanism, HasTheSameNames) {
+  for (const Parameter& p : own().info().parameters) {
+    if (p.name == "theta0") continue;
+    const Parameter* const same = find_named(file().info().parameters, p.name);
+    ASSERT_TRUE(same) << p.name;
+    EXPECT_EQ(same->unit, p.unit) << p.name;
+    EXPECT_NEAR(same->nominal, p.nominal, 1e-15) << p.name;
+    EXPECT_EQ(same->lower, p.lower) << p.name;
+    EXPECT_EQ(same->upper, p.upper) << p.name;
+  }
+  for (const LimitInfo& limit : own().info().limits) {
+    if (limit.group == "clearance") continue;
+    const LimitInfo* const same = find_named(file().info().limits, limit.name);
+    ASSERT_TRUE(same) << limit.name;
+    EXPECT_EQ(same->unit, limit.unit) << limit.name;
+    EXPECT_EQ(same->group, limit.group) << limit.name;
+    EXPECT_NEAR(same->inactive, limit.inactive, 1e-15) << limit.name;
+    EXPECT_EQ(same->derivation.empty(), limit.derivation.empty()) << limit.name;
+  }
+  std::set<std::string> modes;
+  for (const std::string& mode : file().info().modes) modes.insert(own_mode(mode));
+  EXPECT_EQ(modes, std::set<std::string>(own().info().modes.begin(), own().info().modes.end()));
+  EXPECT_EQ(own_mode(file().info().modes.front()), own().info().modes.front());
+}
+
+TEST_P(PaperMechanism, AgreesOnGoldenPosesInEveryMode) {
+  const LimitSpec limits = without_clearance(no_limits(own().info()));
+  Compared compared;
+  for (const GoldenPose& golden : golden_poses()) expect_same(golden.design, golden.pose, limits, compared);
+  EXPECT_GT(compared.joints, 100);
+  EXPECT_GT(compared.feasible, 5);
+  EXPECT_GT(compared.slopes, 400);
+  EXPECT_EQ(compared.conditioned > 20, GetParam() != "2t1r-p-hybrid");
+}
+
+TEST_P(PaperMechanism, AgreesOnRandomPosesUnderRandomLimits) {
+  const MechanismInfo& info = own().info();
+  Stream random(11, 0, 0, Stream::Use::start);
+  Compared compared;
+  for (int i = 0; i < 200; ++i) {
+    const bool nominal = i % 2 == 0;
+    const std::vector<double> design = nominal ? test::nominal(info) : test::random_design(info, random);
+    const LimitSpec limits = without_clearance(test::random_limits(info, random));
+    Pose<double> pose(4);
+    const auto ranges = *file().ranges(of_file(design));
+    for (std::size_t k = 0; k < 4; ++k) pose[k] = ranges[k][0] + (ranges[k][1] - ranges[k][0]) * random.u01();
+    expect_same(design, pose, limits, compared);
+
+    std::vector<double> mine(file().info().limits.size()), theirs(info.limits.size());
+    file().thresholds(of_file(design), of_file(limits), mine);
+    own().thresholds(design, limits, theirs);
+    for (std::size_t k = 0; k < mine.size(); ++k) {
+      const auto at =
+          static_cast<std::size_t>(find_named(info.limits, file().info().limits[k].name) - info.limits.data());
+      EXPECT_NEAR(mine[k], theirs[at], 1e-15) << info.limits[at].name;
+    }
+    if (const Size* const size = own().size()) {
+      EXPECT_NEAR(file().size()->of(of_file(design)) / size->of(design), 1, 1e-14);
+    }
+  }
+  EXPECT_GT(compared.joints, 200);
+  EXPECT_GT(compared.feasible, 3);
+  EXPECT_GT(compared.slopes, 800);
+}
+
+TEST_P(PaperMechanism, TestsDesignsAlike) {
+  if (!own().design_tests()) GTEST_SKIP() << "there are none";
+  Stream random(12, 0, 0, Stream::Use::start);
+  const auto& tests = own().design_tests()->list();
+  ASSERT_EQ(file().design_tests()->list().size(), tests.size());
+  for (int i = 0; i < 50; ++i) {
+    const std::vector<double> design = test::random_design(own().info(), random);
+    const LimitSpec limits = test::random_limits(own().info(), random);
+    std::vector<double> mine(tests.size()), theirs(tests.size());
+    file().design_tests()->test(of_file(design), of_file(limits), mine);
+    own().design_tests()->test(design, limits, theirs);
+    for (std::size_t k = 0; k < tests.size(); ++k) {
+      EXPECT_EQ(file().design_tests()->list()[k].name, tests[k].name);
+      EXPECT_EQ(mine[k] >= 0, theirs[k] >= 0) << tests[k].name;
+    }
+  }
+}
+
+TEST_P(PaperMechanism, HasTheSameCellsOnEveryGoldenGrid) {
+  const auto grids = golden_grids();
+  ASSERT_GT(grids.size(), 1u);
+  for (const GoldenGrid& grid : grids) {
+    SurveyPlan mine{.method = grid.voxels, .held = grid.held, .limits = of_file(grid.limits)},
+        theirs{.method = grid.voxels, .held = grid.held, .limits = grid.limits};
+    const VoxelMap here = voxel_map(file(), of_file(grid.design), mine), there = voxel_map(own(), grid.design, theirs);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(here.lower[k], there.lower[k], 1e-14);
+      EXPECT_NEAR(here.upper[k], there.upper[k], 1e-14);
+    }
+    EXPECT_TRUE(here.feasible == there.feasible);
+    EXPECT_GT(std::ranges::count(there.feasible, 1), 0);
+    const Survey<double> survey = test::survey(file(), of_file(grid.design), mine);
+    EXPECT_EQ(survey.feasible_cells, std::ranges::count(here.feasible, 1));
+    if (grid.feasible >= 0) {
+      EXPECT_EQ(survey.feasible_cells, grid.feasible);
+    }
+    EXPECT_NEAR(survey.volume, test::survey(own(), grid.design, theirs).volume, 1e-12 * survey.volume);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PaperMechanism,
+                         ::testing::Values("4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"),
+                         [](const auto& name) { return test::test_name(name.param); });
+
+}  // namespace
+}  // namespace pkm
