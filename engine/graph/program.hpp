@@ -55,10 +55,14 @@ class Program {
   void run(std::size_t stage, std::span<S> registers) const;
   /// All of it.
   template <class S>
-  void run_all(std::span<const S> inputs, std::vector<S>& registers) const {
-    registers.resize(registers_);
+  void run_all(std::span<const S> inputs, std::span<S> registers) const {
     start<S>(registers);
     for (std::size_t stage = 0; stage < stages_.size(); ++stage) run<S>(stage, inputs, registers);
+  }
+  template <class S>
+  void run_all(std::span<const S> inputs, std::vector<S>& registers) const {
+    registers.resize(registers_);
+    run_all<S>(inputs, std::span<S>(registers));
   }
 
  private:

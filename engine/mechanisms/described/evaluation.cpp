@@ -66,25 +66,28 @@ void Evaluation::thresholds(std::span<const S> parameters, const LimitSpec& limi
 }
 
 template <class S>
-std::vector<S> Evaluation::inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode) const {
+void Evaluation::fill_inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode,
+                             std::span<S> values) const {
   const Inputs& at = model.inputs;
-  std::vector<S> values(at.count());
+  std::ranges::fill(values, S(0.0));
   std::ranges::copy(parameters, values.begin());
-  thresholds<S>(parameters, limits, std::span(values).subspan(at.limit(0), at.limits));
+  thresholds<S>(parameters, limits, values.subspan(at.limit(0), at.limits));
   for (std::size_t i = 0; i < at.signs; ++i) values[at.sign(i)] = S(model.signs[mode][i]);
-  return values;
 }
 
 template <class S>
 std::optional<S> Evaluation::of_design(const Program& program, std::span<const S> parameters) const {
   if (program.outputs().empty()) return {};
-  std::vector<S> values(model.inputs.count());
-  std::ranges::copy(parameters, values.begin());
-  for (std::size_t i = 0; i < model.inputs.limits; ++i)
-    values[model.inputs.limit(i)] =
-        model.replaced[i] ? parameters[*model.replaced[i]] : S(model.info.limits[i].inactive);
-  for (std::size_t i = 0; i < model.inputs.signs; ++i) values[model.inputs.sign(i)] = S(model.signs.front()[i]);
-  return outputs_of(program, values).front();
+  const Inputs& at = model.inputs;
+  return with_room<S>(at.count() + program.registers(), [&](std::span<S> room) {
+    const std::span<S> values = room.first(at.count()), registers = room.subspan(at.count());
+    std::ranges::copy(parameters, values.begin());
+    for (std::size_t i = 0; i < at.limits; ++i)
+      values[at.limit(i)] = model.replaced[i] ? parameters[*model.replaced[i]] : S(model.info.limits[i].inactive);
+    for (std::size_t i = 0; i < at.signs; ++i) values[at.sign(i)] = S(model.signs.front()[i]);
+    program.run_all<S>(values, registers);
+    return std::optional<S>(registers[program.outputs().front()]);
+  });
 }
 
 std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> parameters,
@@ -97,9 +100,9 @@ std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> p
 
 template void Evaluation::thresholds(std::span<const double>, const LimitSpec&, std::span<double>) const;
 template void Evaluation::thresholds(std::span<const Dual4>, const LimitSpec&, std::span<Dual4>) const;
-template std::vector<double> Evaluation::inputs(std::span<const double>, const LimitSpec&, std::size_t) const;
-template std::vector<Dual4> Evaluation::inputs(std::span<const Dual4>, const LimitSpec&, std::size_t) const;
-template std::vector<Taylor> Evaluation::inputs(std::span<const Taylor>, const LimitSpec&, std::size_t) const;
+template void Evaluation::fill_inputs(std::span<const double>, const LimitSpec&, std::size_t, std::span<double>) const;
+template void Evaluation::fill_inputs(std::span<const Dual4>, const LimitSpec&, std::size_t, std::span<Dual4>) const;
+template void Evaluation::fill_inputs(std::span<const Taylor>, const LimitSpec&, std::size_t, std::span<Taylor>) const;
 template std::optional<double> Evaluation::of_design(const Program&, std::span<const double>) const;
 template std::optional<Dual4> Evaluation::of_design(const Program&, std::span<const Dual4>) const;
 template std::optional<Taylor> Evaluation::of_design(const Program&, std::span<const Taylor>) const;

@@ -20,14 +20,34 @@ struct Evaluation {
   template <class S>
   void thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const;
   /// The graph's inputs for a design; coordinates and joints are 0.
+  /// @param values  as many as the graph has inputs
   template <class S>
-  std::vector<S> inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode) const;
+  void fill_inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode, std::span<S> values) const;
+  template <class S>
+  std::vector<S> inputs(std::span<const S> parameters, const LimitSpec& limits, std::size_t mode) const {
+    std::vector<S> values(model.inputs.count());
+    fill_inputs<S>(parameters, limits, mode, values);
+    return values;
+  }
   /// What a program of the design alone gives in the default working mode; none where it has no output.
   template <class S>
   std::optional<S> of_design(const graph::Program& program, std::span<const S> parameters) const;
   /// Range of a coordinate that holds the workspace.
   std::optional<std::array<double, 2>> range(std::span<const double> parameters, std::size_t coordinate) const;
 };
+
+/// Calls work(room) with `count` numbers, on the stack where they are not many: for what is computed per design or
+/// pose.
+template <class S, class Work>
+auto with_room(std::size_t count, const Work& work) {
+  constexpr std::size_t kMost = 512;
+  if (count <= kMost) {
+    std::array<S, kMost> room;
+    return work(std::span<S>(room).first(count));
+  }
+  std::vector<S> room(count);
+  return work(std::span<S>(room));
+}
 
 /// A program's outputs.
 template <class S>

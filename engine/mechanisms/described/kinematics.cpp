@@ -14,28 +14,32 @@ namespace {
 
 using graph::Program;
 
-Eigen::MatrixXd eigen(const AxisMatrix<double>& A) {
-  Eigen::MatrixXd same(A.rows(), A.cols());
+/// Allocates nothing.
+using EigenMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostJoints, kMostJoints>;
+
+EigenMatrix eigen(const AxisMatrix<double>& A) {
+  EigenMatrix same(A.rows(), A.cols());
   for (std::size_t i = 0; i < A.rows(); ++i)
     for (std::size_t j = 0; j < A.cols(); ++j)
       same(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = A(i, j);
   return same;
 }
 
-std::vector<Taylor> constants(const std::vector<double>& values) { return {values.begin(), values.end()}; }
-
 /// Derivatives of a program's outputs by the inputs from `first` on, count of them.
-AxisMatrix<double> derivatives(const Program& program, const std::vector<double>& inputs, std::size_t first,
+AxisMatrix<double> derivatives(const Program& program, std::span<const double> inputs, std::size_t first,
                                std::size_t count) {
-  AxisMatrix<double> D(program.outputs().size(), count);
-  std::vector<Taylor> moving = constants(inputs);
-  for (std::size_t j = 0; j < count; ++j) {
-    moving[first + j].d = 1;
-    const std::vector<Taylor> values = outputs_of(program, moving);
-    for (std::size_t i = 0; i < values.size(); ++i) D(i, j) = values[i].d;
-    moving[first + j].d = 0;
-  }
-  return D;
+  return with_room<Taylor>(inputs.size() + program.registers(), [&](std::span<Taylor> room) {
+    const std::span<Taylor> moving = room.first(inputs.size()), registers = room.subspan(inputs.size());
+    std::ranges::copy(inputs, moving.begin());
+    AxisMatrix<double> D(program.outputs().size(), count);
+    for (std::size_t j = 0; j < count; ++j) {
+      moving[first + j].d = 1;
+      program.run_all<Taylor>(moving, registers);
+      for (std::size_t i = 0; i < D.rows(); ++i) D(i, j) = registers[program.outputs()[i]].d;
+      moving[first + j].d = 0;
+    }
+    return D;
+  });
 }
 
 /// A turn's angular velocity by the rates of three angles about moving axes, inverted: rates for an angular velocity.
@@ -43,10 +47,11 @@ AxisMatrix<double> derivatives(const Program& program, const std::vector<double>
 AxisMatrix<double> rates_of_turns(const Model& model, const Pose<double>& pose) {
   const std::size_t n = pose.size();
   AxisMatrix<double> rates = AxisMatrix<double>::identity(n);
-  std::vector<std::size_t> turns;
+  std::array<std::size_t, 3> turns{};  // there are no more
+  std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (model.turns_about[i]) turns.push_back(i);
-  if (turns.size() < 3) return rates;
+    if (model.turns_about[i]) turns[count++] = i;
+  if (count < 3) return rates;
   using Fixed3 = Matrix<double, 3, 3>;
   Fixed3 R = Fixed3::identity(), axes;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -81,7 +86,8 @@ std::optional<double> conditioning_of(const Evaluation& e, std::span<const doubl
       if (mixed_drives && info.joints[i].turns()) scaled(i, j) *= *radius;
       if (!std::isfinite(scaled(i, j))) return {};
     }
-  const Eigen::VectorXd singular = eigen(scaled).jacobiSvd().singularValues();
+  const Eigen::JacobiSVD<EigenMatrix> decomposition(eigen(scaled));
+  const auto& singular = decomposition.singularValues();
   const double greatest = singular(0), least = singular(singular.size() - 1);
   return J.rows() >= J.cols() && greatest > 0 ? least / greatest : 0;
 }
@@ -106,6 +112,10 @@ std::string first_broken(const NamedValues& conditions, const std::string& words
     if (!(margin >= 0)) return name + words;
   return "";
 }
+
+/// Adds Jq, G, J and what follows from them. @param inputs  with the pose and its joints
+void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                   std::span<const double> inputs, PoseReport& report);
 
 }  // namespace
 
@@ -136,8 +146,16 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   report.reason = first_broken(margins, " is broken");
   report.feasible = report.reason.empty();
 
-  std::copy(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at.joints),
-            inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
+  std::ranges::copy(*report.joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
+  add_jacobians(e, parameters, pose, inputs, report);
+  return report;
+}
+
+namespace {
+
+void add_jacobians(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                   std::span<const double> inputs, PoseReport& report) {
+  const Inputs& at = e.model.inputs;
   const AxisMatrix<double> Jq =
       AxisMatrix<double>::zero(at.joints, at.joints) - derivatives(e.closures, inputs, at.joint(0), at.joints);
   const AxisMatrix<double> G = derivatives(e.closures, inputs, at.coordinate(0), at.coordinates);
@@ -145,9 +163,26 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   report.G = G;
   report.det_Jq = eigen(Jq).determinant();
   if (at.joints == at.coordinates) report.det_G = eigen(G).determinant();
-  if (is_singular(Jq)) return report;
+  if (is_singular(Jq)) return;
   report.J = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
   report.conditioning = conditioning_of(e, parameters, pose, *report.J);
+}
+
+}  // namespace
+
+PoseReport report_of_sample(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
+                            std::span<double> inputs) {
+  const Inputs& at = e.model.inputs;
+  PoseReport report;
+  report.assembles = report.feasible = true;
+  report.joints = with_room<double>(e.joints.registers(), [&](std::span<double> registers) {
+    e.joints.run_all<double>(inputs, registers);
+    AxisVector<double> joints(at.joints);
+    for (std::size_t i = 0; i < at.joints; ++i) joints[i] = registers[e.joints.outputs()[i]];
+    return joints;
+  });
+  std::ranges::copy(*report.joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
+  add_jacobians(e, parameters, pose, inputs, report);
   return report;
 }
 

@@ -91,7 +91,13 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
   }
   template <class S>
   void find_tests(std::span<const S> parameters, const LimitSpec& limits, std::span<S> margins) const {
-    std::ranges::copy(outputs_of(e_.tests, e_.inputs(parameters, limits, 0)), margins.begin());
+    const std::size_t inputs = e_.model.inputs.count();
+    with_room<S>(inputs + e_.tests.registers(), [&](std::span<S> room) {
+      e_.fill_inputs<S>(parameters, limits, 0, room.first(inputs));
+      const std::span<S> registers = room.subspan(inputs);
+      e_.tests.run_all<S>(room.first(inputs), registers);
+      for (std::size_t i = 0; i < margins.size(); ++i) margins[i] = registers[e_.tests.outputs()[i]];
+    });
   }
 
   std::string unit() const override { return e_.model.size->unit; }

@@ -7,6 +7,7 @@
 
 #include "engine/mechanisms/described/cells.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/share_samples.hpp"
 
 namespace pkm::described {
@@ -40,7 +41,9 @@ class DescribedVoxels final : public VoxelSurveyor {
 
   void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
     const VoxelGrid grid = grid_of(parameters);
-    const std::vector<HeldCells> held = integrated(parameters);
+    Rooms& all = scratch.get<Rooms>();
+    integrated(parameters, all.held);
+    const std::vector<HeldCells>& held = all.held;
     std::int64_t repeats = 1;
     double measure = grid.cell_volume();
     for (const HeldCells& each : held) {
@@ -51,10 +54,11 @@ class DescribedVoxels final : public VoxelSurveyor {
     survey.cells = grid.count() * repeats;
     survey.cell_volume = measure;
     const std::size_t slices = test_.shape(grid)[0];
-    auto& rooms = scratch.get<Rooms>().of;
+    std::vector<Room>& rooms = all.of;
     if (rooms.size() < workers()) rooms.resize(workers());
     for (Room& room : rooms) room.repeat.reset();
-    const std::vector<double> inputs = inputs_of(parameters);
+    fill_inputs(parameters, all.inputs);
+    const std::vector<double>& inputs = all.inputs;
     share_samples(slices * static_cast<std::size_t>(repeats), survey,
                   [&](std::size_t piece, Survey<double>& part, std::size_t worker) {
                     Room& room = rooms[worker];
@@ -71,7 +75,9 @@ class DescribedVoxels final : public VoxelSurveyor {
     const VoxelGrid grid = grid_of(parameters);
     VoxelMap map = grid.map();
     CellRoom room;
-    test_.start(inputs_of(parameters), room);
+    std::vector<double> inputs;
+    fill_inputs(parameters, inputs);
+    test_.start(inputs, room);
     const auto [slices, columns, cells] = test_.shape(grid);
     for (std::size_t slice = 0; slice < slices; ++slice) {
       test_.test(grid, slice, true, room);
@@ -91,6 +97,8 @@ class DescribedVoxels final : public VoxelSurveyor {
   };
   struct Rooms {
     std::vector<Room> of;  ///< by worker
+    std::vector<double> inputs;
+    std::vector<HeldCells> held;
   };
 
   /// With integrated coordinates in the middle of their cells.
@@ -123,8 +131,8 @@ class DescribedVoxels final : public VoxelSurveyor {
     }
     return {voxels_.cells, box};
   }
-  std::vector<HeldCells> integrated(std::span<const double> parameters) const {
-    std::vector<HeldCells> all;
+  void integrated(std::span<const double> parameters, std::vector<HeldCells>& all) const {
+    all.clear();
     for (const int coordinate : sweep_.held) {
       const HeldCoordinate held = how_held(plan_, coordinate);
       if (held.kind != Kind::integrated) continue;
@@ -132,11 +140,11 @@ class DescribedVoxels final : public VoxelSurveyor {
       all.push_back(
           {static_cast<std::size_t>(coordinate), lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
     }
-    return all;
   }
   /// With the held coordinates where they are held; those that are integrated over in the middle of their first cell.
-  std::vector<double> inputs_of(std::span<const double> parameters) const {
-    std::vector<double> inputs = e_.inputs(parameters, plan_.limits, mode_);
+  void fill_inputs(std::span<const double> parameters, std::vector<double>& inputs) const {
+    inputs.resize(e_.model.inputs.count());
+    e_.fill_inputs<double>(parameters, plan_.limits, mode_, inputs);
     for (const int coordinate : sweep_.held) {
       const auto at = static_cast<std::size_t>(coordinate);
       const HeldCoordinate held = how_held(plan_, coordinate);
@@ -146,7 +154,6 @@ class DescribedVoxels final : public VoxelSurveyor {
           sums ? range[0] + 0.5 * (range[1] - range[0]) / static_cast<double>(held.cells)
                : held_value(mechanism_, parameters, plan_, coordinate);
     }
-    return inputs;
   }
 
   /// Calls visit(column, cell) for the feasible cells of a slice, in order.
@@ -169,15 +176,20 @@ class DescribedVoxels final : public VoxelSurveyor {
       std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
       for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
         pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid.centre(axis, cell[axis]);
-      add_sample(parameters, pose, measure, to);
+      add_sample(parameters, pose, measure, room.inputs, to);
     });
   }
+  /// @param inputs  of the slice; the pose's coordinates are overwritten
   void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight,
-                  Survey<double>& to) const {
+                  std::vector<double>& inputs, Survey<double>& to) const {
     to.weight.push_back(weight);
     if (demand_.poses) to.pose.push_back(pose);
     if (demand_.fields.empty()) return;
-    const PoseReport report = inspect_pose(e_, parameters, pose, mode_, plan_.limits);
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+    const PoseReport report =
+        std::ranges::all_of(demand_.fields, [](const PoseQuantity* q) { return q == &kConditioning; })
+            ? report_of_sample(e_, parameters, pose, inputs)
+            : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
     for (auto& [quantity, field] : to.fields) {
       std::array<double, kMostJoints> values;
       quantity->of_report(report, values.data());
