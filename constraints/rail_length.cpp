@@ -1,6 +1,6 @@
 // The rails are long enough for the links (4PPa-2PaR: eq 18).
-#include "constraints/design_test.hpp"
 #include "constraints/list.hpp"
+#include "engine/problem/design_test.hpp"
 
 namespace pkm {
 

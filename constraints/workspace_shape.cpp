@@ -1,6 +1,6 @@
 // The workspace's shape is one that can be used (4PPa-2PaR: eq 21, upper and lower part separate).
-#include "constraints/design_test.hpp"
 #include "constraints/list.hpp"
+#include "engine/problem/design_test.hpp"
 
 namespace pkm {
 

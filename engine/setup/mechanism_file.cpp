@@ -213,8 +213,13 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
   }
   for (const ConfigValue& table : tables_of(root, "design")) {
     table.allow({"name", "formula", "unit", "meaning"});
+    if (model.tests.size() == kMostDesignTests)
+      throw table.refusal("a mechanism has at most " + std::to_string(kMostDesignTests) + " tests of the design");
     const std::string name = name_of(table, model.tests), unit = text_of(table, "unit");
     if (!unit.empty() && !is_si_unit(unit)) throw table.find("unit")->error("a product of SI units");
+    constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_. ";
+    if (name.find_first_not_of(kLetters) != std::string::npos)
+      throw table.find("name")->error("a name of letters, digits, blanks, '-', '_' and '.'");
     const ConfigValue formula = table.at("formula", "a formula of parameters that is >= 0 where it holds");
     model.test_nodes.push_back(draft.scope.of_design(formula, unit.empty() ? "1" : unit, name).node());
     const std::string meaning = text_of(table, "meaning");

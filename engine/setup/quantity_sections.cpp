@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/unit.hpp"
+#include "engine/problem/design_test.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
@@ -13,7 +14,8 @@ std::string in_unit(const std::string& unit) { return unit == "1" ? "dimensionle
 /// The name of an entry within its kind: `name = `, else its type. Names are keys of the study file and of JSON.
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
-  const std::string name = given ? given->text("text") : type;
+  std::string name = given ? given->text("text") : type;
+  if (!given) std::ranges::replace(name, ' ', '-');  // of a described mechanism's tests
   constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
     throw given->error("a name of letters, digits, '-', '_' and '.'");
@@ -174,12 +176,15 @@ void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry
 
 /// Reads each [[constraint]] of the wanted level; objectives' names count as design level.
 void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level) {
-  std::vector<std::string> names = names_of(draft.catalogues.constraints);
+  std::vector<ConstraintEntry> entries = draft.catalogues.constraints;
+  for (const DesignMarginInfo& test : design_tests_of(*draft.parts.mechanism))  // a file's mechanism has its own
+    if (!find_named(entries, test.name)) entries.push_back(design_test(test.name, test.meaning));
+  std::vector<std::string> names = names_of(entries);
   for (const auto& name : names_of(draft.catalogues.objectives))
     if (!contains(names, name)) names.push_back(name);
   for (const auto& table : tables_of(root, "constraint")) {
     const std::string& type = type_of(table, "type", names);
-    const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, type);
+    const ConstraintEntry* const entry = find_named(entries, type);
     if ((entry && entry->pose_level()) != pose_level) continue;
     if (pose_level)
       read_pose_constraint(table, *entry, draft);

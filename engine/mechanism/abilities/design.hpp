@@ -22,6 +22,8 @@ class Size {
   virtual Dual4 of(std::span<const Dual4> parameters) const = 0;
 };
 
+inline constexpr std::size_t kMostDesignTests = 16;
+
 /// A test of the design alone.
 struct DesignMarginInfo {
   std::string name;  ///< the constraint's name: "rail-length"
