@@ -1,8 +1,9 @@
+#include "engine/graph/formula_reader.hpp"
+
 #include <algorithm>
 #include <stdexcept>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/graph/formula_reader.hpp"
 #include "engine/graph/formula_words.hpp"
 
 namespace pkm::graph {

@@ -1,3 +1,5 @@
+#include "engine/graph/operation.hpp"
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -7,7 +9,6 @@
 #include <utility>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/graph/operation.hpp"
 
 namespace pkm::graph {
 namespace {

@@ -1,0 +1,139 @@
+// Mechanisms from files: reading, and surveys beside the loops that a designer would write for the same formulas.
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <benchmark/benchmark.h>
+
+#include "benchmarks/inputs.hpp"
+#include "benchmarks/peers/delta_loop.hpp"
+#include "benchmarks/peers/voxel_loop.hpp"
+#include "benchmarks/timing.hpp"
+#include "engine/core/team.hpp"
+#include "engine/setup/mechanism_file.hpp"
+#include "engine/survey/survey_set.hpp"
+
+namespace pkm::benchmarks {
+namespace {
+
+std::string text_of(const std::string& name) {
+  std::ostringstream text;
+  text << std::ifstream(PKM_EXPERIMENTS "/mechanisms/" + name + ".toml").rdbuf();
+  return text.str();
+}
+const Mechanism& described(const std::string& name) {
+  static std::map<std::string, std::shared_ptr<const Mechanism>> known;
+  auto& mechanism = known[name];
+  if (!mechanism) mechanism = read_mechanism_toml(text_of(name), name + ".toml");
+  return *mechanism;
+}
+std::vector<double> nominal(const Mechanism& mechanism) {
+  std::vector<double> design;
+  for (const Parameter& p : mechanism.info().parameters) design.push_back(p.nominal);
+  return design;
+}
+
+void reading(benchmark::State& state, const std::string& name) {
+  const std::string text = text_of(name);
+  for (auto _ : state) benchmark::DoNotOptimize(read_mechanism_toml(text, name + ".toml"));
+}
+BENCHMARK_CAPTURE(reading, four_ppa, "4ppa-2par")->Name("described/read/4ppa-2par")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(reading, delta, "rotary-delta")->Name("described/read/rotary-delta")->Unit(benchmark::kMicrosecond);
+
+/// Limits and design of the built-in mechanism, as the file has them.
+SurveyPlan plan_of(const Mechanism& mechanism, const LimitSpec& own, const VoxelOptions& voxels) {
+  SurveyPlan plan{.method = voxels, .held = {}, .limits = no_limits(mechanism.info())};
+  for (std::size_t i = 0; i < plan.limits.given.size(); ++i) {
+    const auto& known = four_ppa().info().limits;
+    const auto at = std::ranges::find(known, mechanism.info().limits[i].name, &LimitInfo::name);
+    plan.limits.given[i] = own.given[static_cast<std::size_t>(at - known.begin())];
+  }
+  return plan;
+}
+
+/// @param plain  counts the same cells
+template <class Plain>
+void against(benchmark::State& state, const Mechanism& mechanism, const SurveyPlan& plan, const Plain& plain) {
+  const WithoutTeam alone;
+  const auto surveyor = prepare_survey(mechanism, plan, {});
+  const std::vector<double> design = nominal(mechanism);
+  std::int64_t cells = 0;
+  Scratch scratch;
+  Survey<double> result;
+  const Duel duel = take_turns(
+      state, "plain_loop_s", [&] { benchmark::DoNotOptimize(cells = plain()); }, "survey_s",
+      [&] { surveyor->survey(design, scratch, result); });
+  state.counters["share"] = duel.second / duel.first;  // of the plain loop's time
+  state.counters["cells_found"] = static_cast<double>(result.feasible_cells);
+  if (cells != result.feasible_cells) state.SkipWithError("the plain loop and the survey count different cells");
+}
+
+void four_ppa_2par(benchmark::State& state, bool limited) {
+  const LimitSpec own = limited ? with_limits() : without_limits();
+  const Mechanism& mechanism = described("4ppa-2par");
+  const auto limit = [&](const std::string& name, double inactive) {
+    const auto& known = four_ppa().info().limits;
+    const auto at = std::ranges::find(known, name, &LimitInfo::name);
+    return own.given[static_cast<std::size_t>(at - known.begin())].value_or(inactive);
+  };
+  const auto design = original_design();
+  const auto g = four_ppa_two_par::geometry(std::span<const double>(design));
+  const peers::Voxels voxels{g.d,
+                             g.L0,
+                             {32, 34, 60},
+                             limit("alpha_min", 0),
+                             limit("beta_min", 0),
+                             limit("beta_max", kPi / 2),
+                             limit("h_min", 0),
+                             limit("sin_par_min", 0),
+                             limit("cos_theta_min", 0)};
+  const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
+  against(state, mechanism, plan_of(mechanism, own, kPaperGrid),
+          [&] { return peers::feasible_cells(voxels, lengths); });
+}
+BENCHMARK_CAPTURE(four_ppa_2par, free, false)->Name("described/against_loop/4ppa-2par")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(four_ppa_2par, limited, true)
+    ->Name("described/against_loop/4ppa-2par_with_limits")
+    ->Unit(benchmark::kMicrosecond);
+
+void rotary_delta(benchmark::State& state) {
+  const Mechanism& mechanism = described("rotary-delta");
+  const std::vector<double> p = nominal(mechanism);
+  const peers::Delta delta{p[0], p[1], p[2], p[3], p[4], p[5]};
+  const SurveyPlan plan{
+      .method = VoxelOptions{.cells = {64, 64, 64}}, .held = {}, .limits = no_limits(mechanism.info())};
+  against(state, mechanism, plan, [&] { return peers::feasible_cells(delta, 64); });
+}
+BENCHMARK(rotary_delta)->Name("described/against_loop/rotary-delta_64_cubed")->Unit(benchmark::kMicrosecond);
+
+// Grids of n^3 cells: the cost follows the n^2 columns where conditions are quadratic along one of them.
+void grid(benchmark::State& state, const std::string& name) {
+  const WithoutTeam alone;
+  const Mechanism& mechanism = described(name);
+  const std::int64_t n = state.range(0);
+  const SurveyPlan plan{.method = VoxelOptions{.cells = {n, n, n}}, .held = {}, .limits = no_limits(mechanism.info())};
+  const auto surveyor = prepare_survey(mechanism, plan, {});
+  const std::vector<double> design = nominal(mechanism);
+  Scratch scratch;
+  Survey<double> result;
+  for (auto _ : state) {
+    surveyor->survey(design, scratch, result);
+    benchmark::DoNotOptimize(result.feasible_cells);
+  }
+  const auto columns = static_cast<double>(n * n);
+  state.counters["columns"] = benchmark::Counter(columns, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK_CAPTURE(grid, four_ppa, "4ppa-2par")
+    ->Name("described/grid/4ppa-2par")
+    ->RangeMultiplier(2)
+    ->Range(32, 256)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(grid, delta, "rotary-delta")
+    ->Name("described/grid/rotary-delta")
+    ->RangeMultiplier(2)
+    ->Range(32, 256)
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace pkm::benchmarks
