@@ -1,8 +1,8 @@
 // Formulas: what an expression adds to a survey.
 #include <benchmark/benchmark.h>
 
-#include "engine/math/dual.hpp"
 #include "engine/graph/formula.hpp"
+#include "engine/math/dual.hpp"
 
 namespace pkm::benchmarks {
 namespace {
