@@ -43,16 +43,16 @@ generations = )" << generations << "\n[[stage]]\noptimiser = \"ga\"\npopulation 
 
 TEST_F(GaProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
   write_toml(100);
-  kill_at_random(20, 20);
+  kill_at_random(8, 20);
 }
 
 TEST_F(GaProgram, AChainOfKillsEndsTheSame) {
-  write_toml(300);
+  write_toml(120);
   ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
   std::mt19937 engine(21);
   int kills = 0;
   std::vector<std::string> next = {"run", "study.toml", "--output", "chain.h5", "--quiet"};
-  for (; kills < 30; ++kills) {
+  for (; kills < 12; ++kills) {
     ChildProcess child(command(next), folder_);
     while (!fs::exists(path("chain.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(20 + engine() % 60));
@@ -60,10 +60,10 @@ TEST_F(GaProgram, AChainOfKillsEndsTheSame) {
     if (child.wait() == 0) break;
     next = {"resume", "chain.h5", "--quiet"};
   }
-  if (kills == 30) {
+  if (kills == 12) {
     ASSERT_EQ(run({"resume", "chain.h5", "--quiet"}), 0) << output_;
   }
-  EXPECT_GT(kills, 2);
+  EXPECT_GT(kills, 1);
   EXPECT_EQ(first_difference(read("straight.h5"), read("chain.h5")), "");
 }
 

@@ -61,12 +61,12 @@ class TradeOffProgram : public StudyProgram {
 
 TEST_F(TradeOffProgram, VolumeAgainstConditioningKilledAnywhereEndsTheSame) {
   write(volume_conditioning());
-  kill_at_random(4, 1);
+  kill_at_random(2, 1);
 }
 
 TEST_F(TradeOffProgram, ThreeObjectivesKilledAnywhereEndTheSame) {
   write(volume_coupling_force());
-  kill_at_random(4, 2);
+  kill_at_random(2, 2);
 }
 
 TEST_F(TradeOffProgram, ThreadsAndExtensionsDoNotMatter) {
