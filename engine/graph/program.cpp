@@ -1,5 +1,6 @@
 #include "engine/graph/program.hpp"
 
+#include <cmath>
 #include <unordered_map>
 
 namespace pkm::graph {
@@ -33,9 +34,39 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
   registers_ = registers.size();
 }
 
+namespace {
+
+/// The usual operations without a call. Where one gives no finite number, its rule says what becomes of derivatives.
+template <class S>
+bool run_directly(const Program::Step& step, std::span<S> registers) {
+  const S& x = registers[step.from[0]];
+  const auto keep = [&](const S& result) {
+    if (!std::isfinite(value_of(result))) return false;
+    registers[step.to] = result;
+    return true;
+  };
+  switch (step.operation->code) {
+    case Code::add:
+      return keep(x + registers[step.from[1]]);
+    case Code::subtract:
+      return keep(x - registers[step.from[1]]);
+    case Code::multiply:
+      return keep(x * registers[step.from[1]]);
+    case Code::divide:
+      return keep(x / registers[step.from[1]]);
+    case Code::negate:
+      return keep(-x);
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
 template <class S>
 void Program::run(std::size_t stage, std::span<S> registers) const {
   for (const Step& step : stages_[stage].steps) {
+    if (run_directly(step, registers)) continue;
     S arguments[kMostArguments];
     for (std::size_t i = 0; i < step.count; ++i) arguments[i] = registers[step.from[i]];
     registers[step.to] = std::get<Rule<S>>(step.operation->rules)(arguments, step.count);
