@@ -277,7 +277,7 @@ class LimbReader {
       if (const auto given = table_.find(mass)) draft_.scope.of_design(*given, "kg", name);
     draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts()});
     add_links(name, limb, at);
-    add_reach(limb, at, model.info.joints.back().unit);
+    add_reach(at, model.info.joints.back().unit);
   }
 
   /// Its bodies, as [[body]] names them.
@@ -309,7 +309,7 @@ class LimbReader {
   }
 
   /// Where the platform's frame has to be for the limb to reach: a box about A, or about the rail.
-  void add_reach(const Limb&, const limbs::Ends& at, const std::string& unit) {
+  void add_reach(const limbs::Ends& at, const std::string& unit) {
     std::array<std::optional<std::array<Term, 2>>, 3> reach;
     const auto range = table_.find("range");
     std::optional<Term> far = beyond_;

@@ -1,8 +1,8 @@
 #include "engine/survey/plain_voxels.hpp"
 
-#include <cmath>
 #include <stdexcept>
 
+#include "engine/survey/cell_samples.hpp"
 #include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/share_samples.hpp"
 #include "engine/survey/voxel_grid.hpp"
@@ -11,13 +11,6 @@ namespace pkm {
 namespace {
 
 using Kind = HeldCoordinate::Kind;
-
-/// Cells of the held coordinates that are integrated over: a place between their values [lower, lower + cells step].
-struct HeldCells {
-  std::size_t coordinate;
-  double lower, step;
-  std::int64_t cells;
-};
 
 /// The cells of one design.
 class Cells {
@@ -50,7 +43,7 @@ class Cells {
   Pose<double> pose(std::int64_t slice, std::int64_t i, std::int64_t j, std::int64_t k) const {
     Pose<double> pose = pose_;
     for (const HeldCells& held : held_) {
-      pose[held.coordinate] = held.lower + (static_cast<double>(slice % held.cells) + 0.5) * held.step;
+      pose[held.coordinate] = held.centre(slice % held.cells);
       slice /= held.cells;
     }
     const std::int64_t cell[3] = {i, j, k};
@@ -145,14 +138,7 @@ class PlainVoxels final : public VoxelSurveyor {
     if (!demand_.needs_samples()) return true;
     to.weight.push_back(weight);
     if (demand_.poses) to.pose.push_back(pose);
-    for (auto& [quantity, field] : to.fields) {
-      if (quantity->needs_inertia()) continue;
-      std::array<double, kMostJoints> values;
-      quantity->of_report(report, values.data());
-      const std::size_t count = quantity->per_joint ? mechanism_.info().joints.size() : 1;
-      for (std::size_t i = 0; i < count; ++i)
-        field[i].push_back(std::isfinite(values[i]) ? values[i] : quantity->without_value);
-    }
+    add_reported(report, mechanism_.info().joints.size(), to);
     if (demand_.needs_inertia()) {
       const MotionState<double> state{pose, AxisVector<double>(pose.size())};
       PoseDynamics<double> d;

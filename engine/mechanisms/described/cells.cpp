@@ -169,7 +169,7 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
   handed_down_.erase(std::unique(handed_down_.begin(), handed_down_.end()), handed_down_.end());
   kept.insert(kept.end(), handed_down_.begin(), handed_down_.end());
   middle_.emplace(program_, kMiddle, kept);
-  std::vector<std::uint32_t> tested = inner_conditions_;
+  std::vector<std::uint32_t> tested;  // inner conditions, and cranks' reaches
   for (const std::uint32_t at : program_.outputs())
     if (program_.stage_of()[at] == kInner) tested.push_back(at);
   inner_.emplace(program_, kInner, tested);

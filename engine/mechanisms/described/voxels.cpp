@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <stdexcept>
 
 #include "engine/mechanisms/described/cells.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/survey/cell_samples.hpp"
 #include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/share_samples.hpp"
 
@@ -14,13 +14,6 @@ namespace pkm::described {
 namespace {
 
 using Kind = HeldCoordinate::Kind;
-
-/// A coordinate that is integrated over, by its own cells.
-struct HeldCells {
-  std::size_t coordinate;
-  double lower, step;
-  std::int64_t cells;
-};
 
 class DescribedVoxels final : public VoxelSurveyor {
  public:
@@ -108,8 +101,7 @@ class DescribedVoxels final : public VoxelSurveyor {
     room.inputs = inputs;
     for (const HeldCells& each : held) {
       const auto cells = static_cast<std::size_t>(each.cells);
-      room.inputs[e_.model.inputs.coordinate(each.coordinate)] =
-          each.lower + (static_cast<double>(repeat % cells) + 0.5) * each.step;
+      room.inputs[e_.model.inputs.coordinate(each.coordinate)] = each.centre(static_cast<std::int64_t>(repeat % cells));
       repeat /= cells;
     }
     test_.start(room.inputs, room.cells);
@@ -190,13 +182,7 @@ class DescribedVoxels final : public VoxelSurveyor {
         std::ranges::all_of(demand_.fields, [](const PoseQuantity* q) { return q == &kConditioning; })
             ? report_of_sample(e_, parameters, pose, inputs)
             : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
-    for (auto& [quantity, field] : to.fields) {
-      std::array<double, kMostJoints> values;
-      quantity->of_report(report, values.data());
-      const std::size_t count = quantity->per_joint ? e_.model.inputs.joints : 1;
-      for (std::size_t i = 0; i < count; ++i)
-        field[i].push_back(std::isfinite(values[i]) ? values[i] : quantity->without_value);
-    }
+    add_reported(report, e_.model.inputs.joints, to);
   }
 
   const Mechanism& mechanism_;
