@@ -37,7 +37,6 @@ Node Graph::add(const Entry& entry) {
 Node Graph::number(double value) { return add({.number = value}); }
 
 Node Graph::input(std::size_t position, Groups group) {
-  inputs_ = std::max(inputs_, position + 1);
   return add({.input = static_cast<std::int32_t>(position), .groups = group});
 }
 

@@ -43,7 +43,6 @@ class Graph {
 
   const Entry& operator[](Node node) const { return entries_[static_cast<std::size_t>(node)]; }
   std::size_t size() const { return entries_.size(); }
-  std::size_t inputs() const { return inputs_; }  ///< one more than the greatest position
 
   /// The nodes among `roots` and those that they are made of, each once, before those that use it.
   std::vector<Node> reachable(std::span<const Node> roots) const;
@@ -61,7 +60,6 @@ class Graph {
 
   std::vector<Entry> entries_;
   std::unordered_map<Entry, Node, Hash, Same> known_;
-  std::size_t inputs_ = 0;
 };
 
 /// What `roots` are made of as a graph of its own, in which some inputs are numbers; the roots become its nodes.
