@@ -32,7 +32,24 @@ struct MechanismDraft {
   limbs::Term add_sign(char first, bool both);
 };
 
+/// The text under a key; "" where there is none.
+std::string text_of(const ConfigValue& table, const std::string& key);
+
+/// [[limit]]
+void read_limits(const ConfigValue& root, MechanismDraft& draft);
+/// [modes]
+void read_modes(const ConfigValue& root, MechanismDraft& draft);
 /// The limbs of the file: joints, closures, conditions, ranges, angles, links.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
+/// [[margin]] and [[design]]
+void read_margins(const ConfigValue& root, MechanismDraft& draft);
+/// Refuses signs of [modes] that double the working modes for nothing.
+void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft);
+/// [[link]] and [[body]]
+void read_links(const ConfigValue& root, MechanismDraft& draft);
+/// [survey]
+void read_survey(const ConfigValue& root, MechanismDraft& draft);
+/// All combinations of the signs, the file's first.
+void list_modes(MechanismDraft& draft);
 
 }  // namespace pkm
