@@ -34,6 +34,8 @@ struct MechanismDraft {
 
 /// The text under a key; "" where there is none.
 std::string text_of(const ConfigValue& table, const std::string& key);
+/// A product of SI units.
+std::string si_unit(const ConfigValue& unit);
 
 /// [[limit]]
 void read_limits(const ConfigValue& root, MechanismDraft& draft);

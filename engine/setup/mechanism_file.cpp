@@ -33,10 +33,7 @@ void read_names(const ConfigValue& root, MechanismDraft& draft) {
 
 /// The unit in which a quantity is written: of "200 mm" it is m.
 std::string unit_of(const ConfigValue& table) {
-  if (const auto unit = table.find("unit")) {
-    if (!is_si_unit(unit->text("a unit"))) throw unit->error("a product of SI units: \"m\", \"rad\", \"kg m^2\"");
-    return unit->text("a unit");
-  }
+  if (const auto unit = table.find("unit")) return si_unit(*unit);
   const ConfigValue value = table.at("default", "the default, a number or text with a unit: \"200 mm\"");
   if (!value.is_text()) return "1";
   const std::string& text = value.text("a number or text with a unit");
@@ -120,11 +117,9 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   if (!mixed && model.info.characteristic_length.empty()) model.info.characteristic_length = "1";  // of no effect
   if (const auto size = platform.find("size")) {
     size->expect_table("a table { formula = .., unit = .., meaning = .. }").allow({"formula", "unit", "meaning"});
-    const ConfigValue unit = size->at("unit", "the size's unit: \"m^3\"");
-    if (!is_si_unit(unit.text("a unit"))) throw unit.error("a product of SI units: \"m^3\"");
-    model.size = {
-        draft.scope.of_design(size->at("formula", "a formula of parameters"), unit.text("a unit"), "size").node(),
-        unit.text("a unit"), text_of(*size, "meaning")};
+    const std::string unit = si_unit(size->at("unit", "the size's unit: \"m^3\""));
+    const ConfigValue formula = size->at("formula", "a formula of parameters");
+    model.size = {draft.scope.of_design(formula, unit, "size").node(), unit, text_of(*size, "meaning")};
   }
   if (const auto mass = platform.find("mass")) draft.scope.of_design(*mass, "kg", "mass");
   if (const auto centre = platform.find("centre")) draft.scope.point(*centre, "centre");
@@ -137,6 +132,12 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
 std::string text_of(const ConfigValue& table, const std::string& key) {
   const auto value = table.find(key);
   return value ? value->text("text") : "";
+}
+
+std::string si_unit(const ConfigValue& unit) {
+  const std::string& text = unit.text("a unit");
+  if (!is_si_unit(text)) throw unit.error("a product of SI units: \"m\", \"rad\", \"kg m^2\"");
+  return text;
 }
 
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name) {

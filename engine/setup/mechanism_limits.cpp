@@ -29,9 +29,7 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft) {
       limit.upper = parameter->upper;
       limit.meaning = parameter->meaning;
     } else {
-      const ConfigValue unit = table.at("unit", "the limit's unit: \"m\", \"rad\", \"1\"");
-      if (!is_si_unit(unit.text("a unit"))) throw unit.error("a product of SI units: \"m\", \"rad\", \"1\"");
-      limit.unit = unit.text("a unit");
+      limit.unit = si_unit(table.at("unit", "the limit's unit: \"m\", \"rad\", \"1\""));
       limit.lower = table.at("min", "the least threshold").number(limit.unit);
       limit.upper = table.at("max", "the greatest threshold").number(limit.unit, limit.lower);
       limit.inactive = table.at("inactive", "the value that cuts nothing").number(limit.unit, limit.lower, limit.upper);
@@ -56,28 +54,28 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
   const auto name_of = [](const ConfigValue& table, const auto& others) {
     return new_name(table, "margin", others, "a name for the margin");
   };
+  const auto unit_of = [](const ConfigValue& table) {
+    const auto unit = table.find("unit");
+    return unit ? si_unit(*unit) : "1";
+  };
   for (const ConfigValue& table : tables_of(root, "margin")) {
     table.allow({"name", "formula", "unit"});
-    const std::string name = name_of(table, model.margins), unit = text_of(table, "unit");
-    if (!unit.empty() && !is_si_unit(unit)) throw table.find("unit")->error("a product of SI units");
-    const Term value = draft.scope.formula(table.at("formula", "a formula that is >= 0 where it holds"),
-                                           unit.empty() ? "1" : unit, name);
-    model.margins.push_back({name, unit.empty() ? "1" : unit, value.node()});
+    const std::string name = name_of(table, model.margins), unit = unit_of(table);
+    const ConfigValue formula = table.at("formula", "a formula that is >= 0 where it holds");
+    model.margins.push_back({name, unit, draft.scope.formula(formula, unit, name).node()});
   }
   for (const ConfigValue& table : tables_of(root, "design")) {
     table.allow({"name", "formula", "unit", "meaning"});
     if (model.tests.size() == kMostDesignTests)
       throw table.refusal("a mechanism has at most " + std::to_string(kMostDesignTests) + " tests of the design");
-    const std::string name = name_of(table, model.tests), unit = text_of(table, "unit");
-    if (!unit.empty() && !is_si_unit(unit)) throw table.find("unit")->error("a product of SI units");
+    const std::string name = name_of(table, model.tests), unit = unit_of(table);
     constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_. ";
     if (name.find_first_not_of(kLetters) != std::string::npos)
       throw table.find("name")->error("a name of letters, digits, blanks, '-', '_' and '.'");
     const ConfigValue formula = table.at("formula", "a formula of parameters that is >= 0 where it holds");
-    model.test_nodes.push_back(draft.scope.of_design(formula, unit.empty() ? "1" : unit, name).node());
+    model.test_nodes.push_back(draft.scope.of_design(formula, unit, name).node());
     const std::string meaning = text_of(table, "meaning");
-    model.tests.push_back(
-        {name, unit.empty() ? "1" : unit, meaning.empty() && formula.is_text() ? formula.text("a formula") : meaning});
+    model.tests.push_back({name, unit, meaning.empty() && formula.is_text() ? formula.text("a formula") : meaning});
   }
 }
 
