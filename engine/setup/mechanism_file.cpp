@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/mechanisms/described/mechanism.hpp"
 #include "engine/setup/mechanism_draft.hpp"
@@ -43,13 +44,33 @@ std::string unit_of(const ConfigValue& table) {
   throw value.error("a number, or text with a unit: \"200 mm\", \"40 deg\"; other units by unit = \"..\"");
 }
 
-void read_parameters(const ConfigValue& root, MechanismDraft& draft) {
+/// A limb's own parameter is what that of all is, but for what the file says.
+Parameter own_parameter(const ConfigValue& table, const LimbParameter& own, const std::vector<Parameter>& all) {
+  const Parameter* const general = find_named(all, own.parameter);
+  if (!general)
+    throw table.refusal("there is no parameter '" + own.parameter + "' above, which " + own.name() + " could be of");
+  Parameter p = *general;
+  p.lower = table.find_number("min", p.unit).value_or(p.lower);
+  p.upper = table.find_number("max", p.unit).value_or(p.upper);
+  if (!(p.lower < p.upper)) throw table.refusal("max is not above min");
+  p.nominal = table.find_number("default", p.unit, p.lower, p.upper).value_or(p.nominal);
+  if (table.has("meaning")) p.meaning = text_of(table, "meaning");
+  return p;
+}
+
+void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& asked, MechanismDraft& draft) {
   const ConfigValue all = root.at("parameters", "a table [parameters]: what a design may choose");
   all.expect_table("a table [parameters]");
   if (all.keys().empty()) throw all.error("at least one parameter");
   described::Model& model = draft.model;
-  for (const std::string& name : all.keys()) {
+  for (const std::string& name : all.dotted_keys(true)) {
     const ConfigValue table = *all.find(name);
+    if (const auto own = limb_parameter(name, table.place())) {
+      table.expect_table("a table { default = .., min = .., max = .., meaning = .. }")
+          .allow({"default", "min", "max", "meaning"});
+      add_own_parameter(*own, own_parameter(table, *own, model.info.parameters), draft);
+      continue;
+    }
     table.expect_table("a table { default = .., min = .., max = .., meaning = .. }")
         .allow({"default", "min", "max", "meaning", "unit"});
     Parameter p;
@@ -62,6 +83,14 @@ void read_parameters(const ConfigValue& root, MechanismDraft& draft) {
     p.meaning = text_of(table, "meaning");
     draft.scope.add(table, name, model.graph.input(model.info.parameters.size(), Inputs::kDesign));
     model.info.parameters.push_back(p);
+  }
+  for (const LimbParameter& own : asked) {
+    const Parameter* const general = find_named(model.info.parameters, own.parameter);
+    const auto known = names_of(model.info.parameters);
+    if (!general)
+      throw ConfigError(own.place, "the unknown parameter '" + own.parameter + "' of " + own.name(),
+                        "one of " + join(known), nearest_name(own.parameter, known));
+    if (!find_named(model.info.parameters, own.name())) add_own_parameter(own, Parameter(*general), draft);
   }
   model.inputs.parameters = model.info.parameters.size();
 }
@@ -97,6 +126,7 @@ void read_let(const ConfigValue& root, MechanismDraft& draft) {
   const auto all = root.find("let");
   if (!all) return;
   all->expect_table("a table [let] of formulas");
+  draft.let = all;
   for (const std::string& name : all->keys()) {
     const ConfigValue value = *all->find(name);
     draft.scope.add(value, name, draft.scope.formula(value, "1", name).node());
@@ -140,7 +170,8 @@ std::string si_unit(const ConfigValue& unit) {
   return text;
 }
 
-std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name) {
+std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name,
+                                                     const std::vector<LimbParameter>& own) {
   const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
   const ConfigValue root(document, file_name, "");
   if (root.keys().empty())
@@ -150,7 +181,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
               "link", "body"});
   MechanismDraft draft;
   read_names(root, draft);
-  read_parameters(root, draft);
+  read_parameters(root, own, draft);
   draft.model.inputs.limits = 0;
   read_limits(root, draft);
   const ConfigValue platform = root.at("platform", "a table [platform] with its coordinates");
@@ -164,6 +195,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   read_limbs(root, draft);
   read_margins(root, draft);
   refuse_idle_signs(root, draft);
+  refuse_idle_parameters(draft);
   read_links(root, draft);
   read_survey(root, draft);
   draft.scope.note_domains();

@@ -19,6 +19,9 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft) {
     const Parameter* const parameter = find_named(model.info.parameters, limit.name);
     if (find_named(model.info.limits, limit.name))
       throw table.find("name")->refusal("there is already a limit called '" + limit.name + "'");
+    for (const OwnParameter& own : draft.own)
+      if (parameter && own.parameter == limit.name)
+        throw ConfigError(own.place, own.name() + ", and " + limit.name + " is a limit of the whole mechanism");
     if (parameter) {
       for (const char* key : {"unit", "inactive", "min", "max", "derived"})
         if (const auto given = table.find(key))
