@@ -109,6 +109,16 @@ std::optional<Unit> unit_of(std::string_view text) {
   return known ? std::optional(product) : std::nullopt;
 }
 
+/// A finite number and what stands behind it.
+std::optional<std::pair<double, std::string_view>> number_and_unit(std::string_view text) {
+  std::string_view rest = trimmed(text);
+  if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
+  double number = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (error != std::errc{} || !std::isfinite(number)) return {};
+  return std::pair(number, trimmed(rest.substr(static_cast<std::size_t>(end - rest.data()))));
+}
+
 /// The names of the units that have the dimension of each symbol in `unit`: for "m^2 rad" those of m, then those of
 /// rad.
 std::vector<std::string> related_units(std::string_view unit) {
@@ -144,6 +154,21 @@ std::string quantity_hint(std::string_view unit) {
   return "a number in " + std::string(unit) + ", or text with a unit made of " + join(related_units(unit));
 }
 
+std::string kind_of_unit(std::string_view unit) {
+  constexpr std::pair<Dimension, const char*> kKinds[] = {{kNone, "a plain number"}, {kLength, "a length"},
+                                                          {kMass, "a mass"},         {kTime, "a time"},
+                                                          {kAngle, "an angle"},      {kForce, "a force"}};
+  const auto known = unit_of(unit);
+  for (const auto& [dimension, kind] : kKinds)
+    if (known && known->dimension == dimension) return kind;
+  return "a quantity in " + std::string(unit);
+}
+
+std::string kind_of_quantity(std::string_view text) {
+  const auto parts = number_and_unit(text);
+  return parts && !parts->second.starts_with('1') && unit_of(parts->second) ? kind_of_unit(parts->second) : "";
+}
+
 std::string with_unit(double value, std::string_view unit) {
   return unit == "1" || unit.empty() ? shortest(value) : shortest(value) + " " + std::string(unit);
 }
@@ -164,16 +189,13 @@ std::optional<std::int64_t> parse_integer(std::string_view text) {
 }
 
 std::optional<double> parse_quantity(std::string_view text, std::string_view unit) {
-  std::string_view rest = trimmed(text);
-  if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
-  double number = 0;
-  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-  if (error != std::errc{} || !std::isfinite(number)) return {};
-  rest = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
-  if (rest.empty()) return number;
-  const auto written = unit_of(rest), wanted = unit_of(unit);
+  const auto parts = number_and_unit(text);
+  if (!parts) return {};
+  const auto& [number, behind] = *parts;
+  if (behind.empty()) return number;
+  const auto written = unit_of(behind), wanted = unit_of(unit);
   PKM_EXPECTS(wanted.has_value());
-  if (!written || rest[0] == '1' || !wanted || written->dimension != wanted->dimension) return {};
+  if (!written || behind[0] == '1' || !wanted || written->dimension != wanted->dimension) return {};
   const double value = number * written->multiply / written->divide;
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }

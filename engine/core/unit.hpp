@@ -18,6 +18,11 @@ namespace pkm {
 /// an unknown unit or anything behind it: see quantity_hint().
 std::optional<double> parse_quantity(std::string_view text, std::string_view unit);
 
+/// What a text is that has a number and a unit: "an angle", "a length", or "a quantity in kg/m"; "" for any other text,
+/// also for numbers alone. The same of what is wanted, by its unit: kind_of_unit("rad").
+std::string kind_of_quantity(std::string_view text);
+std::string kind_of_unit(std::string_view unit);
+
 /// Angles beyond it [rad] are no input: a double holds fewer than 11 digits of what is left of them behind whole turns,
 /// and sin and cos are not reduced for them (engine/math/portable.hpp).
 inline constexpr double kGreatestAngle = 1e5;

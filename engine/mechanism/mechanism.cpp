@@ -42,18 +42,23 @@ Refusal no_joint_forces(const Mechanism& mechanism) {
 }
 
 const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan) {
-  std::vector<std::string> held;
-  for (const HeldCoordinate& named : plan.held) {
-    const bool known = named.coordinate >= 0 && named.coordinate < static_cast<int>(info.coordinates.size());
-    held.push_back(known ? info.coordinates[static_cast<std::size_t>(named.coordinate)].name
-                         : "coordinate number " + std::to_string(named.coordinate + 1));
-  }
   for (const Sweep& sweep : info.sweeps)
-    if (std::ranges::all_of(plan.held, [&](const HeldCoordinate& named) {
+    if ((plan.swept.empty() || std::ranges::is_permutation(sweep.swept, plan.swept)) &&
+        std::ranges::all_of(plan.held, [&](const HeldCoordinate& named) {
           return std::ranges::find(sweep.held, named.coordinate) != sweep.held.end();
         }))
       return sweep;
-  throw std::invalid_argument("mechanism " + info.name + " has no survey that holds " + join(held, " and "));
+  const auto name_of = [&info](int coordinate) {
+    const bool known = coordinate >= 0 && coordinate < static_cast<int>(info.coordinates.size());
+    return known ? info.coordinates[static_cast<std::size_t>(coordinate)].name
+                 : "coordinate number " + std::to_string(coordinate + 1);
+  };
+  std::vector<std::string> swept, held;
+  for (const int coordinate : plan.swept) swept.push_back(name_of(coordinate));
+  for (const HeldCoordinate& named : plan.held) held.push_back(name_of(named.coordinate));
+  throw std::invalid_argument(
+      "mechanism " + info.name + " has no survey that " + (swept.empty() ? "" : "sweeps " + join(swept)) +
+      (swept.empty() || held.empty() ? "" : " and ") + (held.empty() ? "" : "holds " + join(held, " and ")));
 }
 
 std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual) {
@@ -65,16 +70,12 @@ std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const st
     return sweep;
   };
   std::vector<Sweep> sweeps = {sweep_over(usual)};
-  const auto add = [&sweeps](const Sweep& sweep) {
-    const auto hides = [&](const Sweep& other) { return std::ranges::includes(other.held, sweep.held); };
-    if (std::ranges::none_of(sweeps, hides)) sweeps.push_back(sweep);
-  };
   for (std::size_t count = 3; count >= 1; --count)
     for (int bits = (1 << n) - 1; bits > 0; --bits) {
       std::vector<int> swept;
       for (int i = 0; i < n; ++i)
         if (bits & (1 << (n - 1 - i))) swept.push_back(i);
-      if (swept.size() == count) add(sweep_over(swept));
+      if (swept.size() == count && !std::ranges::is_permutation(swept, usual)) sweeps.push_back(sweep_over(swept));
     }
   return sweeps;
 }

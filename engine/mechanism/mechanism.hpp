@@ -98,12 +98,12 @@ class Mechanism {
 /// they would need the inverse of a Jacobian that is not square.
 Refusal no_joint_forces(const Mechanism& mechanism);
 
-/// The sweep of a plan: the first that holds all coordinates that the plan names. Throws std::invalid_argument when
-/// the mechanism has none.
+/// The sweep of a plan: over the coordinates that the plan names; where it names none, the first that holds all that it
+/// holds. Throws std::invalid_argument when the mechanism has none.
 const Sweep& sweep_of(const MechanismInfo& info, const SurveyPlan& plan);
 
 /// Every sweep over three coordinates, over two and over one, in this order, for mechanisms that are surveyed cell by
-/// cell; but for those that no plan can ask for (sweep_of), since an earlier one holds what they hold, too.
+/// cell.
 /// @param usual  comes first: the swept coordinates
 std::vector<Sweep> all_sweeps(const std::vector<AxisInfo>& coordinates, const std::vector<int>& usual);
 

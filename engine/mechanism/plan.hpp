@@ -47,6 +47,7 @@ struct ColumnOptions {
 
 struct SurveyPlan {
   std::variant<ColumnOptions, VoxelOptions> method;
+  std::vector<int> swept = {};       ///< all of them, where the study names them; else what it holds decides
   std::vector<HeldCoordinate> held;  ///< those that the study names; the others of the sweep are in the middle
   LimitSpec limits;
 

@@ -6,6 +6,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/graph/formula_words.hpp"
 #include "engine/problem/pose_statistic.hpp"
 
 namespace pkm {
@@ -49,6 +50,7 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const S
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
     if (find_named(info.limits, parameter.name)) continue;  // known as the threshold in force
+    if (!graph::may_be_name(parameter.name)) continue;      // of one limb: "arm2.l_b"
     names.push_back({parameter.name, parameter.unit, parameter.meaning, Origin::parameter, i});
   }
   for (std::size_t i = 0; i < info.limits.size(); ++i) {

@@ -48,6 +48,8 @@ std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::st
         throw ConfigError(place, '"' + item + '"', form + ", with names out of " + join(names));
       const std::string name{trimmed(std::string_view(item).substr(0, equals))};
       const Assignable* const target = find_named(known, name);
+      if (!target && known.empty())
+        throw ConfigError(place, "the unknown name '" + name + "'", "no name, for there is none");
       if (!target)
         throw ConfigError(place, "the unknown name '" + name + "'", "one of " + join(names), nearest_name(name, names));
       auto& text = texts[static_cast<std::size_t>(target - known.data())];
@@ -76,6 +78,12 @@ std::vector<Assignable> assignable_parameters(const MechanismInfo& info) {
   return known;
 }
 
+std::vector<Assignable> assignable_limits(const MechanismInfo& info) {
+  std::vector<Assignable> known;
+  for (const LimitInfo& limit : info.limits) known.push_back({limit.name, limit.unit, limit.lower, limit.upper});
+  return known;
+}
+
 std::vector<Assignable> assignable_axes(const std::vector<AxisInfo>& axes, const std::string& per) {
   std::vector<Assignable> known;
   for (const AxisInfo& axis : axes) known.push_back({axis.name, per.empty() ? axis.unit : axis.unit + "/" + per});
@@ -92,6 +100,13 @@ std::vector<Assignable> assignable_forces(const MechanismInfo& info) {
   std::vector<Assignable> known;
   for (const AxisInfo& joint : info.joints) known.push_back({joint.name, joint.turns() ? "N m" : "N"});
   return known;
+}
+
+std::vector<std::string> assigned_names(const std::vector<std::string>& lists) {
+  std::vector<std::string> names;
+  for (const std::string& list : lists)
+    for (const std::string& item : split(list, ',')) names.emplace_back(trimmed(item.substr(0, item.find('='))));
+  return names;
 }
 
 double parse_number(const std::string& text, const std::string& option, const std::string& unit) {
@@ -150,6 +165,29 @@ std::vector<double> parse_values(const std::string& text, const std::string& opt
     values.push_back(k == count - 1 ? to
                                     : from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1));
   return values;
+}
+
+std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, const std::vector<std::string>& names) {
+  const std::string option = "--cells";
+  constexpr std::int64_t kMost = 1'000'000;  // along one coordinate
+  std::vector<std::string> all = lists;
+  if (lists.size() == 1 && lists[0].find('=') == std::string::npos) {
+    all.clear();
+    for (const std::string& name : names) all.push_back(name + "=" + lists[0]);
+  }
+  std::vector<Assignable> known;
+  for (const std::string& name : names) known.push_back({name, "1"});
+  const auto texts = assigned_texts(all, option, "one number of cells, or name=cells", known);
+  expect_all(texts, option, known);
+  std::vector<std::int64_t> cells;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto number = parse_integer(*texts[i]);
+    if (!number || *number < 1 || *number > kMost)
+      throw ConfigError(place_of(option), known[i].name + "=" + *texts[i],
+                        "a whole number of cells, 1 to " + std::to_string(kMost));
+    cells.push_back(*number);
+  }
+  return cells;
 }
 
 std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,

@@ -21,12 +21,17 @@ struct Assignable {
 
 /// The mechanism's parameters as assignable names.
 std::vector<Assignable> assignable_parameters(const MechanismInfo& info);
+/// Its limits of a pose as assignable names.
+std::vector<Assignable> assignable_limits(const MechanismInfo& info);
 /// Coordinates or joints as assignable names, or as names of their rates, per "s" or "s^2".
 std::vector<Assignable> assignable_axes(const std::vector<AxisInfo>& axes, const std::string& per = "");
 /// Rates of the pose coordinates, and behind them of the auxiliary chain's input where there is one.
 std::vector<Assignable> assignable_rates(const Mechanism& mechanism, const std::string& per);
 /// The joints as names of their forces.
 std::vector<Assignable> assignable_forces(const MechanismInfo& info);
+
+/// What stands before each `=` in such lists.
+std::vector<std::string> assigned_names(const std::vector<std::string>& lists);
 
 /// The value [SI] of an option that takes one number. Throws ConfigError.
 double parse_number(const std::string& text, const std::string& option, const std::string& unit);
@@ -49,6 +54,9 @@ Wrench<double> parse_wrench(const std::vector<std::string>& lists);
 
 /// Values [SI] of `0,30deg`, or `-60deg:60deg:5` (from : to : how many).
 std::vector<double> parse_values(const std::string& text, const std::string& option, const Assignable& what);
+
+/// Numbers of cells of `--cells x=20,z=20`, or of `--cells 40` along each, in the order of `names`.
+std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, const std::vector<std::string>& names);
 
 /// Ranges [SI] of comma-separated `name=from:to` lists, in the order of `known`; all must be given.
 std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,

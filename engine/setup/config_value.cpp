@@ -1,5 +1,6 @@
 #include "engine/setup/config_value.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/catalogue.hpp"
@@ -151,8 +152,24 @@ void ConfigValue::allow(const std::vector<std::string>& known, std::string_view 
       throw find(key)->error_of("an unknown " + std::string(what), "one of " + join(known), nearest_name(key, known));
 }
 
+std::vector<std::string> ConfigValue::dotted_keys(bool of_tables) const {
+  const auto is_table = [](const TomlValue& value) { return value.kind == TomlValue::Kind::table; };
+  std::vector<std::string> all;
+  for (const std::string& key : keys()) {
+    const TomlValue& value = *value_->find(key);
+    const bool plain = key.find('.') == std::string::npos;
+    if (plain && is_table(value) && !value.keys.empty() && (!of_tables || std::ranges::all_of(value.items, is_table)))
+      for (const std::string& inner : value.keys) all.push_back(key + "." + inner);
+    else
+      all.push_back(key);
+  }
+  return all;
+}
+
 std::optional<ConfigValue> ConfigValue::find(const std::string& key) const {
   const TomlValue* child = value_->find(key);
+  if (const auto dot = key.find('.'); !child && dot != std::string::npos)
+    if (const TomlValue* const within = value_->find(key.substr(0, dot))) child = within->find(key.substr(dot + 1));
   if (!child) return std::nullopt;
   return ConfigValue(*child, file_, path_.empty() ? key : path_ + "." + key);
 }

@@ -48,7 +48,11 @@ class ConfigValue {
   /// Refuses any key that is not in `known`; `what` says what the keys are: "key", "parameter".
   void allow(const std::vector<std::string>& known, std::string_view what = "key") const;
   const std::vector<std::string>& keys() const { return value_->keys; }
-  bool has(const std::string& key) const { return value_->find(key) != nullptr; }
+  /// The keys, those of tables in it behind theirs: "arm2.l_b".
+  /// @param of_tables  what a key holds is a table; then only tables of tables count as tables in it
+  std::vector<std::string> dotted_keys(bool of_tables) const;
+  bool has(const std::string& key) const { return find(key).has_value(); }
+  /// The value under "arm2.l_b", whether the key is written so or the table has one called arm2.
   std::optional<ConfigValue> find(const std::string& key) const;
   std::optional<double> find_number(const std::string& key, std::string_view unit, double lower = -kUnbounded,
                                     double upper = kUnbounded) const;

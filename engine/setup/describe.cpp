@@ -64,17 +64,18 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) 
   SurveyPlan usual = plan;
   set_usual(info, usual);
   bool usual_cells = true;
-  std::vector<std::string> cells, nodes, box;
+  std::vector<std::string> swept, cells, nodes, box;
   for (std::size_t k = 0; k < sweep.swept.size(); ++k) {
-    const AxisInfo swept = coordinate(sweep.swept[k]);
+    const AxisInfo axis = coordinate(sweep.swept[k]);
+    swept.push_back(axis.name);
     if (plan.voxels()) {
-      cells.push_back(swept.name + " = " + std::to_string(plan.voxels()->cells[k]));
+      cells.push_back(axis.name + " = " + std::to_string(plan.voxels()->cells[k]));
       usual_cells = usual_cells && plan.voxels()->cells[k] == usual.voxels()->cells[k];
     }
     if (plan.columns() && sweep.swept[k] != sweep.column)
-      nodes.push_back(swept.name + " = " + std::to_string(plan.columns()->nodes[nodes.size()]));
+      nodes.push_back(axis.name + " = " + std::to_string(plan.columns()->nodes[nodes.size()]));
     if (const auto& given = plan.box())
-      box.push_back(swept.name + " = " + range((*given)[k][0], (*given)[k][1], swept.unit));
+      box.push_back(axis.name + " = " + range((*given)[k][0], (*given)[k][1], axis.unit));
   }
   for (std::size_t k = 0; k < plan.held.size(); ++k) {
     const HeldCoordinate& held = plan.held[k];
@@ -83,6 +84,8 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) 
     usual_cells = usual_cells && held.cells == usual.held[k].cells;
   }
   std::vector<Row> rows = {{"method", plan.voxels() ? "voxels" : "columns", mark(!plan.voxels())}};
+  const bool usual_sweep = &sweep == info.sweeps.data();
+  if (!usual_sweep) rows.push_back({"sweep", join(swept)});
   if (plan.voxels()) rows.push_back({"cells", join(cells), mark(usual_cells)});
   if (plan.voxels() || !box.empty())
     rows.push_back({"box", box.empty() ? "derived from each design" : join(box), mark(box.empty())});
@@ -157,11 +160,13 @@ std::string describe(const Study& study) {
   Study bare;
   bare.file_name = study.file_name;
   const std::string described = study.description ? "from " + study.description->file_name : "";
-  out << aligned({{"study", study.name, mark(study.name + ".h5" == bare.output_file())},
-                  {"file", study.file_name},
-                  {"seed", std::to_string(study.seed), mark(study.seed == bare.seed)},
-                  {"output", study.output_file(), mark(study.output_file() == bare.output_file())},
-                  {"mechanism", info.name + ": " + info.title, described}});
+  std::vector<Row> head = {{"study", study.name, mark(study.name + ".h5" == bare.output_file())},
+                           {"file", study.file_name},
+                           {"seed", std::to_string(study.seed), mark(study.seed == bare.seed)},
+                           {"output", study.output_file(), mark(study.output_file() == bare.output_file())},
+                           {"mechanism", info.name + ": " + info.title, described}};
+  if (!study.changes.empty()) head.push_back({"changed", "by " + join(study.changes, " ")});
+  out << aligned(head);
   write_parameters(out, study);
   out << titled("workspace", survey_rows(info, parts.plan));
   for (const Region& region : parts.regions) out << titled("region " + region.name, survey_rows(info, region.plan));

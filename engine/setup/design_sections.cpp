@@ -3,17 +3,57 @@
 #include <algorithm>
 
 #include "engine/core/unit.hpp"
+#include "engine/setup/assignments.hpp"
 #include "engine/setup/mechanism_file.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
 namespace {
 
+/// The names in a table, which has to know them all.
+std::vector<std::string> parameters_in(const ConfigValue& table, bool of_tables, const std::vector<Parameter>& known) {
+  std::vector<std::string> keys = table.dotted_keys(of_tables);
+  const std::vector<std::string> names = names_of(known);
+  for (auto key = keys.begin(); key != keys.end(); ++key) {
+    const ConfigValue value = *table.find(*key);
+    if (!contains(names, *key))
+      throw value.error_of("an unknown parameter", "one of " + join(names), nearest_name(*key, names));
+    if (std::find(keys.begin(), key, *key) != key) throw value.refusal("the parameter is there already");
+  }
+  return keys;
+}
+
+/// Parameters of one limb that the study names, or the command line.
+void find_limb_parameters(const ConfigValue& root, StudyDraft& draft) {
+  std::vector<LimbParameter>& all = draft.limb_parameters;
+  const auto add = [&all](const LimbParameter& own) {
+    if (std::ranges::find(all, own.name(), &LimbParameter::name) == all.end()) all.push_back(own);
+  };
+  const auto add_those_in = [&add](const std::optional<ConfigValue>& table, bool of_tables) {
+    if (!table || !table->is_table()) return;
+    for (const std::string& name : table->dotted_keys(of_tables))
+      if (const auto own = limb_parameter(name, table->find(name)->place())) add(*own);
+  };
+  add_those_in(root.find("mechanism")->find("parameters"), false);
+  add_those_in(root.find("variables"), true);
+  for (const StudyChanges& changes : draft.changes) std::ranges::for_each(limb_parameters(changes), add);
+}
+
+/// Own parameters of limbs that `given` does not have are what that of all is.
+template <class Given>
+void follow(const StudyDraft& draft, const Given& given, std::vector<double>& values) {
+  const auto& known = draft.info().parameters;
+  const auto number = [&known](const std::string& name) {
+    return static_cast<std::size_t>(find_named(known, name) - known.data());
+  };
+  for (const LimbParameter& own : draft.limb_parameters)
+    if (!given(own.name())) values[number(own.name())] = values[number(own.parameter)];
+}
+
 /// Overwrites the parameters that `table` names.
 void read_parameters(const ConfigValue& table, const std::vector<Parameter>& known, std::vector<double>& values) {
   table.expect_table("a table of parameters, { name = value, ... }");
-  table.allow(names_of(known), "parameter");
-  for (const auto& key : table.keys()) {
+  for (const auto& key : parameters_in(table, false, known)) {
     const Parameter& p = *find_named(known, key);
     values[static_cast<std::size_t>(&p - known.data())] = table.find(key)->number(p.unit, p.lower, p.upper);
   }
@@ -65,7 +105,8 @@ std::shared_ptr<const Mechanism> find_mechanism(const ConfigValue& root, StudyDr
   }
   if (!file) throw table.error_of("neither type nor file", either);
   const SourceText& description = draft.study.description.emplace(draft.description(*file));
-  return read_mechanism_toml(description.text, description.file_name);
+  find_limb_parameters(root, draft);
+  return read_mechanism_toml(description.text, description.file_name, draft.limb_parameters);
 }
 
 }  // namespace
@@ -80,8 +121,14 @@ void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
   }
 
   for (const auto& parameter : draft.info().parameters) draft.parts.parameters.push_back(parameter.nominal);
-  if (const auto fixed = table.find("parameters"))
-    read_parameters(*fixed, draft.info().parameters, draft.parts.parameters);
+  const auto fixed = table.find("parameters");
+  if (fixed) read_parameters(*fixed, draft.info().parameters, draft.parts.parameters);
+  override_parameters(root, draft);
+  const auto given = [&](const std::string& name) {
+    const auto set = [&name](const StudyChanges& changes) { return contains(assigned_names(changes.set), name); };
+    return (fixed && fixed->has(name)) || std::ranges::any_of(draft.changes, set);
+  };
+  follow(draft, given, draft.parts.parameters);
 }
 
 void read_variables(const ConfigValue& root, StudyDraft& draft) {
@@ -90,9 +137,9 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
   std::vector<Variable> variables;
   std::vector<double> nominal = draft.parts.parameters;
   if (const auto table = root.find("variables")) {
-    table->expect_table("a table [variables]").allow(names_of(known), "parameter");
+    table->expect_table("a table [variables]");
     const auto fixed = mechanism.find("parameters");
-    for (const auto& key : table->keys()) {
+    for (const auto& key : parameters_in(*table, true, known)) {
       const ConfigValue entry = *table->find(key);
       if (fixed && fixed->has(key))
         throw entry.refusal("the parameter is also fixed in mechanism.parameters (" + fixed->find(key)->line() +
@@ -113,6 +160,8 @@ void read_baseline(const ConfigValue& root, StudyDraft& draft) {
   if (!table) return;
   std::vector<double> values = draft.parts.parameters;
   read_parameters(*table, draft.info().parameters, values);
+  follow(
+      draft, [&](const std::string& name) { return table->has(name) || !root.find("variables")->has(name); }, values);
   if (const Refusal reason = draft.parts.mechanism->refuse(values)) throw table->refusal(*reason);
   draft.study.baseline = std::move(values);
 }

@@ -1,10 +1,13 @@
 // The sections of a mechanism's file, one function each, in the order in which read_mechanism_toml calls them.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/setup/mechanism_file.hpp"
 #include "engine/setup/mechanism_scope.hpp"
 
 namespace pkm {
@@ -17,6 +20,11 @@ struct NamedLimb {
   std::vector<std::string> parts;                ///< "crank", "rod"
 };
 
+/// A limb's own parameter in the graph.
+struct OwnParameter : LimbParameter {
+  graph::Node node{};
+};
+
 /// What the sections build up together.
 struct MechanismDraft {
   described::Model model;
@@ -27,12 +35,41 @@ struct MechanismDraft {
   std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: x, y, z
   std::vector<std::string> sign_choices;                                          ///< by sign: "+-", the file's first
 
+  std::vector<OwnParameter> own;
+  std::optional<ConfigValue> let;  ///< [let]
+
   limbs::Term zero() { return {model.graph, 0.0}; }
   /// A sign of the working modes, and its place among the inputs. @param first  '+' or '-': the file's
   limbs::Term add_sign(char first, bool both);
 };
 
+/// The text under a key; "" where there is none.
+std::string text_of(const ConfigValue& table, const std::string& key);
+/// A product of SI units.
+std::string si_unit(const ConfigValue& unit);
+
+/// Adds a limb's own parameter to those of the file.
+void add_own_parameter(const LimbParameter& own, const Parameter& parameter, MechanismDraft& draft);
+/// Does `read`, the while formulas mean the limb's own parameters, also by way of [let].
+void read_as_limb(const std::string& limb, const std::function<void()>& read, MechanismDraft& draft);
+/// Refuses own parameters of limbs that are not there or have no such parameter in their formulas.
+void refuse_idle_parameters(const MechanismDraft& draft);
+
+/// [[limit]]
+void read_limits(const ConfigValue& root, MechanismDraft& draft);
+/// [modes]
+void read_modes(const ConfigValue& root, MechanismDraft& draft);
 /// The limbs of the file: joints, closures, conditions, ranges, angles, links.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
+/// [[margin]] and [[design]]
+void read_margins(const ConfigValue& root, MechanismDraft& draft);
+/// Refuses signs of [modes] that double the working modes for nothing.
+void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft);
+/// [[link]] and [[body]]
+void read_links(const ConfigValue& root, MechanismDraft& draft);
+/// [survey]
+void read_survey(const ConfigValue& root, MechanismDraft& draft);
+/// All combinations of the signs, the file's first.
+void list_modes(MechanismDraft& draft);
 
 }  // namespace pkm

@@ -30,8 +30,14 @@ class LimbReader {
   void read() {
     allow_keys();
     refuse_known(name_);
-    if (drive_ == "formula") return read_formulas();
-    for (const Rotation& copy : copies()) read_copy(copy);
+    if (drive_ == "formula")
+      return read_as_limb(
+          name_, [&] { read_formulas(); }, draft_);
+    for (const Rotation& copy : copies()) {
+      const std::string name = is_copied_ ? name_ + std::to_string(++copies_read_) : name_;
+      read_as_limb(
+          name, [&] { read_copy(name, copy); }, draft_);
+    }
   }
 
  private:
@@ -142,13 +148,11 @@ class LimbReader {
         throw table_.find("name")->refusal("there is already a limb called '" + name + "'");
   }
 
-  void read_copy(const Rotation& copy) {
-    const std::size_t number = ++copies_read_;
-    const std::string name = is_copied_ ? name_ + std::to_string(number) : name_;
+  void read_copy(const std::string& name, const Rotation& copy) {
     refuse_known(name);
     std::string joint = name;
     if (const auto given = table_.find("joint_name"))
-      joint = given->text("the joint's name") + (is_copied_ ? std::to_string(number) : "");
+      joint = given->text("the joint's name") + (is_copied_ ? std::to_string(copies_read_) : "");
     last_copy_ = copy;
     const limbs::Ends at = ends(copy);
     const Term q = joint_variable(joint, drive_ == "crank" ? "rad" : "m");

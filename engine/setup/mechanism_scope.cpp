@@ -32,6 +32,8 @@ Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, 
   if (!value.is_text()) return model_.term(model_.graph.number(value.number(unit)));
   const std::string& text = value.text("a number or a formula");
   if (const auto number = parse_quantity(text, unit)) return model_.term(model_.graph.number(*number));
+  if (const std::string kind = kind_of_quantity(text); !kind.empty())
+    throw value.error_of('"' + text + "\", " + kind, kind_of_unit(unit) + ", or a formula: " + quantity_hint(unit));
   const Node node = value.explained([&] { return graph::read_formula(model_.graph, text, names_, nodes_); });
   watch(node, what);
   return model_.term(node);

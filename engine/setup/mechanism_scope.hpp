@@ -1,6 +1,7 @@
 // The names that formulas of a mechanism's file know, and formulas as nodes of its graph.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -18,6 +19,9 @@ class MechanismScope {
   void add(const ConfigValue& at, const std::string& name, graph::Node node);
   /// A later meaning of a name: a threshold in place of the parameter.
   void replace(const std::string& name, graph::Node node);
+  /// What all names mean now, and back to it; names that have come since stay.
+  const std::vector<graph::Node>& meanings() const { return nodes_; }
+  void restore(const std::vector<graph::Node>& meanings) { std::ranges::copy(meanings, nodes_.begin()); }
   bool knows(const std::string& name) const;
   const std::vector<std::string>& names() const { return names_; }
 

@@ -210,6 +210,7 @@ void check_thresholds(const ConfigValue& root, const StudyDraft& draft) {
 
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft) {
   read_constraints(root, draft, true);
+  override_limits(draft);
   check_thresholds(root, draft);
 }
 

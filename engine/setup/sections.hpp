@@ -7,6 +7,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/setup/config_value.hpp"
+#include "engine/setup/mechanism_file.hpp"
 #include "engine/setup/study.hpp"
 
 namespace pkm {
@@ -18,10 +19,17 @@ struct StudyDraft {
   std::function<SourceText(const ConfigValue& file)> description;
   Study study;
   ProblemParts parts;
+  std::vector<LimbParameter> limb_parameters = {};  ///< that the study names, or the command line
+  std::vector<StudyChanges> changes = {};           ///< the text's own, then what the command line says now
 
   const MechanismInfo& info() const { return parts.mechanism->info(); }
 };
 
+/// [[override]]
+void read_overrides(const ConfigValue& root, StudyDraft& draft);
+/// What they say of fixed parameters; of limits.
+void override_parameters(const ConfigValue& root, StudyDraft& draft);
+void override_limits(StudyDraft& draft);
 /// [mechanism]: type or file, masses, fixed parameters.
 void read_mechanism(const ConfigValue& root, StudyDraft& draft);
 /// [variables]

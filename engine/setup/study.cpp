@@ -120,7 +120,7 @@ bool describes_mechanism(const TomlValue& document) {
 using FindDescription = std::function<SourceText(const ConfigValue& file)>;
 
 Study read_document(const TomlValue& document, const SourceText& source, const Catalogues& catalogues,
-                    const FindDescription& find_description) {
+                    const FindDescription& find_description, const StudyChanges& changes) {
   const std::string& file_name = source.file_name;
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
@@ -129,12 +129,16 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
                       "a study, which names such a file in [mechanism] file = \"..\"");
   const ConfigValue root(document, file_name, "");
   root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
-              "report", "reference", "stage", "checkpoint", "final"},
+              "report", "reference", "stage", "checkpoint", "final", "override"},
              "section");
 
   StudyDraft draft{catalogues, find_description, {}, {}};
-  draft.study.text = source.text;
+  draft.study.text = changes.empty() ? source.text : with_changes(source.text, changes);
   draft.study.file_name = file_name;
+  read_overrides(root, draft);
+  draft.changes.push_back(changes);
+  for (const StudyChanges& each : draft.changes)
+    std::ranges::copy(each.arguments(), std::back_inserter(draft.study.changes));
   read_study_section(root, draft.study);
   read_mechanism(root, draft);
   read_variables(root, draft);
@@ -200,24 +204,26 @@ std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std
 }
 
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
-                      const std::optional<SourceText>& description) {
-  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, [&](const ConfigValue& file) {
+                      const std::optional<SourceText>& description, const StudyChanges& changes) {
+  const auto known = [&](const ConfigValue& file) {
     if (!description) throw file.refusal("what the mechanism's file holds is not known here");
     return *description;
-  });
+  };
+  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, known, changes);
 }
 
-Study load_study_toml(const std::string& path, const Catalogues& catalogues) {
+Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes) {
   const SourceText source{read_text_file(path, "a study file in TOML"), path};
-  return read_document(parse_toml(source.text, path), source, catalogues, load_description);
+  return read_document(parse_toml(source.text, path), source, catalogues, load_description, changes);
 }
 
-MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues) {
+MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues,
+                                         const StudyChanges& changes) {
   const std::string expected = "a study or a mechanism in TOML";
   const SourceText source{read_text_file(path, expected), path};
   const TomlValue document = parse_toml(source.text, path, expected);
-  if (describes_mechanism(document)) return read_mechanism_toml(source.text, path);
-  return read_document(document, source, catalogues, load_description);
+  if (describes_mechanism(document)) return read_mechanism_toml(source.text, path, limb_parameters(changes));
+  return read_document(document, source, catalogues, load_description, changes);
 }
 
 }  // namespace pkm

@@ -17,6 +17,7 @@
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/optimisers/optimiser.hpp"
 #include "engine/problem/design_problem.hpp"
+#include "engine/setup/study_changes.hpp"
 
 namespace pkm {
 
@@ -54,8 +55,9 @@ struct Reference {
 };
 
 struct Study {
-  std::string text;                       ///< the TOML document
+  std::string text;                       ///< the TOML document, with what the command line changes
   std::string file_name;                  ///< as it was called when it was read
+  std::vector<std::string> changes;       ///< "--set", "L0=2": what the command line changed, as it is in the text
   std::optional<SourceText> description;  ///< the mechanism's, where [mechanism] names a file
   std::string name;                       ///< default: the file's stem
   std::uint64_t seed = 1;
@@ -82,16 +84,18 @@ struct Study {
 /// Builds a study from a TOML document. `file_name` is named in messages. Opens no file: where [mechanism] names one,
 /// `description` is what was in it. Throws ConfigError.
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
-                      const std::optional<SourceText>& description = {});
+                      const std::optional<SourceText>& description = {}, const StudyChanges& changes = {});
 
 /// Reads the file at `path`, and the mechanism's that it may name, and builds its study. Throws ConfigError, also when
 /// a file cannot be read.
-Study load_study_toml(const std::string& path, const Catalogues& catalogues);
+Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes = {});
 
 /// What a file holds that may be a study or the description of a mechanism.
 using MechanismOrStudy = std::variant<std::shared_ptr<const Mechanism>, Study>;
 /// Reads the file at `path`, once. Throws ConfigError.
-MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues);
+/// @param changes  of a study; a mechanism has none
+MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues,
+                                         const StudyChanges& changes = {});
 
 /// The resolved problem with every default spelled out: the text of `pkmopt check`.
 std::string describe(const Study& study);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/math/portable.hpp"
+#include "engine/setup/assignments.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
@@ -26,24 +27,59 @@ std::vector<std::string> names_of(const MechanismInfo& info, const std::vector<i
   return names;
 }
 
+/// ["x", "y"]
+std::string quoted_list(const std::vector<std::string>& names) { return "[\"" + join(names, "\", \"") + "\"]"; }
+
 bool integrated(const HeldCoordinate& held) { return held.kind == HeldCoordinate::Kind::integrated; }
 
-void read_cells(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan, VoxelOptions& voxels) {
-  const std::vector<int>& swept = sweep_of(info, plan).swept;
-  std::vector<std::string> known = names_of(info, swept);
+/// The coordinates that have cells: the swept ones, then those that are integrated over.
+std::vector<std::string> names_with_cells(const MechanismInfo& info, const SurveyPlan& plan) {
+  std::vector<std::string> names = names_of(info, sweep_of(info, plan).swept);
   for (const HeldCoordinate& held : plan.held)
-    if (integrated(held)) known.push_back(axis_of(info, held.coordinate).name);
-  table.expect_table("a table of cell numbers for " + join(known)).allow(known, "coordinate");
-  const auto read = [&table](const std::string& name) {
-    return table.at(name, "a number of cells").integer(1, kMostCellsPerAxis);
-  };
+    if (integrated(held)) names.push_back(axis_of(info, held.coordinate).name);
+  return names;
+}
+
+/// Sets the cells of a plan of voxels, each number being cells_of(name). Returns their product along what is swept.
+template <class CellsOf>
+std::int64_t set_cells(const MechanismInfo& info, SurveyPlan& plan, const CellsOf& cells_of) {
+  const std::vector<int>& swept = sweep_of(info, plan).swept;
+  auto& cells = std::get<VoxelOptions>(plan.method).cells;
   std::int64_t all = 1;
-  for (std::size_t k = 0; k < swept.size(); ++k) all *= voxels.cells[k] = read(known[k]);  // at most 2^60
+  for (std::size_t k = 0; k < swept.size(); ++k) all *= cells[k] = cells_of(axis_of(info, swept[k]).name);  // to 2^60
   for (HeldCoordinate& held : plan.held)
-    if (integrated(held)) held.cells = read(axis_of(info, held.coordinate).name);
-  if (all > kMostCells)
-    throw table.error_of(std::to_string(all) + " cells",
-                         "at most " + std::to_string(kMostCells) + " (a voxel map takes a byte of memory per cell)");
+    if (integrated(held)) held.cells = cells_of(axis_of(info, held.coordinate).name);
+  return all;
+}
+
+const std::string kFewerCells =
+    "at most " + std::to_string(kMostCells) + " (a voxel map takes a byte of memory per cell)";
+
+void read_cells(const ConfigValue& table, const MechanismInfo& info, SurveyPlan& plan) {
+  const std::vector<std::string> known = names_with_cells(info, plan);
+  table.expect_table("a table of cell numbers for " + join(known)).allow(known, "coordinate");
+  const std::int64_t all = set_cells(info, plan, [&table](const std::string& name) {
+    return table.at(name, "a number of cells").integer(1, kMostCellsPerAxis);
+  });
+  if (all > kMostCells) throw table.error_of(std::to_string(all) + " cells", kFewerCells);
+}
+
+/// --cells, of the workspace alone: regions keep theirs.
+void override_cells(StudyDraft& draft) {
+  SurveyPlan& plan = draft.parts.plan;
+  for (const StudyChanges& changes : draft.changes) {
+    if (changes.cells.empty()) continue;
+    const SourcePlace place{"", 0, "--cells"};
+    if (!plan.voxels())
+      throw ConfigError(place, join(changes.cells) + " for a study by exact columns, which has no cells",
+                        "a study whose [workspace] has method = \"voxels\"");
+    const std::vector<std::string> names = names_with_cells(draft.info(), plan);
+    const std::vector<std::int64_t> cells = parse_cells(changes.cells, names);
+    const std::int64_t all = set_cells(draft.info(), plan, [&](const std::string& name) {
+      return cells[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+    });
+    if (all > kMostCells) throw ConfigError(place, std::to_string(all) + " cells", kFewerCells);
+  }
 }
 
 /// A bare number beyond pi was most likely meant in degrees.
@@ -116,6 +152,26 @@ HeldCoordinate read_held_values(const ConfigValue& list, const MechanismInfo& in
   return held;
 }
 
+/// The coordinates that a survey sweeps, in any order.
+void read_sweep(const ConfigValue& list, const MechanismInfo& info, SurveyPlan& plan) {
+  const std::string expected =
+      "a list of the swept coordinates, such as " + quoted_list(names_of(info, info.sweeps[0].swept));
+  for (const ConfigValue& each : list.elements(expected)) {
+    const auto known = pkm::names_of(info.coordinates);
+    const int coordinate = static_cast<int>(std::ranges::find(known, each.word(known)) - known.begin());
+    if (contains(plan.swept, coordinate)) throw each.refusal("this coordinate is swept already");
+    plan.swept.push_back(coordinate);
+  }
+  if (plan.swept.empty()) throw list.error(expected);
+  const auto same = [&](const Sweep& sweep) { return std::ranges::is_permutation(sweep.swept, plan.swept); };
+  if (std::ranges::any_of(info.sweeps, same)) return;
+  std::vector<std::string> offered;
+  for (const Sweep& sweep : info.sweeps) offered.push_back(quoted_list(names_of(info, sweep.swept)));
+  constexpr std::size_t kMostOffered = 8;
+  if (offered.size() > kMostOffered) offered = {"one to three coordinates"};
+  throw list.error("what the mechanism " + info.name + " has a survey of: " + join(offered, " or "));
+}
+
 /// Whether the sweep holds all of these coordinates.
 bool holds(const Sweep& sweep, const std::vector<int>& coordinates) {
   return std::ranges::all_of(coordinates, [&](int c) { return contains(sweep.held, c); });
@@ -137,6 +193,9 @@ void read_held_coordinates(const ConfigValue& table, const MechanismInfo& info, 
     const auto value = table.find(axis_of(info, coordinate).name);
     if (!value) continue;
     named.push_back(coordinate);
+    if (contains(plan.swept, coordinate))
+      throw value->refusal("the coordinate " + axis_of(info, coordinate).name + " is swept (" +
+                           table.find("sweep")->line() + "); it cannot be held, too");
     if (std::ranges::none_of(info.sweeps, [&](const Sweep& sweep) { return holds(sweep, named); }))
       throw value->refusal("a survey holds one coordinate and sweeps the others, but both " +
                            axis_of(info, named.front()).name + " and " + axis_of(info, coordinate).name + " are given");
@@ -159,7 +218,7 @@ void read_limits(const ConfigValue& table, StudyDraft& draft) {
 
 /// Refuses keys that are neither those of a survey, which [workspace] and [[region]] share, nor `own`.
 void allow_survey(const ConfigValue& table, const MechanismInfo& info, const std::string& own) {
-  std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box"};
+  std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box", "sweep"};
   for (const int coordinate : holdable(info)) keys.push_back(axis_of(info, coordinate).name);
   keys.push_back(own);
   table.allow(keys);
@@ -181,15 +240,15 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
   const double relative = tolerance ? tolerance->number("1", kFinestTolerance, kCoarsestTolerance) : 0;
   if (tolerance && nodes)
     throw nodes->refusal("either tolerance (" + tolerance->line() + ") or nodes set the accuracy; give one of them");
-  read_held_coordinates(table, info, of_region, plan);  // decides which coordinates are swept
+  if (const auto list = table.find("sweep")) read_sweep(*list, info, plan);
+  read_held_coordinates(table, info, of_region, plan);  // decides which are swept, where the study does not say
   const Sweep& sweep = sweep_of(info, plan);
   if (auto* const columns = std::get_if<ColumnOptions>(&plan.method)) {
     if (tolerance) columns->tolerance = relative;
     if (nodes) read_nodes(*nodes, info, sweep, *columns);
   } else {
     set_usual(info, plan);
-    VoxelOptions& voxels = std::get<VoxelOptions>(plan.method);
-    if (const auto cells = table.find("cells")) read_cells(*cells, info, plan, voxels);
+    if (const auto cells = table.find("cells")) read_cells(*cells, info, plan);
   }
   if (const auto given = table.find("box"))
     std::visit([&](auto& options) { options.box = read_box(*given, info, sweep.swept); }, plan.method);
@@ -214,11 +273,12 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   SurveyPlan& plan = draft.parts.plan;
   plan.limits = no_limits(info);
   draft.study.limit_origins.resize(info.limits.size());
-  const auto table = root.find("workspace");
-  if (!table) return;
-  allow_survey(table->expect_table("a table [workspace]"), info, "limits");
-  read_survey(*table, *draft.parts.mechanism, false, plan);
-  if (const auto limits = table->find("limits")) read_limits(*limits, draft);
+  if (const auto table = root.find("workspace")) {
+    allow_survey(table->expect_table("a table [workspace]"), info, "limits");
+    read_survey(*table, *draft.parts.mechanism, false, plan);
+    if (const auto limits = table->find("limits")) read_limits(*limits, draft);
+  }
+  override_cells(draft);
 }
 
 void read_regions(const ConfigValue& root, StudyDraft& draft) {

@@ -535,8 +535,8 @@ void dismiss_ranks(int exit_code) {
   ranks::broadcast(message);
 }
 
-Study study_of(const StudyContents& contents, const Catalogues& catalogues) {
-  Study study = read_study_toml(contents.toml, contents.toml_file, catalogues, contents.description);
+Study study_of(const StudyContents& contents, const Catalogues& catalogues, const StudyChanges& changes) {
+  Study study = read_study_toml(contents.toml, contents.toml_file, catalogues, contents.description, changes);
   if (const Refusal difference = text_against_record(study, contents))
     throw StorageError("the study's text and what is recorded of it disagree: " + *difference);
   study.seed = contents.seed;

@@ -89,6 +89,7 @@ int take_part(const Catalogues& catalogues, const ProgramVersion& program);
 void dismiss_ranks(int exit_code);
 
 /// The study that a file holds, with its seed.
-Study study_of(const StudyContents& contents, const Catalogues& catalogues);
+/// @param changes  to look at it otherwise
+Study study_of(const StudyContents& contents, const Catalogues& catalogues, const StudyChanges& changes = {});
 
 }  // namespace pkm

@@ -12,12 +12,14 @@
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/summary.hpp"
+#include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
 
 struct CheckArguments {
   std::string file;
+  StudyChanges changes;
   bool json = false;
 };
 
@@ -36,7 +38,7 @@ Json entries_json(const std::vector<StudyEntry>& entries) {
 Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
   const Sweep& sweep = sweep_of(info, plan);
   const std::vector<std::string> swept = coordinate_names(info, sweep.swept);
-  Json json = {{"method", plan.voxels() ? "voxels" : "columns"}};
+  Json json = {{"method", plan.voxels() ? "voxels" : "columns"}, {"sweep", swept}};
   if (const VoxelOptions* voxels = plan.voxels()) {
     for (std::size_t k = 0; k < swept.size(); ++k) json["cells"][swept[k]] = voxels->cells[k];
     for (const HeldCoordinate& held : plan.held)
@@ -130,8 +132,10 @@ void check_study(const Study& study, const CheckArguments& arguments, Session& s
 }
 
 void check(const CheckArguments& arguments, Session& session) {
-  const MechanismOrStudy found = load_mechanism_or_study(arguments.file, session.catalogues);
+  const MechanismOrStudy found = load_mechanism_or_study(arguments.file, session.catalogues, arguments.changes);
   if (const Study* const study = std::get_if<Study>(&found)) return check_study(*study, arguments, session);
+  if (!arguments.changes.empty())
+    throw ConfigError({}, join(arguments.changes.arguments(), " ") + " for a mechanism", "a study, which they change");
   const Mechanism& mechanism = *std::get<std::shared_ptr<const Mechanism>>(found);
   if (arguments.json)
     print_json(mechanism_json(mechanism, session.catalogues));
@@ -150,6 +154,7 @@ void add_check(CLI::App& app, Session& session) {
       "Example: pkmopt check experiments/4ppa-2par/paper-problem.toml",
       [&session](const CheckArguments& given) { check(given, session); });
   add_option(command, "FILE.toml", arguments.file, "The path of a study or of a mechanism's description")->required();
+  add_change_options(command, arguments.changes);
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
 }
 

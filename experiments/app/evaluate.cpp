@@ -1,7 +1,9 @@
 // `pkmopt evaluate`: everything that is known of one design.
 
 #include "engine/core/team.hpp"
+#include "engine/setup/assignments.hpp"
 #include "engine/survey/survey_set.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/running.hpp"
@@ -16,14 +18,19 @@ struct EvaluateArguments : DesignArguments {
   int threads = 0;
 };
 
-/// The problem of a bare mechanism: exact columns where it has them, else voxels, no limits, and every objective that
-/// serves it, and these, by its defaults.
-std::shared_ptr<const DesignProblem> default_problem(const Target& target, const Catalogues& catalogues) {
+/// The problem of a bare mechanism: exact columns where it has them, unless cells are given, else voxels, and every
+/// objective that serves it, and these, by its defaults.
+std::shared_ptr<const DesignProblem> default_problem(const Target& target, const Catalogues& catalogues,
+                                                     const std::vector<std::string>& cells) {
   ProblemParts parts;
   parts.mechanism = target.mechanism;
   parts.parameters = target.parameters;
   parts.plan.limits = target.limits;
-  if (!target.mechanism->columns()) parts.plan.method = equal_cells(target.info().sweeps.front(), kBareCells);
+  const Sweep& sweep = target.info().sweeps.front();
+  if (!target.mechanism->columns() || !cells.empty()) parts.plan.method = equal_cells(sweep, kBareCells);
+  if (!cells.empty())
+    std::ranges::copy(parse_cells(cells, coordinate_names(target.info(), sweep.swept)),
+                      std::get<VoxelOptions>(parts.plan.method).cells.begin());
   for (const auto& entry : catalogues.objectives) {
     if (needs_options(entry.options) || entry.refusal(*target.mechanism)) continue;
     const Options options = default_options(entry.options);
@@ -83,7 +90,8 @@ std::string verdict(const DesignProblem& problem, const DesignReport& report) {
 
 std::string evaluate(const Catalogues& catalogues, const Target& target, const EvaluateArguments& arguments,
                      Printout& out) {
-  const auto problem = target.study ? target.study->problem : default_problem(target, catalogues);
+  const auto problem =
+      target.study ? target.study->problem : default_problem(target, catalogues, arguments.changes.cells);
   DesignReport report;
   with_team(arguments.threads, [&] { report = problem->report(target.parameters); });
   const bool failed = report.status == Status::failed;
@@ -130,6 +138,7 @@ void add_evaluate(CLI::App& app, Session& session) {
       [&session](const Target& target, const EvaluateArguments& given, Printout& out) {
         return evaluate(session.catalogues, target, given, out);
       });
+  add_cells_option(command, arguments.changes.cells, "Cells of the study's voxels, or of a bare mechanism's");
   add_threads(command, arguments.threads);
 }
 

@@ -12,7 +12,7 @@ namespace pkm {
 namespace {
 
 struct ForwardArguments : DesignArguments {
-  std::vector<std::string> joints, speeds, accelerations;
+  std::vector<std::string> joints, near, speeds, accelerations;
   bool all = false;
 
   bool moves() const { return !(speeds.empty() && accelerations.empty()); }
@@ -50,14 +50,38 @@ std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& as
   return rates;
 }
 
+/// The one assembly next to a pose, metres counted like radians; none where there is none.
+std::vector<AssemblyMode> nearest(const ForwardKinematics& kinematics, const Target& target,
+                                  const AxisVector<double>& joints, const std::vector<std::string>& near) {
+  const Axes& coordinates = target.info().coordinates;
+  const auto from = axis_vector(parse_all_assignments(near, "--near", assignable_axes(coordinates)));
+  const auto distance = [&](const AssemblyMode& mode) {
+    double square = 0;
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+      const double way = mode.pose[i] - from[i];
+      square += std::pow(coordinates[i].turns() ? wrapped(way) : way, 2);
+    }
+    return square;
+  };
+  const std::vector<AssemblyMode> modes = kinematics.assemblies_near(target.parameters, joints, from);
+  if (modes.empty()) return {};
+  AssemblyMode next = *std::ranges::min_element(modes, {}, distance);
+  next.usual = true;  // it is asked for
+  return {next};
+}
+
 std::string forward(const Target& target, const ForwardArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
   const Axes& coordinates = info.coordinates;
   const ForwardKinematics& kinematics = needed(target.mechanism->forward(), "forward", "forward kinematics", info);
   const auto joints = axis_vector(parse_all_assignments(arguments.joints, "--joints", assignable_axes(info.joints)));
   const Rates rates = joint_rates(*target.mechanism, arguments);
-  const auto modes = kinematics.assemblies(target.parameters, joints);
-  const ForwardStatus status = kinematics.status(target.parameters, joints);
+  std::vector<AssemblyMode> modes;
+  if (arguments.near.empty())
+    modes = kinematics.assemblies(target.parameters, joints);
+  else
+    modes = nearest(kinematics, target, joints, arguments.near);
+  const ForwardStatus status = kinematics.status(target.parameters, joints, modes);
 
   Json poses = Json::array();
   std::vector<Row> rows = {{}}, motions = {{"mode"}};
@@ -110,10 +134,11 @@ void add_forward(CLI::App& app, Session& session) {
       "Example: pkmopt forward 4ppa-2par --joints q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846",
       forward);
   add_list_option(command, "--joints", arguments.joints, "Every joint's value")->required();
+  add_list_option(command, "--near", arguments.near, "A pose: only the assembly next to it");
   add_list_option(command, "--speeds", arguments.speeds, "Speeds of the joints: gives the platform's");
   add_list_option(command, "--accelerations", arguments.accelerations,
                   "Accelerations of the joints: gives the platform's");
-  command.add_flag("--all", arguments.all, "The unusual assembly modes too");
+  command.add_flag("--all", arguments.all, "The unusual assembly modes too")->excludes("--near");
 }
 
 }  // namespace pkm

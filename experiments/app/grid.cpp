@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/options.hpp"
 #include "engine/setup/assignments.hpp"
@@ -13,8 +14,8 @@ void add_grid_options(CLI::App& command, GridArguments& arguments, std::int64_t 
   add_option(command, "--box NAME=FROM:TO", arguments.box,
              "Ranges of the swept coordinates; default: all that the design reaches")
       ->allow_extra_args(false);
-  add_list_option(command, "--cells", arguments.cells,
-                  "Cells along each of them; default: the study's, else " + std::to_string(usual));
+  add_cells_option(command, arguments.cells,
+                   "Cells along each of them; default: the study's, else " + std::to_string(usual));
 }
 
 VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells) {
@@ -26,11 +27,10 @@ VoxelOptions equal_cells(const Sweep& sweep, std::int64_t cells) {
 void set_grid(SurveyPlan& plan, const MechanismInfo& info, const GridArguments& arguments, std::int64_t usual,
               double most) {
   const Sweep& sweep = sweep_of(info, plan);
-  std::vector<Assignable> swept, numbers;
+  std::vector<Assignable> swept;
   for (const int coordinate : sweep.swept) {
     const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(coordinate)];
     swept.push_back({axis.name, axis.unit});
-    numbers.push_back({axis.name, "1", 1, 1e6});
   }
   VoxelOptions voxels = equal_cells(sweep, usual);
   voxels.box = plan.box();
@@ -41,12 +41,8 @@ void set_grid(SurveyPlan& plan, const MechanismInfo& info, const GridArguments& 
     std::ranges::copy(ranges, voxels.box->begin());
   }
   if (!arguments.cells.empty()) {
-    const auto cells = parse_all_assignments(arguments.cells, "--cells", numbers);
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      voxels.cells[k] = static_cast<std::int64_t>(cells[k]);
-      if (static_cast<double>(voxels.cells[k]) != cells[k])
-        throw ConfigError({"", 0, "--cells"}, numbers[k].name + "=" + shortest(cells[k]), "a whole number of cells");
-    }
+    const auto cells = parse_cells(arguments.cells, names_of(swept));
+    std::ranges::copy(cells, voxels.cells.begin());
   }
   double all = 1;
   for (const std::int64_t cells : voxels.cells) all *= static_cast<double>(cells);

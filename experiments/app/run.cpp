@@ -14,6 +14,7 @@
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
+#include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
@@ -23,6 +24,7 @@ struct RunArguments {
   bool resume = false, force = false;
   std::optional<std::int64_t> seed;
   int seeds = 1;
+  StudyChanges changes;
   RunningArguments common;
 };
 
@@ -96,6 +98,9 @@ bool exists(const std::string& file) {
   return std::filesystem::exists(file, unseen);
 }
 
+/// What the command line changed in a study.
+std::string changes_of(const Study& study) { return study.changes.empty() ? "no changes" : join(study.changes, " "); }
+
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
                    const RunOptions& options, Session& session, Progress& progress) {
   if (arguments.resume && exists(output)) {
@@ -103,6 +108,9 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
     StudyContents& contents = held.contents;
     const std::string way_out =
         "; go on with it by '" + session.program + " resume " + quoted(output) + "', or overwrite it with --force";
+    if (contents.toml != study.text && without_changes(contents.toml) == without_changes(study.text))
+      throw StorageError(output + " holds the study with " + changes_of(study_of(contents, session.catalogues)) +
+                         ", not with " + changes_of(study) + way_out);
     if (contents.toml != study.text)
       throw StorageError(output + " holds another text of the study than " + study.file_name + way_out);
     if (study.description && contents.description && contents.description->text != study.description->text)
@@ -257,13 +265,16 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
                 << reasons_text(table.verdict->reasons);
     conclude(table.verdict, arguments.common, session);
   }
-  if (session.exit_code == kStoppedEarly)
-    std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study) << " --seeds "
-              << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output) << '\n';
+  if (session.exit_code == kStoppedEarly) {
+    std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study);
+    for (const std::string& word : arguments.changes.arguments()) std::cout << ' ' << quoted(word);
+    std::cout << " --seeds " << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output)
+              << '\n';
+  }
 }
 
 void run(const RunArguments& arguments, Session& session) {
-  Study study = load_study_toml(arguments.study, session.catalogues);
+  Study study = load_study_toml(arguments.study, session.catalogues, arguments.changes);
   if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;
   check_outputs({output}, inputs_of(study), Existing::replaced);
@@ -291,7 +302,7 @@ void add_run(CLI::App& app, Session& session) {
                                 "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml --threads 2",
                                 [&session](const RunArguments& given) { run(given, session); });
   add_option(command, "study STUDY.toml", arguments.study, "The study, a TOML file")->required();
-  add_option(command, "--output F.h5", arguments.output,
+  add_option(command, "-o,--output F.h5", arguments.output,
              "The study file (default: as the study says, else its stem + .h5)");
   command.add_flag("--resume", arguments.resume, "Go on with the study file if it exists");
   command.add_flag("--force", arguments.force, "Overwrite the study file if it exists")->excludes("--resume");
@@ -299,6 +310,7 @@ void add_run(CLI::App& app, Session& session) {
               "Seed, instead of the study's own");
   add_integer(command, "--seeds N", arguments.seeds, 1, 100'000,
               "Repeat the study over N seeds, a file each, and print the spread");
+  add_change_options(command, arguments.changes);
   add_running_options(command, arguments.common);
 }
 

@@ -74,6 +74,7 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   std::ostringstream out;
   out << printable(contents.name) << ": " << words(contents.state) << ", " << contents.evaluations()
       << " evaluations in " << duration_text(contents.seconds) << ", seed " << contents.seed << '\n';
+  if (!study.changes.empty()) out << "changed by " << printable(join(study.changes, " ")) << '\n';
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
     out << "stage " << i + 1 << ": " << stage.optimiser << ", ";

@@ -36,19 +36,20 @@ Target of_study(Study study) {
 }
 
 /// A built-in mechanism, or what is in a file.
-MechanismOrStudy named(const Catalogues& catalogues, const std::string& name, const std::string& files) {
+MechanismOrStudy named(const Catalogues& catalogues, const std::string& name, const std::string& files,
+                       const StudyChanges& changes = {}) {
   std::vector<std::string> known;
   for (const auto& mechanism : catalogues.mechanisms) {
     known.push_back(mechanism->info().name);
     if (known.back() == name) return mechanism;
   }
-  if (may_be_file(name)) return load_mechanism_or_study(name, catalogues);
+  if (may_be_file(name)) return load_mechanism_or_study(name, catalogues, changes);
   throw ConfigError({}, "'" + name + "', which is neither a mechanism nor a file",
                     "one of the mechanisms " + join(known) + ", or " + files, nearest_name(name, known));
 }
 
-Target named_target(const Catalogues& catalogues, const std::string& name) {
-  MechanismOrStudy found = named(catalogues, name, "a file in TOML of a study or a mechanism");
+Target named_target(const Catalogues& catalogues, const std::string& name, const StudyChanges& changes) {
+  MechanismOrStudy found = named(catalogues, name, "a file in TOML of a study or a mechanism", changes);
   if (const auto* const mechanism = std::get_if<std::shared_ptr<const Mechanism>>(&found)) {
     Target target = bare_mechanism(*mechanism);
     target.files = {name};
@@ -62,7 +63,7 @@ Target named_target(const Catalogues& catalogues, const std::string& name) {
 
 Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
-  Target target = of_study(study_of(contents, catalogues));
+  Target target = of_study(study_of(contents, catalogues, arguments.changes));
   static_cast<ChosenDesign&>(target) = chosen_design(contents, *target.study, arguments.choice);
   target.files = {arguments.from};
   return target;
@@ -75,7 +76,7 @@ Target chosen_target(const Catalogues& catalogues, const DesignArguments& argume
   if (!arguments.from.empty()) return of_file(catalogues, arguments);
   if (const char* const option = given_option(arguments.choice))
     throw ConfigError({"", 0, option}, "no --from", "--from F.h5 beside it");
-  return named_target(catalogues, arguments.target);
+  return named_target(catalogues, arguments.target, arguments.changes);
 }
 
 void set_masses(Target& target, const std::string& model) {
@@ -130,6 +131,21 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& option, std::
       ->allow_extra_args(false);
 }
 
+void add_cells_option(CLI::App& command, std::vector<std::string>& lists, const std::string& meaning) {
+  add_option(command, "--cells N|NAME=N", lists, meaning + "; a number along each, or by name, separated by commas")
+      ->allow_extra_args(false);
+}
+
+void add_limit_option(CLI::App& command, std::vector<std::string>& lists) {
+  add_list_option(command, "--limit", lists, "Thresholds of the limits of a pose, instead of the study's");
+}
+
+void add_change_options(CLI::App& command, StudyChanges& changes) {
+  add_list_option(command, "--set", changes.set, "Parameters that do not vary, instead of the study's");
+  add_limit_option(command, changes.limit);
+  add_cells_option(command, changes.cells, "Cells of the study's voxels");
+}
+
 void add_mode_options(CLI::App& command, ModeArguments& arguments) {
   add_option(command, "--mode MODE", arguments.mode,
              "Working mode (see 'pkmopt list mechanisms NAME'); default: the first");
@@ -174,6 +190,7 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
              "The best design of a study file (of a trade-off the compromise), and its problem");
   add_choice_options(command, arguments.choice);
   add_list_option(command, "--set", arguments.set, "Parameters changed in the study's baseline, else in its defaults");
+  add_limit_option(command, arguments.changes.limit);
   add_option(command, "--masses MODEL", arguments.masses,
              "Where a bare mechanism's masses come from (see 'pkmopt list'); a study says so itself");
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
@@ -199,9 +216,17 @@ bool may_be_file(const std::string& name) {
   return name.ends_with(".toml") || std::filesystem::exists(name, unreadable);
 }
 
-Target find_target(const Catalogues& catalogues, const DesignArguments& arguments) {
+Target find_target(const Catalogues& catalogues, const DesignArguments& given_arguments) {
+  DesignArguments arguments = given_arguments;
+  for (const std::string& name : assigned_names(arguments.set))
+    if (name.find('.') != std::string::npos) arguments.changes.limb_parameters.push_back(name);
   Target target = chosen_target(catalogues, arguments);
   if (!arguments.masses.empty()) set_masses(target, arguments.masses);
+  if (!target.study) {
+    const auto limits = parse_assignments(arguments.changes.limit, "--limit", assignable_limits(target.info()));
+    for (std::size_t i = 0; i < limits.size(); ++i) target.limits.given[i] = limits[i];
+  }
+  if (!arguments.changes.empty()) target.words += " with " + join(arguments.changes.arguments(), " ");
   const auto given = parse_assignments(arguments.set, "--set", assignable_parameters(target.info()));
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i]) target.parameters[i] = *given[i];

@@ -16,6 +16,7 @@ namespace pkm {
 struct DesignArguments {
   std::string target;            ///< a mechanism's name, or the path of its description or of a study
   std::vector<std::string> set;  ///< lists of name=value
+  StudyChanges changes;          ///< limits, and of some commands cells
   std::string masses;            ///< a mass model; "": the study's, else the mechanism's default
   std::string from;              ///< instead of `target`: a study file
   DesignChoice choice;           ///< which of the file's designs
@@ -30,6 +31,13 @@ const char* given_option(const DesignChoice& choice);
 /// Declares a list option such as --at: name=value, separated by commas, repeatable.
 CLI::Option* add_list_option(CLI::App& command, const std::string& option, std::vector<std::string>& lists,
                              const std::string& meaning);
+
+/// Declares --cells: one number, or NAME=CELLS.
+void add_cells_option(CLI::App& command, std::vector<std::string>& lists, const std::string& meaning);
+/// Declares --limit.
+void add_limit_option(CLI::App& command, std::vector<std::string>& lists);
+/// Declares --set, --limit and --cells, which change a study that is run.
+void add_change_options(CLI::App& command, StudyChanges& changes);
 
 struct ModeArguments {
   std::string mode;    ///< "": the default

@@ -51,6 +51,7 @@ void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std
         several ? "coordinates that one survey can hold, with their values" : "one coordinate with its value");
   if (!serves(sweep_of(info, plan))) {
     plan.held.clear();
+    plan.swept.clear();
     plan.method = ColumnOptions();
   }
   for (const HeldCoordinate& held : plan.held)

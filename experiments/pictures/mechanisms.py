@@ -1,8 +1,9 @@
-"""mechanisms.py PROGRAM MECHANISM OUT.svg: a mechanism at its usual pose, with the names of its lengths.
+"""mechanisms.py PROGRAM MECHANISM|FILE.toml OUT.svg: a mechanism at its usual pose, with the names of its lengths.
 
-The links are those of the program: a study of the nominal design is run, and the first design's links are read from its
-report. Needs numpy. For the READMEs in engine/mechanisms:
+The links are those of the program: of the nominal design, read from the page that `pkmopt workspace --html` writes.
+Needs numpy. For the READMEs in engine/mechanisms, and for all of experiments/mechanisms:
   mechanisms.py build/quickstart/bin/pkmopt 4ppa-2par engine/mechanisms/four_ppa_two_par/mechanism.svg
+  mechanisms.py build/quickstart/bin/pkmopt experiments/mechanisms
 """
 import base64
 import html
@@ -45,7 +46,9 @@ LENGTHS = {
     ],
 }
 # Where the eye is, about the vertical and above the horizon [deg].
-EYE = {"4ppa-2par": (-62, 16), "2t1r-p-hybrid": (-70, 24)}
+ABOVE = (-90, 90)
+EYE = {"4ppa-2par": (-62, 16), "2t1r-p-hybrid": (-70, 24), "3-rpr": ABOVE, "3-rrr": ABOVE, "five-bar": ABOVE,
+       "rotary-delta": (-40, 24), "linear-delta": (-40, 24), "gough": (-40, 16), "par4": (-70, 24)}  # fmt: skip
 COLOURS = {"frame": "#9a9a9a", "platform": "#c44e52"}
 OTHERS = ["#4c72b0", "#55a868", "#8172b3", "#ccb974", "#64b5cd", "#937860"]
 WIDTH = 900  # of the picture [px]
@@ -63,20 +66,11 @@ def unpack(text):
 
 def links_of(program, mechanism):
     """[(name, part, radius, ends)] at the usual pose of the nominal design."""
-    said = subprocess.run([program, "list", "mechanisms", "--json"], check=True, capture_output=True, text=True).stdout
-    info = next(m for m in json.loads(said)["mechanisms"] if m["name"] == mechanism)
-    length = next(p for p in info["parameters"] if p["unit"] == "m" and p["default"] > 0)
-    value = length["default"]
     with tempfile.TemporaryDirectory() as folder:
-        study, file, page = (str(Path(folder, "drawn" + end)) for end in (".toml", ".h5", ".html"))
-        Path(study).write_text(
-            f'[study]\nname = "drawn"\n[mechanism]\ntype = "{mechanism}"\n'
-            f'[variables]\n{length["name"]} = {{ min = {value * 0.999999}, max = {value * 1.000001} }}\n'
-            '[workspace]\nmethod = "columns"\n[[objective]]\ntype = "workspace-volume"\n'
-            '[[stage]]\noptimiser = "ga"\npopulation = 4\ngenerations = 1\n')  # fmt: skip
-        for command in (["run", study], ["report", file, "-o", page]):
-            subprocess.run([program, *command], check=True, stdout=subprocess.DEVNULL, cwd=folder)
-        text = Path(page).read_text()
+        page = Path(folder, "page.html")
+        command = [program, "workspace", mechanism, "--cells", "8", "--html", str(page)]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        text = page.read_text()
     start = text.index('"mechanism":{"mode"') + len('"mechanism":')
     design = json.JSONDecoder().raw_decode(text[start:])[0]["designs"][0]
     place = int(np.sum(unpack(design["drawn"])[: design["start"]]))
@@ -84,7 +78,7 @@ def links_of(program, mechanism):
     return [(k["name"], k["part"], k["radius"], at[[k["from"], k["to"]]]) for k in design["links"]]
 
 
-def picture(mechanism, links):
+def picture(mechanism, links, lengths=()):
     turn, up = np.radians(EYE.get(mechanism, (-60, 20)))
     right = np.array([-np.sin(turn), np.cos(turn), 0])
     away = -np.array([np.cos(turn) * np.cos(up), np.sin(turn) * np.cos(up), np.sin(up)])
@@ -118,7 +112,7 @@ def picture(mechanism, links):
         drawn.append(line(a, b, colours[part], width))
     drawn.append("</g>")
     drawn.append('<g font-family="sans-serif" font-size="19" font-style="italic">')
-    for name, *ends, side in ((*length, 1) if len(length) == 3 else length for length in LENGTHS.get(mechanism, [])):
+    for name, *ends, side in ((*length, 1) if len(length) == 3 else length for length in lengths):
         held = [([k for k in links if k[0] == link][which], end) for link, which, end in ends]
         a, b = (px(link[3][end]) for link, end in held)
         across = np.array([-(b - a)[1], (b - a)[0]]) / max(np.hypot(*(b - a)), 1e-9)
@@ -145,5 +139,9 @@ def picture(mechanism, links):
 
 
 if __name__ == "__main__":
-    program, mechanism, out = sys.argv[1:]
-    Path(out).write_text(picture(mechanism, links_of(program, mechanism)))
+    program, mechanism, *out = sys.argv[1:]
+    if Path(mechanism).is_dir():
+        for file in sorted(Path(mechanism).glob("*.toml")):
+            Path(mechanism, "pictures", file.stem + ".svg").write_text(picture(file.stem, links_of(program, str(file))))
+    else:
+        Path(out[0]).write_text(picture(mechanism, links_of(program, mechanism), LENGTHS.get(mechanism, ())))

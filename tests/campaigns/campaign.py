@@ -30,12 +30,35 @@ coefficients = { a = 1, b = -1 }
 """
 CONDITIONING = '[[objective]]\ntype = "conditioning"\n'
 
+FILE = """[study]
+name = "campaign"
+seed = 7
+[mechanism]
+file = "%s"
+[variables]
+R   = { min = 0.05, max = 0.4 }
+l_a = { min = 0.1, max = 0.4 }
+l_b = { min = 0.2, max = 0.8 }
+[workspace]
+method = "voxels"
+cells = { x = 16, y = 16, z = 16 }
+[[objective]]
+type = "workspace-ratio"
+[[constraint]]
+type = "rods longer than cranks"
+[[stage]]
+optimiser = "ga"
+population = 20
+generations = 60
+""" % os.path.abspath(os.path.join(os.path.dirname(__file__), "../../experiments/mechanisms/rotary-delta.toml"))
+
 STUDIES = {
     "ga": PROBLEM + '[[stage]]\noptimiser = "ga"\npopulation = 20\ngenerations = 60\n',
     "nsga2": PROBLEM + CONDITIONING + '[[stage]]\noptimiser = "nsga2"\npopulation = 24\ngenerations = 20\n',
     "nlopt": PROBLEM + '[[stage]]\noptimiser = "nlopt"\nstart = "none"\nmultistart = 3\n',
     "ipopt": PROBLEM + '[[stage]]\noptimiser = "ipopt"\nstart = "none"\nmultistart = 3\n',
     "sweep": PROBLEM + '[[stage]]\noptimiser = "sweep"\ndesign = "full-factorial"\npoints = 6\n',
+    "file": FILE,
 }
 
 # Differ from run to run: clocks, the machine, the study's text where the interval of checkpoints is part of it.

@@ -20,12 +20,13 @@ export LSAN_OPTIONS="suppressions=$root/tests/leaks.txt:print_suppressions=0"
 mkdir -p "$build/crashes" "$build/empty"
 cd "$build/empty"  # files that arguments name are not there
 
-declare -A most=([study_toml]=8192 [motion]=2048 [formula]=512 [quantity]=128 [command_line]=512 [study_file]=262144)
+declare -A most=([study_toml]=8192 [mechanism_file]=8192 [motion]=2048 [formula]=512 [quantity]=128 [command_line]=512 [study_file]=262144)
 faults=0
 rows=$(printf '%-14s%14s%10s%10s' target executions seconds crashes)
-for target in ${TARGETS:-study_toml motion formula quantity command_line study_file}; do
+for target in ${TARGETS:-study_toml mechanism_file motion formula quantity command_line study_file}; do
   seeds=("$root/tests/campaigns/corpus/$target")
   [[ $target == study_toml || $target == motion ]] && seeds+=("$root/experiments")
+  [[ $target == mechanism_file ]] && seeds+=("$root/experiments/mechanisms")
   [[ $target == study_file ]] && seeds+=("$root/tests/data")  # older schemas
   mkdir -p "$build/corpus/$target"
   # HDF5 seems to leak after each input; to look for leaks then takes half of the time. They are looked for at the end.

@@ -99,6 +99,26 @@ TEST_F(MechanismFile, StandsForTheMechanismsName) {
   EXPECT_GT(run({"workspace", "delta.toml", "--cells", "x=8,y=8,z=8", "--json"}).json()["feasible_cells"], 0);
 }
 
+TEST_F(MechanismFile, ForwardNearAPoseIsTheAssemblyNextToIt) {
+  for (const std::string mechanism : {"delta.toml", "4ppa-2par"}) {
+    const bool file = mechanism == "delta.toml";
+    const std::string at = file ? "x=0.05,y=-0.03,z=-0.45" : "x=0.4,y=1.25,z=-0.9,theta=0.4";
+    const auto pose = run({"pose", mechanism, "--at", at, "--json"}).json();
+    std::string joints;
+    for (const auto& [name, value] : pose["joints"].items())
+      joints += (joints.empty() ? "" : ",") + name + "=" + value.dump();
+    const auto near = [&](const std::string& from) {
+      const auto found = run({"forward", mechanism, "--joints", joints, "--near", from, "--json"});
+      EXPECT_EQ(found.exit_code, 0) << found.err;
+      EXPECT_EQ(found.json()["poses"].size(), 1u) << found.out;
+      return found.json()["poses"][0];
+    };
+    const auto next = near(file ? "x=0,y=0,z=-0.4" : "x=0.5,y=1,z=-1,theta=0.2");
+    EXPECT_NEAR(next["z"], file ? -0.45 : -0.9, 1e-9);
+    EXPECT_GT(near(file ? "x=0,y=0,z=0.4" : "x=0.5,y=1,z=1,theta=0.2")["z"], file ? 0.1 : -0.89);
+  }
+}
+
 TEST_F(MechanismFile, AStudyGoesOnAndIsShownWithoutIt) {
   ASSERT_EQ(run({"run", "study.toml", "--output", "s.h5", "--quiet"}).err, "");
   const std::string text = text_of(path("delta.toml"));

@@ -249,6 +249,30 @@ TEST_F(Ranks, KilledWhileSolversWorkAndResumedByAnotherNumberEndTheSame) {
   expect_kills_survived();
 }
 
+TEST_F(Ranks, OfAMechanismFromAFileEndTheSameAlsoWithoutTheFile) {
+  fs::copy(PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml", path("delta.toml"));
+  write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 60\n[checkpoint]\nevery = 0\n",
+             R"([mechanism]
+file = "delta.toml"
+[variables]
+R   = { min = 0.05, max = 0.4 }
+l_a = { min = 0.1, max = 0.4 }
+arm2.l_b = { min = 0.4, max = 0.6 }
+[workspace]
+method = "voxels"
+cells = { x = 12, y = 12, z = 12 }
+[[objective]]
+type = "workspace-volume"
+)");
+  expect_the_same({2, 3});
+  expect_kills_survived();
+  const StudyContents alone = read("alone.h5");
+  EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "left.h5", "--quiet", "--time", "100ms"}), 3) << output_;
+  fs::remove(path("delta.toml"));
+  EXPECT_EQ(run_on(3, {"resume", "left.h5", "--quiet"}), 0) << output_;
+  EXPECT_EQ(first_difference(alone, read("left.h5")), "");
+}
+
 TEST_F(Ranks, StopTogetherByASignalToRank0OrByTime) {
   write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 100000\n", std::string(kHead) + kRatio);
   EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "time.h5", "--quiet", "--time", "300ms"}), 3) << output_;

@@ -31,9 +31,16 @@ class ForwardKinematics {
   /// many ways.
   virtual std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
                                                const AxisVector<double>& joints) const = 0;
-  /// What that answer means.
-  virtual ForwardStatus status(std::span<const double> parameters, const AxisVector<double>& joints) const {
-    if (assemblies(parameters, joints).empty()) return {"NO_POSE", "no pose assembles with these joint values"};
+  /// Those that are looked for about a pose: here, too, every one.
+  virtual std::vector<AssemblyMode> assemblies_near(std::span<const double> parameters,
+                                                    const AxisVector<double>& joints,
+                                                    const Pose<double>& /*from*/) const {
+    return assemblies(parameters, joints);
+  }
+  /// What an answer of theirs means.
+  virtual ForwardStatus status(std::span<const double> /*parameters*/, const AxisVector<double>& /*joints*/,
+                               const std::vector<AssemblyMode>& found) const {
+    if (found.empty()) return {"NO_POSE", "no pose assembles with these joint values"};
     return {};
   }
 };

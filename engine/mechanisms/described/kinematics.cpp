@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -216,123 +215,6 @@ std::optional<Influence<double>> influence_at(const Evaluation& e, std::span<con
     for (std::size_t j = 0; j < at.coordinates; ++j)
       for (std::size_t k = 0; k < j; ++k) H(j, k) = H(k, j) = (H(j, k) - H(j, j) - H(k, k)) / 2;
     if (!std::ranges::all_of(H, [](double x) { return std::isfinite(x); })) return {};
-  }
-  return found;
-}
-
-namespace {
-
-struct Solution {
-  std::optional<Pose<double>> pose;  ///< none: it did not converge
-  bool started = false;              ///< closures have values where it began
-};
-
-/// Newton's method on the closures for given joints.
-Solution solve_closures(const Evaluation& e, std::vector<double>& inputs, Pose<double> pose) {
-  const Inputs& at = e.model.inputs;
-  constexpr int kSteps = 60, kHalvings = 10;
-  const auto finite = [](const auto& values) {
-    return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
-  };
-  const auto closures_at = [&](const Pose<double>& there) {
-    std::ranges::copy(there, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
-    return as_axes(outputs_of(e.closures, inputs));
-  };
-  double last = std::numeric_limits<double>::infinity();
-  AxisVector<double> f = closures_at(pose);
-  const bool started = finite(f);
-  for (int step = 0; step < kSteps && finite(f); ++step) {
-    const AxisMatrix<double> G = derivatives(e.closures, inputs, at.coordinate(0), at.coordinates);
-    const AxisVector<double> change = solve(G, f * -1.0);
-    if (!finite(change)) break;
-    double size = 0;
-    for (std::size_t i = 0; i < pose.size(); ++i)
-      size = std::max(size, std::fabs(change[i]) / (1 + std::fabs(pose[i])));
-    // far away, a step of at most 0.5 m or rad; none to where formulas are undefined
-    double share = std::min(1.0, 0.5 / std::max(size, 1e-300));
-    const Pose<double> before = pose;
-    for (int halved = 0; halved < kHalvings; ++halved, share /= 2) {
-      pose = before + change * share;
-      f = closures_at(pose);
-      if (finite(f)) break;
-    }
-    if (size < 1e-9 && size >= last / 2) return {pose, true};  // rounding alone is left
-    if (size == 0) return {pose, true};
-    last = size;
-  }
-  return {{}, started};
-}
-
-/// The working mode that has these joints at a pose; "": no limb reaches it so.
-std::string mode_with(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
-                      const AxisVector<double>& joints) {
-  const MechanismInfo& info = e.model.info;
-  for (std::size_t mode = 0; mode < info.modes.size(); ++mode) {
-    const auto same = [](double x, double y) { return std::fabs(x - y) <= 1e-7 * (1 + std::fabs(y)); };
-    if (std::ranges::equal(outputs_of(e.joints, inputs_at(e, parameters, pose, mode, no_limits(info))), joints, same))
-      return info.modes[mode];
-  }
-  return "";
-}
-
-/// Working modes with closures of their own: formulas may have signs in theirs, the limbs in closed form have none.
-std::vector<std::size_t> modes_of_closures(const Model& model) {
-  const auto is_sign = [&](Node node) {
-    const auto input = static_cast<std::size_t>(model.graph[node].input);
-    return model.graph[node].input >= 0 && input >= model.inputs.sign(0) && input < model.inputs.coordinate(0);
-  };
-  const bool signs = std::ranges::any_of(model.graph.reachable(model.closures), is_sign);
-  std::vector<std::size_t> modes(signs ? model.info.modes.size() : 1);
-  std::iota(modes.begin(), modes.end(), std::size_t{0});
-  return modes;
-}
-
-}  // namespace
-
-std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const double> parameters,
-                                        const AxisVector<double>& joints) {
-  const Model& model = e.model;
-  const Inputs& at = model.inputs;
-  if (at.joints != at.coordinates) return {};
-  constexpr std::size_t kStarts = 64, kTried = 1024;  // of a mode: those where its closures have values, of so many
-  std::vector<std::array<double, 2>> ranges;
-  for (std::size_t i = 0; i < at.coordinates; ++i)
-    ranges.push_back(e.range(parameters, i).value_or(std::array{-1.0, 1.0}));
-  const auto pose_number = [&](std::size_t start) {  // a Kronecker sequence over the box, from its middle
-    Pose<double> pose(at.coordinates);
-    for (std::size_t i = 0; i < at.coordinates; ++i) {
-      const double place =
-          0.5 + static_cast<double>(start) * std::sqrt(static_cast<double>(std::array{2, 3, 5, 7, 11, 13}[i]));
-      const double inside = place - std::floor(place);
-      pose[i] = ranges[i][0] + inside * (ranges[i][1] - ranges[i][0]);
-    }
-    return pose;
-  };
-  const LimitSpec none = no_limits(model.info);
-  std::vector<AssemblyMode> found;
-  for (const std::size_t mode : modes_of_closures(model)) {
-    std::vector<double> inputs = e.inputs(parameters, none, mode);
-    std::ranges::copy(joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
-    std::size_t starts = 0;
-    for (std::size_t tried = 0; tried < kTried && starts < kStarts; ++tried) {
-      const Solution solution = solve_closures(e, inputs, pose_number(tried));
-      starts += solution.started;
-      if (!solution.pose) continue;
-      Pose<double> pose = *solution.pose;
-      for (std::size_t i = 0; i < at.coordinates; ++i)
-        if (model.info.coordinates[i].turns()) pose[i] = wrapped(pose[i]);
-      const double size = std::fabs(*std::ranges::max_element(pose, {}, [](double x) { return std::fabs(x); }));
-      for (double& x : pose)
-        if (std::fabs(x) < 1e-14 * size) x = 0;  // rounding alone
-      const auto near = [&](const AssemblyMode& other) {
-        return std::ranges::equal(other.pose, pose, [](double x, double y) { return std::fabs(x - y) < 1e-6; });
-      };
-      if (std::ranges::any_of(found, near)) continue;
-      const std::string working_mode = mode_with(e, parameters, pose, joints);
-      if (!working_mode.empty())
-        found.push_back(
-            {.pose = pose, .mode = "found " + std::to_string(found.size() + 1), .working_mode = working_mode});
-    }
   }
   return found;
 }

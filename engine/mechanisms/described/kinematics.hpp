@@ -22,9 +22,4 @@ PoseReport report_of_sample(const Evaluation& evaluation, std::span<const double
 std::optional<Influence<double>> influence_at(const Evaluation& evaluation, std::span<const double> parameters,
                                               const Pose<double>& pose, std::size_t mode);
 
-/// Poses for joint values by Newton's method on the closures, from some 64 poses of the description's box for each
-/// working mode that has formulas of its own, each once: those that it finds need not be all.
-std::vector<AssemblyMode> assemblies_of(const Evaluation& evaluation, std::span<const double> parameters,
-                                        const AxisVector<double>& joints);
-
 }  // namespace pkm::described

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/mechanisms/described/forward.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
 #include "engine/mechanisms/described/voxels.hpp"
 
@@ -62,8 +63,13 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
                                        const AxisVector<double>& joints) const override {
     return assemblies_of(e_, parameters, joints);
   }
-  ForwardStatus status(std::span<const double> parameters, const AxisVector<double>& joints) const override {
-    if (assemblies(parameters, joints).empty()) return {"NO_POSE", "no pose was found from any of the starting poses"};
+  std::vector<AssemblyMode> assemblies_near(std::span<const double> parameters, const AxisVector<double>& joints,
+                                            const Pose<double>& from) const override {
+    return described::assemblies_near(e_, parameters, joints, from);
+  }
+  ForwardStatus status(std::span<const double>, const AxisVector<double>&,
+                       const std::vector<AssemblyMode>& found) const override {
+    if (found.empty()) return {"NO_POSE", "no pose was found from any of the starting poses"};
     return {};
   }
   std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,

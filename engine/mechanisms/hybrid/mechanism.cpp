@@ -156,7 +156,8 @@ class Hybrid final : public MechanismWith<Voxels, Columns, Size, PoseMarginsOf<H
     }
     return modes;
   }
-  ForwardStatus status(std::span<const double> p, const AxisVector<double>& s) const override {
+  ForwardStatus status(std::span<const double> p, const AxisVector<double>& s,
+                       const std::vector<AssemblyMode>&) const override {
     static const std::array<ForwardStatus, 5> meanings = {
         {{},
          {"NO_XZ", "the carriages A and B are too far apart, or as far apart as links of different lengths can't be"},

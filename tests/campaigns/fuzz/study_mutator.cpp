@@ -377,9 +377,12 @@ class Mutator {
     H5Awrite(attribute.get(), type.get(), value.data());
   }
 
-  /// The study's text, so that it and the record disagree: a line less, twice, moved, or another number in it.
+  /// The study's text, or its mechanism's, so that it and the record disagree: a line less, twice, moved, or another
+  /// number in it.
   void change_text() {
-    const Handle dataset(H5Dopen2(file_, "/toml", H5P_DEFAULT), H5Dclose);
+    const bool described = H5Lexists(file_, "/mechanism", H5P_DEFAULT) > 0 && below(2) == 0;
+    const char* const path = described ? "/mechanism/toml" : "/toml";
+    const Handle dataset(H5Dopen2(file_, path, H5P_DEFAULT), H5Dclose);
     const Handle type(H5Dget_type(dataset.get()), H5Tclose), space(H5Dget_space(dataset.get()), H5Sclose);
     const std::size_t size = H5Tget_size(type.get());
     if (!dataset || H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) return;
@@ -391,8 +394,8 @@ class Mutator {
     const Handle other(H5Tcopy(type.get()), H5Tclose);
     H5Tset_size(other.get(), std::max<std::size_t>(text.size(), 1));
     text.resize(std::max<std::size_t>(text.size(), 1));
-    H5Ldelete(file_, "/toml", H5P_DEFAULT);
-    const Handle made(H5Dcreate2(file_, "/toml", other.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+    H5Ldelete(file_, path, H5P_DEFAULT);
+    const Handle made(H5Dcreate2(file_, path, other.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                       H5Dclose);
     H5Dwrite(made.get(), other.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data());
   }

@@ -67,7 +67,7 @@ inline std::vector<double> nominal(const MechanismInfo& info) {
 inline SurveyPlan voxels(const MechanismInfo& info, const Sweep& sweep, std::int64_t cells) {
   VoxelOptions options;
   std::fill_n(options.cells.begin(), sweep.swept.size(), cells);
-  SurveyPlan plan{.method = options, .held = {}, .limits = no_limits(info)};
+  SurveyPlan plan{.method = options, .swept = sweep.swept, .held = {}, .limits = no_limits(info)};
   for (const int coordinate : sweep.held) plan.held.push_back({.coordinate = coordinate});
   return plan;
 }

@@ -76,6 +76,15 @@ TEST(Unit, MessagesListTheUnitsOfTheDimension) {
             "a number in rad/s, or text with a unit made of rpm, mrad, rad, deg, us, ms, s, min, h");
 }
 
+TEST(Unit, SaysWhatKindAQuantityIsOf) {
+  EXPECT_EQ(kind_of_quantity("10 deg"), "an angle");
+  EXPECT_EQ(kind_of_quantity(" 2e-3 mm"), "a length");
+  EXPECT_EQ(kind_of_quantity("5 %"), "a plain number");
+  EXPECT_EQ(kind_of_quantity("5 g/cm"), "a quantity in g/cm");
+  for (const char* text : {"10", "deg", "10 l_a", "10*deg", ""}) EXPECT_EQ(kind_of_quantity(text), "") << text;
+  EXPECT_EQ(kind_of_unit("m"), "a length");
+}
+
 TEST(Unit, DoesNotDependOnTheLocale) {
   const std::string before = std::setlocale(LC_NUMERIC, nullptr);
   for (const char* name : {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8"}) std::setlocale(LC_NUMERIC, name);

@@ -119,6 +119,29 @@ TEST(RealCatalogue, TheHeldCoordinateIsTheOneThatIsGiven) {
   EXPECT_THAT(describe(read_quadrupteron("x = 0.2")), HasSubstr("  x          0.2 m\n"));
 }
 
+TEST(RealCatalogue, TheSweptCoordinatesMayBeNamed) {
+  const Study study = read_quadrupteron("sweep = [\"phi\", \"x\", \"y\"]");
+  const SurveyPlan& plan = study.problem->parts().plan;
+  EXPECT_THAT(sweep_of(study.problem->parts().mechanism->info(), plan).swept, ElementsAre(0, 1, 3));
+  EXPECT_EQ(study.problem->objectives()[0].unit, "m^2 rad");
+  EXPECT_THAT(describe(study), HasSubstr("  sweep      x, y, phi\n"));
+  EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"y\", \"z\"]\nphi = 0.1"), "accepted");
+
+  EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"y\", \"z\"]\nz = 0.2"),
+            "s.toml:11: workspace.z: the coordinate z is swept (line 10); it cannot be held, too");
+  EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"y\", \"x\"]"),
+            "s.toml:10: workspace.sweep[3]: this coordinate is swept already");
+  EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"phy\"]"),
+            "s.toml:10: workspace.sweep[2]: found \"phy\"; expected one of x, y, z, phi; did you mean 'phi'?");
+  EXPECT_EQ(quadrupteron_message("sweep = [\"x\", \"y\"]"),
+            "s.toml:10: workspace.sweep: found [\"x\", \"y\"]; expected what the mechanism quadrupteron has a survey "
+            "of: [\"x\", "
+            "\"y\", \"z\"] or [\"y\", \"z\", \"phi\"] or [\"x\", \"z\", \"phi\"] or [\"x\", \"y\", \"phi\"]");
+  EXPECT_EQ(quadrupteron_message("sweep = []"),
+            "s.toml:10: workspace.sweep: found []; expected a list of the swept coordinates, such as [\"x\", \"y\", "
+            "\"z\"]");
+}
+
 TEST(RealCatalogue, WrongHeldCoordinates) {
   EXPECT_EQ(
       quadrupteron_message("x = 0.2\nphi = 0"),

@@ -78,8 +78,8 @@ TEST(HybridGolden, ForwardInEveryAssemblyMode) {
     const AxisVector<double> s = {q[0], q[1], q[2], q[3]};
     const Forward found = forward(geometry_of(p), s);
     EXPECT_EQ(words[static_cast<std::size_t>(found.status)], entry["status"].get<std::string>());
-    EXPECT_EQ(mechanism().forward()->status(p, s).word, entry["status"].get<std::string>());
-    EXPECT_EQ(mechanism().forward()->status(p, s).reason.empty(), entry["status"] == "OK");
+    EXPECT_EQ(mechanism().forward()->status(p, s, {}).word, entry["status"].get<std::string>());
+    EXPECT_EQ(mechanism().forward()->status(p, s, {}).reason.empty(), entry["status"] == "OK");
     ++seen[entry["status"]];
     ASSERT_EQ(found.assemblies.size(), entry["solutions"].size());
     ASSERT_EQ(mechanism().forward()->assemblies(p, s).size(), entry["solutions"].size());

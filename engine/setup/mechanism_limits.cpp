@@ -1,0 +1,85 @@
+// [[limit]], [[margin]], [[design]]: what bounds a pose, a study or a design.
+
+#include "engine/core/unit.hpp"
+#include "engine/setup/mechanism_draft.hpp"
+#include "engine/setup/sections.hpp"
+
+namespace pkm {
+
+using described::Inputs;
+using limbs::Term;
+
+void read_limits(const ConfigValue& root, MechanismDraft& draft) {
+  described::Model& model = draft.model;
+  const auto tables = tables_of(root, "limit");
+  for (const ConfigValue& table : tables) {
+    table.allow({"name", "unit", "meaning", "inactive", "min", "max", "derived", "constraint"});
+    LimitInfo limit;
+    limit.name = table.at("name", "the limit's name").text("the limit's name");
+    const Parameter* const parameter = find_named(model.info.parameters, limit.name);
+    if (find_named(model.info.limits, limit.name))
+      throw table.find("name")->refusal("there is already a limit called '" + limit.name + "'");
+    for (const OwnParameter& own : draft.own)
+      if (parameter && own.parameter == limit.name)
+        throw ConfigError(own.place, own.name() + ", and " + limit.name + " is a limit of the whole mechanism");
+    if (parameter) {
+      for (const char* key : {"unit", "inactive", "min", "max", "derived"})
+        if (const auto given = table.find(key))
+          throw given->refusal("a limit that is called like a parameter has its unit, default and range");
+      limit.unit = parameter->unit;
+      limit.inactive = parameter->nominal;
+      limit.lower = parameter->lower;
+      limit.upper = parameter->upper;
+      limit.meaning = parameter->meaning;
+    } else {
+      limit.unit = si_unit(table.at("unit", "the limit's unit: \"m\", \"rad\", \"1\""));
+      limit.lower = table.at("min", "the least threshold").number(limit.unit);
+      limit.upper = table.at("max", "the greatest threshold").number(limit.unit, limit.lower);
+      limit.inactive = table.at("inactive", "the value that cuts nothing").number(limit.unit, limit.lower, limit.upper);
+      limit.derivation = text_of(table, "derived");
+    }
+    if (table.has("meaning")) limit.meaning = text_of(table, "meaning");
+    if (const auto owner = table.find("constraint")) limit.group = owner->word({"interference", "singularity-margin"});
+    const auto node = model.graph.input(model.inputs.limit(model.inputs.limits++), Inputs::kDesign);
+    model.replaced.push_back(
+        parameter ? std::optional(static_cast<std::size_t>(parameter - model.info.parameters.data())) : std::nullopt);
+    std::optional<graph::Node> derived;
+    if (const auto formula = table.find("derived"))
+      derived = draft.scope.of_design(*formula, limit.unit, limit.name).node();
+    model.derived.push_back(derived);
+    parameter ? draft.scope.replace(limit.name, node) : draft.scope.add(table, limit.name, node);
+    model.info.limits.push_back(limit);
+  }
+}
+
+void read_margins(const ConfigValue& root, MechanismDraft& draft) {
+  described::Model& model = draft.model;
+  const auto name_of = [](const ConfigValue& table, const auto& others) {
+    return new_name(table, "margin", others, "a name for the margin");
+  };
+  const auto unit_of = [](const ConfigValue& table) {
+    const auto unit = table.find("unit");
+    return unit ? si_unit(*unit) : "1";
+  };
+  for (const ConfigValue& table : tables_of(root, "margin")) {
+    table.allow({"name", "formula", "unit"});
+    const std::string name = name_of(table, model.margins), unit = unit_of(table);
+    const ConfigValue formula = table.at("formula", "a formula that is >= 0 where it holds");
+    model.margins.push_back({name, unit, draft.scope.formula(formula, unit, name).node()});
+  }
+  for (const ConfigValue& table : tables_of(root, "design")) {
+    table.allow({"name", "formula", "unit", "meaning"});
+    if (model.tests.size() == kMostDesignTests)
+      throw table.refusal("a mechanism has at most " + std::to_string(kMostDesignTests) + " tests of the design");
+    const std::string name = name_of(table, model.tests), unit = unit_of(table);
+    constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_. ";
+    if (name.find_first_not_of(kLetters) != std::string::npos)
+      throw table.find("name")->error("a name of letters, digits, blanks, '-', '_' and '.'");
+    const ConfigValue formula = table.at("formula", "a formula of parameters that is >= 0 where it holds");
+    model.test_nodes.push_back(draft.scope.of_design(formula, unit, name).node());
+    const std::string meaning = text_of(table, "meaning");
+    model.tests.push_back({name, unit, meaning.empty() && formula.is_text() ? formula.text("a formula") : meaning});
+  }
+}
+
+}  // namespace pkm

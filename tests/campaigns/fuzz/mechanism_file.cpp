@@ -1,0 +1,43 @@
+// Input: the text of a mechanism's file. It is read and described, and a few cells of its workspace are counted.
+#include <stdexcept>
+
+#include "engine/core/error.hpp"
+#include "engine/setup/mechanism_file.hpp"
+#include "engine/survey/survey_set.hpp"
+#include "tests/campaigns/fuzz/expect.hpp"
+
+namespace pkm::fuzz {
+namespace {
+
+void count_cells(const Mechanism& mechanism) {
+  const MechanismInfo& info = mechanism.info();
+  VoxelOptions voxels;
+  std::fill_n(voxels.cells.begin(), info.sweeps.front().swept.size(), 3);
+  std::vector<double> nominal;
+  for (const Parameter& parameter : info.parameters) nominal.push_back(parameter.nominal);
+  Survey<double> survey;
+  try {
+    const SurveyPlan plan{.method = voxels, .held = {}, .limits = no_limits(info)};
+    survey_once<double>(*prepare_survey(mechanism, plan, {}), nominal, survey);
+  } catch (const std::invalid_argument&) {  // it says no box
+    return;
+  }
+  expect(survey.feasible_cells <= survey.cells, "no more feasible cells than there are");
+}
+
+}  // namespace
+}  // namespace pkm::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace pkm;
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  try {
+    const auto mechanism = read_mechanism_toml(text, "mechanism.toml");
+    fuzz::expect(!describe_mechanism(*mechanism).empty(), "a mechanism has a description");
+    fuzz::count_cells(*mechanism);
+  } catch (const ConfigError& error) {
+    fuzz::expect_sentence(error.what(), text);
+    fuzz::expect_terminal("", error.what());
+  }
+  return 0;
+}
