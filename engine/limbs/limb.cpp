@@ -71,11 +71,16 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
   const Term angle = atan2(w, u) + branch * acos(k / h);
   const Term joint = middle + call(graph::turn(), angle - middle);
   const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
+  // cosine and sine of phi + branch acos(k / h), times h^2
+  const Term beside_k = branch * sqrt(h * h - k * k), along_zero = u * k - w * beside_k,
+             along_beside = w * k + u * beside_k;
+  const Term per_h_2 = crank / (h * h);
   Limb limb = {.joint = joint,
                .conditions = {{"reaches", "m", h - k}, {"unfolds", "m", h + k}},
                .closure = rod_closure(v - arm(q), rod),
                .C = ends.A + arm(joint),
-               .S = ends.A};
+               .S = ends.A,
+               .elbow = ends.A + zero * (along_zero * per_h_2) + beside * (along_beside * per_h_2)};
   if (!range) return limb;
   const Term pi(q.graph(), kPi);
   const Term from = call(graph::operation("max"), (*range)[0], middle - pi);

@@ -41,6 +41,7 @@ struct Limb {
   Vector3 C;  ///< where the rod begins: the crank's end, the elbow, the slide; of a telescope A
   Vector3 S;  ///< the slide; of cranks and telescopes A
   std::optional<CrankRange> crank_range{};
+  std::optional<Vector3> elbow{};  ///< of cranks: C by roots alone, for rates
 };
 
 /// The ends of a limb.

@@ -9,12 +9,20 @@
 
 namespace pkm {
 
+/// A part of a limb: what may have a mass, and what [[body]] calls "arm1.crank".
+struct LimbPart {
+  std::string name;                          ///< "crank", "rod", "slider"
+  limbs::Vector3 from, to;                   ///< its ends
+  std::optional<limbs::Vector3> direction;   ///< from one to the other, of length 1; none: it does not turn
+  std::optional<limbs::Term> length = {};    ///< where it is constant
+};
+
 /// A limb as other sections name it.
 struct NamedLimb {
   std::string name;                              ///< "arm2"
   std::string group;                             ///< "arm": all copies
   std::map<std::string, limbs::Vector3> points;  ///< "A", "B", "C", "S"
-  std::vector<std::string> parts;                ///< "crank", "rod"
+  std::vector<LimbPart> parts;
 };
 
 /// What the sections build up together.
@@ -32,7 +40,21 @@ struct MechanismDraft {
   limbs::Term add_sign(char first, bool both);
 };
 
-/// The limbs of the file: joints, closures, conditions, ranges, angles, links.
+/// The limbs of the file: joints, closures, conditions, ranges, angles, links, bodies.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
+
+/// Keys of a limb's table that say the mass of a part.
+std::vector<std::string> mass_keys(const std::string& part);
+/// The body of a limb's part, where its table gives it a mass.
+void add_part_body(const ConfigValue& table, const NamedLimb& limb, const LimbPart& part, MechanismDraft& draft);
+/// A link with `mass` and `inertia`, thin between two points.
+void add_link_body(const ConfigValue& table, const std::string& name, const limbs::Vector3& from,
+                   const limbs::Vector3& to, MechanismDraft& draft);
+/// The platform's own mass, centre and inertia.
+void read_platform_body(const ConfigValue& platform, MechanismDraft& draft);
+/// [[body]]. @param links  names of [[link]]s with their directions
+void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft);
+/// [x, y, z] or a limb's point, "arm1.C".
+limbs::Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft);
 
 }  // namespace pkm

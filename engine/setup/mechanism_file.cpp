@@ -16,7 +16,7 @@ namespace {
 using described::Inputs;
 using limbs::Term, limbs::Vector3;
 
-const std::vector<std::string> kUnits = {"m", "rad", "kg", "kg m^2", "kg/m", "N", "N/m", "N m/rad", "1"};
+const std::vector<std::string> kUnits = {"m", "rad", "kg", "kg m^2", "kg/m", "kg/m^3", "N", "N/m", "N m/rad", "1"};
 const std::vector<std::string> kAxes = {"along x", "along y", "along z", "about x", "about y", "about z"};
 
 std::string text_of(const ConfigValue& table, const std::string& key) {
@@ -135,7 +135,10 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
     draft.scope.add(value, name, coordinate.node());
     model.info.coordinates.push_back({name, turns ? "rad" : "m"});
     model.turns_about.push_back(turns ? std::optional(axis) : std::nullopt);
+    const graph::Node none = model.graph.number(0);
+    model.turn_axes.push_back({none, none, none});
     if (turns) {
+      for (std::size_t row = 0; row < 3; ++row) model.turn_axes.back()[row] = draft.turn[row][axis].node();
       if (std::ranges::count_if(model.turns_about, [](const auto& each) { return each.has_value(); }) > 3)
         throw value.refusal("a platform has at most three rotations");
       draft.turn = draft.turn * limbs::turn_about(axis, sin(coordinate), cos(coordinate));
@@ -192,10 +195,7 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
         draft.scope.of_design(size->at("formula", "a formula of parameters"), unit.text("a unit"), "size").node(),
         unit.text("a unit"), text_of(*size, "meaning")};
   }
-  if (const auto mass = platform.find("mass")) draft.scope.of_design(*mass, "kg", "mass");
-  if (const auto centre = platform.find("centre")) draft.scope.point(*centre, "centre");
-  if (const auto inertia = platform.find("inertia"))
-    for (const ConfigValue& each : inertia->elements("three values")) draft.scope.of_design(each, "kg m^2", "inertia");
+  read_platform_body(platform, draft);
 }
 
 void read_margins(const ConfigValue& root, MechanismDraft& draft) {
@@ -243,27 +243,12 @@ void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft) {
   }
 }
 
-/// [x, y, z] or a limb's point, "arm1.C".
-Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft) {
-  if (!value.is_text()) return draft.scope.point(value, what);
-  const std::string& text = value.text("a point");
-  std::vector<std::string> known;
-  for (const NamedLimb& limb : draft.limbs)
-    for (const auto& [point, place] : limb.points) {
-      known.push_back(limb.name + "." + point);
-      if (known.back() == text) return place;
-    }
-  throw value.error("[x, y, z] or the point of a limb: " + join(known), nearest_name(text, known));
-}
-
-void read_links(const ConfigValue& root, MechanismDraft& draft) {
-  std::vector<std::string> turning = {"platform"};
-  for (const NamedLimb& limb : draft.limbs)
-    for (const std::string& part : limb.parts) turning.push_back(limb.name + "." + part);
+/// @return  the links as [[body]] names them
+std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft) {
+  std::vector<LimbPart> links;
   for (const ConfigValue& table : tables_of(root, "link")) {
     table.allow({"name", "from", "to", "radius", "group", "mass", "inertia"});
     const std::string& name = table.at("name", "the link's name").text("the link's name");
-    turning.push_back(name);
     const Vector3 from = read_point(table.at("from", "a point"), name, draft),
                   to = read_point(table.at("to", "a point"), name, draft);
     const Term radius = draft.scope.of_design(table.at("radius", "the link's radius"), "m", name);
@@ -277,18 +262,10 @@ void read_links(const ConfigValue& root, MechanismDraft& draft) {
     }
     const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
     draft.model.links.push_back({name, part, nodes(from), nodes(to), radius.node()});
-    if (const auto mass = table.find("mass")) draft.scope.of_design(*mass, "kg", name);
-    if (const auto inertia = table.find("inertia")) draft.scope.of_design(*inertia, "kg m^2", name);
+    add_link_body(table, name, from, to, draft);
+    links.push_back({name, from, to, (to - from) / limbs::length(to - from)});
   }
-  for (const ConfigValue& table : tables_of(root, "body")) {
-    table.allow({"name", "centre", "mass", "inertia", "rotation"});
-    const std::string& name = table.at("name", "the body's name").text("the body's name");
-    read_point(table.at("centre", "a point"), name, draft);
-    draft.scope.of_design(table.at("mass", "the body's mass"), "kg", name);
-    if (const auto inertia = table.find("inertia"))
-      for (const ConfigValue& each : inertia->elements("three values")) draft.scope.of_design(each, "kg m^2", name);
-    if (const auto rotation = table.find("rotation")) rotation->word(turning);
-  }
+  return links;
 }
 
 /// The number of a coordinate that a value names.
@@ -388,6 +365,18 @@ void list_modes(MechanismDraft& draft) {
 
 }  // namespace
 
+Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft) {
+  if (!value.is_text()) return draft.scope.point(value, what);
+  const std::string& text = value.text("a point");
+  std::vector<std::string> known;
+  for (const NamedLimb& limb : draft.limbs)
+    for (const auto& [point, place] : limb.points) {
+      known.push_back(limb.name + "." + point);
+      if (known.back() == text) return place;
+    }
+  throw value.error("[x, y, z] or the point of a limb: " + join(known), nearest_name(text, known));
+}
+
 std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, const std::string& file_name) {
   const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
   const ConfigValue root(document, file_name, "");
@@ -412,7 +401,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   read_limbs(root, draft);
   read_margins(root, draft);
   refuse_idle_signs(root, draft);
-  read_links(root, draft);
+  read_bodies(root, read_links(root, draft), draft);
   read_survey(root, draft);
   draft.scope.note_domains();
   list_modes(draft);

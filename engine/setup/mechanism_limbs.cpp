@@ -15,8 +15,6 @@ using limbs::Limb, limbs::Rotation, limbs::Term, limbs::Vector3;
 
 const std::vector<std::string> kDrives = {"telescope", "slider", "crank", "formula"};
 const std::vector<std::string> kOfAll = {"name", "drive", "range"};
-const std::vector<std::string> kMasses = {"crank_mass", "rod_mass", "slider_mass", "crank_mass_per_length",
-                                          "rod_mass_per_length"};
 
 /// Reads limbs of one table: itself, or its copies.
 class LimbReader {
@@ -47,7 +45,10 @@ class LimbReader {
     } else {
       also({"copies", "base", "platform", "end", "across", "across_in", "radius", "joint_base", "joint_platform",
             "joint_name"});
-      keys.insert(keys.end(), kMasses.begin(), kMasses.end());
+      for (const std::string& part : names_of_parts()) {
+        const std::vector<std::string> of_mass = mass_keys(part);
+        keys.insert(keys.end(), of_mass.begin(), of_mass.end());
+      }
     }
     if (drive_ == "slider") also({"direction", "along", "rod", "links", "axis", "branch"});
     if (drive_ == "crank") also({"axis", "zero", "crank", "rod", "branch"});
@@ -273,20 +274,43 @@ class LimbReader {
     }
     add_passive_joint("joint_base", name, limb.C, at.B);
     add_passive_joint("joint_platform", name, at.B, limb.C);
-    for (const std::string& mass : kMasses)
-      if (const auto given = table_.find(mass)) draft_.scope.of_design(*given, "kg", name);
-    draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts()});
+    draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts(limb, at)});
+    const NamedLimb named = draft_.limbs.back();
+    for (const LimbPart& part : named.parts) add_part_body(table_, named, part, draft_);
     add_links(name, limb, at);
     add_reach(at, model.info.joints.back().unit);
   }
 
   /// Its bodies, as [[body]] names them.
-  std::vector<std::string> parts() const {
-    if (drive_ == "telescope") return {"leg"};
+  std::vector<std::string> names_of_parts() const {
+    if (drive_ == "telescope") return {"cylinder", "piston"};
     if (drive_ == "crank") return {"crank", "rod"};
     if (table_.has("links")) return {"slider", "first_link", "second_link"};
     if (table_.has("rod")) return {"slider", "rod"};
     return {"slider"};
+  }
+  /// The same with their ends. Between parallel revolutes a rod turns about their axis, as its projection does.
+  std::vector<LimbPart> parts(const Limb& limb, const limbs::Ends& at) const {
+    const auto seen = [&](const Vector3& v) { return at.across ? v - *at.across * dot(v, *at.across) : v; };
+    const Vector3 C = limb.elbow.value_or(limb.C);
+    const auto rigid = [&](const std::string& name, const Vector3& from, const Vector3& to, const Term& length) {
+      return LimbPart{name, from, to, seen(to - from) / length, length};
+    };
+    if (drive_ == "telescope") {
+      const Vector3 along = seen(at.B - at.A) / limb.joint;
+      return {{"cylinder", at.A, at.B, along}, {"piston", at.B, at.A, along}};
+    }
+    if (drive_ == "crank")
+      return {rigid("crank", at.A, C, length("crank", "a length")), rigid("rod", C, at.B, length("rod", "a length"))};
+    std::vector<LimbPart> list = {{"slider", limb.S, limb.S, {}}};
+    if (const auto links = table_.find("links")) {
+      const auto lengths = links->elements("two lengths [l_1, l_2]");
+      list.push_back(rigid("first_link", limb.S, C, draft_.scope.of_design(lengths[0], "m", name_)));
+      list.push_back(rigid("second_link", C, at.B, draft_.scope.of_design(lengths[1], "m", name_)));
+    } else if (table_.has("rod")) {
+      list.push_back(rigid("rod", C, at.B, length("rod", "a length")));
+    }
+    return list;
   }
 
   void add_links(const std::string& name, const Limb& limb, const limbs::Ends& at) {

@@ -13,6 +13,7 @@ struct Evaluation {
   Model model;
   graph::Program conditions;  ///< of a pose: joints, domains, margins, angles
   graph::Program joints, closures, links, tests;
+  graph::Program motion, masses;  ///< joints, domains and EquationNodes of a state, after the design; MassCheck
   graph::Program size, length, radius;                        ///< of a design; without outputs: it is not described
   std::vector<graph::Program> derived, lower, upper, middle;  ///< by limit; the others by coordinate
 

@@ -15,19 +15,20 @@ using graph::Groups;
 using graph::Node;
 
 /// Where the graph's inputs are, and the groups that they form: parameters, thresholds and signs of the working mode;
-/// each coordinate; the joints, as variables of the closures.
+/// each coordinate; the joints, as variables of the closures; the coordinates' rates.
 struct Inputs {
   std::size_t parameters = 0, limits = 0, signs = 0, coordinates = 0, joints = 0;
 
   static constexpr std::size_t kMostSigns = 8;
-  static constexpr Groups kDesign = 1, kJoints = 2;
+  static constexpr Groups kDesign = 1, kJoints = 2, kRates = 4U << kMostCoordinates;
   static constexpr Groups coordinate_group(std::size_t i) { return 4U << i; }
 
   std::size_t limit(std::size_t i) const { return parameters + i; }
   std::size_t sign(std::size_t i) const { return limit(limits) + i; }
   std::size_t coordinate(std::size_t i) const { return sign(kMostSigns) + i; }
   std::size_t joint(std::size_t i) const { return coordinate(coordinates) + i; }
-  std::size_t count() const { return joint(kMostJoints); }
+  std::size_t rate(std::size_t i) const { return joint(kMostJoints) + i; }
+  std::size_t count() const { return rate(coordinates); }
 };
 
 /// A named number of a pose or of a design.
@@ -55,6 +56,31 @@ struct DescribedSize {
   std::string unit, meaning;
 };
 
+/// A rigid body by its kinetic energy: mass |centre'|^2 / 2, and moment |follows'|^2 / 2 of each turn.
+struct DescribedBody {
+  struct Turn {
+    std::array<Node, 3> follows;  ///< a direction fixed in the body; about a fixed axis [angle, 0, 0]
+    Node moment;  ///< second moment of the mass along that direction; about a fixed axis the inertia [kg m^2]
+  };
+  std::string name;
+  Node mass;
+  std::array<Node, 3> centre;
+  std::vector<Turn> turns;
+};
+
+/// A number that has to be positive for a design to have masses.
+struct MassCheck {
+  std::string name;  ///< "the mass of rod 11"
+  std::string unit;
+  Node node;
+  bool may_vanish;
+};
+
+/// What the equations of motion are made of, by coordinates and their rates (PoseDynamics); matrices by rows.
+struct EquationNodes {
+  std::vector<Node> J, J_rate_X, M_X, h_X, G_X, J_wrench;
+};
+
 struct Model {
   MechanismInfo info;
   Graph graph;
@@ -76,6 +102,11 @@ struct Model {
   std::vector<std::optional<std::array<Node, 2>>> box;  ///< by coordinate
   std::vector<std::optional<Node>> middle;              ///< by coordinate: where a survey holds it
   std::vector<std::optional<std::size_t>> turns_about;  ///< by coordinate: the axis of a rotation, 0 to 2
+  std::vector<std::array<Node, 3>> turn_axes;           ///< by coordinate: the same in the base's frame; 0: none
+  std::vector<DescribedBody> bodies;
+  std::vector<MassCheck> masses;
+  std::optional<std::array<Node, 3>> wrench_point;  ///< where a wrench acts on the platform
+  std::optional<EquationNodes> equations;           ///< where there are bodies
 
   limbs::Term term(Node node) { return {graph, node}; }
 };

@@ -1,0 +1,201 @@
+// Masses of a mechanism's file: parts of limbs, links, the platform, [[body]].
+//
+// Parts of limbs and links are thin: they turn with the line between their ends and have no spin about it, so that
+// their inertia is one number, across that line about the centre of mass.
+
+#include <algorithm>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/setup/mechanism_draft.hpp"
+#include "engine/setup/sections.hpp"
+
+namespace pkm {
+namespace {
+
+using described::DescribedBody;
+using limbs::Term, limbs::Vector3;
+
+std::array<graph::Node, 3> nodes(const Vector3& v) { return {v[0].node(), v[1].node(), v[2].node()}; }
+
+bool has_ends(const std::string& part) { return part == "crank" || part == "rod" || part.ends_with("_link"); }
+bool is_telescopic(const std::string& part) { return part == "cylinder" || part == "piston"; }
+
+/// A mass or an inertia, which has to be positive.
+Term checked(MechanismDraft& draft, const Term& value, const std::string& name, const std::string& unit,
+             bool may_vanish) {
+  draft.model.masses.push_back({name, unit, value.node(), may_vanish});
+  return value;
+}
+
+struct Mass {
+  Term mass;
+  std::optional<Term> inertia;  ///< where the cross-section says it
+};
+
+/// A tube or a rod of some material.
+Mass mass_of_section(const ConfigValue& section, const Term& length, const std::string& what, MechanismDraft& draft) {
+  section.expect_table("a table { density = .., outer = .., inner = .. }").allow({"density", "outer", "inner"});
+  const auto value = [&](const char* key, const char* unit, const char* expected) {
+    return checked(draft, draft.scope.of_design(section.at(key, expected), unit, what),
+                   "the " + std::string(key == std::string("density") ? key : std::string(key) + " diameter") + " of " +
+                       what,
+                   unit, false);
+  };
+  const Term density = value("density", "kg/m^3", "the material's density: \"2700 kg/m^3\"");
+  const Term outer = value("outer", "m", "the outer diameter");
+  const Term inner = section.has("inner") ? value("inner", "m", "the inner diameter") : draft.zero();
+  const Term mass = density * length * (outer * outer - inner * inner) * (kPi / 4);
+  return {mass, mass * (length * length / 12 + (outer * outer + inner * inner) / 16)};
+}
+
+/// The mass of a limb's part, as its table says it; none: it says nothing.
+std::optional<Mass> mass_of_part(const ConfigValue& table, const LimbPart& part, const std::string& what,
+                                 MechanismDraft& draft) {
+  std::optional<ConfigValue> given;
+  for (const char* way : {"_mass", "_mass_per_length", "_section"}) {
+    const auto value = table.find(part.name + way);
+    if (value && given) throw value->refusal("the mass of the " + part.name + " is also given at " + given->line());
+    if (value) given = value;
+  }
+  if (!given) return {};
+  if (const auto section = table.find(part.name + "_section")) return mass_of_section(*section, *part.length, what, draft);
+  if (const auto per_length = table.find(part.name + "_mass_per_length"))
+    return Mass{draft.scope.of_design(*per_length, "kg/m", what) * *part.length, {}};
+  return Mass{draft.scope.of_design(*given, "kg", what), {}};
+}
+
+Vector3 axis_of(const limbs::Rotation& R, std::size_t k) { return {R[0][k], R[1][k], R[2][k]}; }
+
+/// Three principal values along the platform's axes as turns of a body that turns with it.
+void add_turns_of_platform(const std::array<Term, 3>& inertia, DescribedBody& body, MechanismDraft& draft) {
+  const auto turns = [](const auto& axis) { return axis.has_value(); };
+  const auto& about = draft.model.turns_about;
+  const auto count = std::ranges::count_if(about, turns);
+  const graph::Node zero = draft.zero().node();
+  if (count == 1) {
+    const auto which = static_cast<std::size_t>(std::ranges::find_if(about, turns) - about.begin());
+    const graph::Node angle = draft.model.graph.input(draft.model.inputs.coordinate(which));
+    body.turns.push_back({{angle, zero, zero}, inertia[*about[which]].node()});
+  }
+  if (count <= 1) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Term moment = (inertia[(k + 1) % 3] + inertia[(k + 2) % 3] - inertia[k]) * 0.5;
+    body.turns.push_back({nodes(axis_of(draft.turn, k)), moment.node()});
+  }
+}
+
+std::array<Term, 3> read_inertia(const ConfigValue& value, const std::string& of, MechanismDraft& draft) {
+  constexpr const char* kExpected = "three principal values about the centre of mass [I_1, I_2, I_3]";
+  const auto elements = value.elements(kExpected);
+  if (elements.size() != 3) throw value.error(kExpected);
+  const auto one = [&](std::size_t k) {
+    return checked(draft, draft.scope.of_design(elements[k], "kg m^2", of), "the inertia of " + of, "kg m^2", true);
+  };
+  return {one(0), one(1), one(2)};
+}
+
+}  // namespace
+
+std::vector<std::string> mass_keys(const std::string& part) {
+  std::vector<std::string> keys = {part + "_mass"};
+  if (part != "slider") keys.push_back(part + "_inertia");
+  if (has_ends(part)) keys.insert(keys.end(), {part + "_mass_per_length", part + "_section"});
+  if (is_telescopic(part)) keys.push_back(part + "_centre");
+  return keys;
+}
+
+void add_part_body(const ConfigValue& table, const NamedLimb& limb, const LimbPart& part, MechanismDraft& draft) {
+  const std::string what = part.name + " of " + limb.name;
+  const std::optional<Mass> given = mass_of_part(table, part, what, draft);
+  const auto needs_mass = [&](const std::string& key) {
+    if (const auto alone = table.find(part.name + key); alone && !given)
+      throw alone->refusal("the " + part.name + " has no mass: " + part.name + "_mass is missing");
+  };
+  needs_mass("_inertia");
+  needs_mass("_centre");
+  if (!given) return;
+  const Term mass = checked(draft, given->mass, "the mass of " + what, "kg", part.name == "slider");
+  Vector3 centre = (part.from + part.to) * Term(draft.model.graph, 0.5);
+  if (is_telescopic(part.name)) {
+    const Term along = draft.scope.of_design(
+        table.at(part.name + "_centre", part.name == "cylinder" ? "the distance of its centre of mass from A"
+                                                                : "the distance of its centre of mass from B"),
+        "m", what);
+    centre = part.name == "cylinder" ? part.from + *part.direction * along : part.from - *part.direction * along;
+  }
+  DescribedBody body{what, mass.node(), nodes(centre), {}};
+  std::optional<Term> inertia = given->inertia;
+  if (const auto own = table.find(part.name + "_inertia"))
+    inertia = draft.scope.of_design(*own, "kg m^2", what);
+  else if (!inertia && part.length)
+    inertia = mass * *part.length * *part.length / 12;
+  if (inertia && part.direction)
+    body.turns.push_back({nodes(*part.direction),
+                          checked(draft, *inertia, "the inertia of " + what, "kg m^2", true).node()});
+  draft.model.bodies.push_back(std::move(body));
+}
+
+void add_link_body(const ConfigValue& table, const std::string& name, const Vector3& from, const Vector3& to,
+                   MechanismDraft& draft) {
+  const auto mass = table.find("mass"), inertia = table.find("inertia");
+  if (inertia && !mass) throw inertia->refusal("the link has no mass: mass is missing");
+  if (!mass) return;
+  const Term m = checked(draft, draft.scope.of_design(*mass, "kg", name), "the mass of " + name, "kg", false);
+  DescribedBody body{name, m.node(), nodes((from + to) * Term(draft.model.graph, 0.5)), {}};
+  if (inertia) {
+    const Term I = checked(draft, draft.scope.of_design(*inertia, "kg m^2", name), "the inertia of " + name, "kg m^2",
+                           true);
+    body.turns.push_back({nodes((to - from) / limbs::length(to - from)), I.node()});
+  }
+  draft.model.bodies.push_back(std::move(body));
+}
+
+void read_platform_body(const ConfigValue& platform, MechanismDraft& draft) {
+  const auto mass = platform.find("mass"), centre = platform.find("centre"), inertia = platform.find("inertia");
+  if (inertia && !mass) throw inertia->refusal("the platform has no mass: mass is missing");
+  const Vector3 at = centre ? draft.scope.point(*centre, "centre") : draft.origin;
+  draft.model.wrench_point = nodes(at);
+  if (!mass) return;
+  const Term m =
+      checked(draft, draft.scope.of_design(*mass, "kg", "mass"), "the mass of the platform", "kg", false);
+  DescribedBody body{"platform", m.node(), nodes(at), {}};
+  if (inertia) add_turns_of_platform(read_inertia(*inertia, "the platform", draft), body, draft);
+  draft.model.bodies.push_back(std::move(body));
+}
+
+void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft) {
+  std::vector<LimbPart> turning = links;
+  for (const NamedLimb& limb : draft.limbs)
+    for (LimbPart part : limb.parts) {
+      part.name = limb.name + "." + part.name;
+      turning.push_back(part);
+    }
+  std::vector<std::string> names = {"platform"};
+  for (const LimbPart& part : turning) names.push_back(part.name);
+  for (const ConfigValue& table : tables_of(root, "body")) {
+    table.allow({"name", "centre", "mass", "inertia", "rotation"});
+    const std::string name =
+        new_name(table, "body", draft.model.bodies, "the body's name");
+    const Vector3 centre = read_point(table.at("centre", "a point"), name, draft);
+    const Term mass = checked(draft, draft.scope.of_design(table.at("mass", "the body's mass"), "kg", name),
+                              "the mass of " + name, "kg", true);
+    DescribedBody body{name, mass.node(), nodes(centre), {}};
+    const auto rotation = table.find("rotation");
+    if (rotation) rotation->word(names);
+    if (const auto value = table.find("inertia")) {
+      const std::array<Term, 3> inertia = read_inertia(*value, name, draft);
+      if (rotation && rotation->text("a name") == "platform") {
+        add_turns_of_platform(inertia, body, draft);
+      } else if (rotation) {
+        if (inertia[1].node() != inertia[2].node())
+          throw value->refusal("a body that turns with a link has no spin about it: [along the link, across, across], "
+                               "the last two the same formula");
+        const LimbPart& link = *find_named(turning, rotation->text("a name"));
+        if (link.direction) body.turns.push_back({nodes(*link.direction), inertia[1].node()});
+      }
+    }
+    draft.model.bodies.push_back(std::move(body));
+  }
+}
+
+}  // namespace pkm
