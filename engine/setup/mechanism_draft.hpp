@@ -9,12 +9,20 @@
 
 namespace pkm {
 
-/// A part of a limb: what may have a mass, and what [[body]] calls "arm1.crank".
+/// A part of a limb, or a link: what may have a mass, and what [[body]] calls "arm1.crank".
 struct LimbPart {
-  std::string name;                          ///< "crank", "rod", "slider"
-  limbs::Vector3 from, to;                   ///< its ends
-  std::optional<limbs::Vector3> direction;   ///< from one to the other, of length 1; none: it does not turn
-  std::optional<limbs::Term> length = {};    ///< where it is constant
+  std::string name;                         ///< "crank", "rod", "slider"
+  limbs::Vector3 from, to;                  ///< its ends
+  std::optional<limbs::Term> length = {};   ///< where it is constant
+  std::optional<limbs::Vector3> line = {};  ///< along it, of any length; none: it does not turn
+  /// Where `from` is the end of an arm, or the part is the arm itself.
+  struct OnArm {
+    std::size_t arm;
+    limbs::Vector3 pivot;
+    limbs::Term length;  ///< of the arm
+    bool is_arm;
+  };
+  std::optional<OnArm> on_arm = {};
 };
 
 /// A limb as other sections name it.
@@ -46,7 +54,7 @@ void read_limbs(const ConfigValue& root, MechanismDraft& draft);
 /// Keys of a limb's table that say the mass of a part.
 std::vector<std::string> mass_keys(const std::string& part);
 /// The body of a limb's part, where its table gives it a mass.
-void add_part_body(const ConfigValue& table, const NamedLimb& limb, const LimbPart& part, MechanismDraft& draft);
+void add_part_body(const ConfigValue& table, const std::string& limb, const LimbPart& part, MechanismDraft& draft);
 /// A link with `mass` and `inertia`, thin between two points.
 void add_link_body(const ConfigValue& table, const std::string& name, const limbs::Vector3& from,
                    const limbs::Vector3& to, MechanismDraft& draft);

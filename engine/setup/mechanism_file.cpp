@@ -263,7 +263,7 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
     const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
     draft.model.links.push_back({name, part, nodes(from), nodes(to), radius.node()});
     add_link_body(table, name, from, to, draft);
-    links.push_back({name, from, to, (to - from) / limbs::length(to - from)});
+    links.push_back({.name = name, .from = from, .to = to, .line = to - from});
   }
   return links;
 }

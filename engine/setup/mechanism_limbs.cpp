@@ -276,7 +276,7 @@ class LimbReader {
     add_passive_joint("joint_platform", name, at.B, limb.C);
     draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts(limb, at)});
     const NamedLimb named = draft_.limbs.back();
-    for (const LimbPart& part : named.parts) add_part_body(table_, named, part, draft_);
+    for (const LimbPart& part : named.parts) add_part_body(table_, named.name, part, draft_);
     add_links(name, limb, at);
     add_reach(at, model.info.joints.back().unit);
   }
@@ -289,28 +289,37 @@ class LimbReader {
     if (table_.has("rod")) return {"slider", "rod"};
     return {"slider"};
   }
-  /// The same with their ends. Between parallel revolutes a rod turns about their axis, as its projection does.
-  std::vector<LimbPart> parts(const Limb& limb, const limbs::Ends& at) const {
-    const auto seen = [&](const Vector3& v) { return at.across ? v - *at.across * dot(v, *at.across) : v; };
-    const Vector3 C = limb.elbow.value_or(limb.C);
-    const auto rigid = [&](const std::string& name, const Vector3& from, const Vector3& to, const Term& length) {
-      return LimbPart{name, from, to, seen(to - from) / length, length};
-    };
+  /// The same with their ends.
+  std::vector<LimbPart> parts(const Limb& limb, const limbs::Ends& at) {
     if (drive_ == "telescope") {
-      const Vector3 along = seen(at.B - at.A) / limb.joint;
-      return {{"cylinder", at.A, at.B, along}, {"piston", at.B, at.A, along}};
+      const Vector3 v = at.B - at.A, line = (at.across ? v - *at.across * dot(v, *at.across) : v) / limb.joint;
+      return {{.name = "cylinder", .from = at.A, .to = at.B, .line = line},
+              {.name = "piston", .from = at.A, .to = at.B, .line = line}};
     }
-    if (drive_ == "crank")
-      return {rigid("crank", at.A, C, length("crank", "a length")), rigid("rod", C, at.B, length("rod", "a length"))};
-    std::vector<LimbPart> list = {{"slider", limb.S, limb.S, {}}};
-    if (const auto links = table_.find("links")) {
-      const auto lengths = links->elements("two lengths [l_1, l_2]");
-      list.push_back(rigid("first_link", limb.S, C, draft_.scope.of_design(lengths[0], "m", name_)));
-      list.push_back(rigid("second_link", C, at.B, draft_.scope.of_design(lengths[1], "m", name_)));
+    std::vector<LimbPart> list;
+    if (drive_ == "slider") list.push_back({.name = "slider", .from = limb.S, .to = limb.S});
+    if (limb.arm) {
+      const Term of_arm = drive_ == "crank" ? length("crank", "a length") : link_length(0),
+                 of_rod = drive_ == "crank" ? length("rod", "a length") : link_length(1);
+      const std::vector<std::string> names = names_of_parts();
+      const Vector3 C = limb.S + limb.arm->arm;
+      LimbPart::OnArm on_arm{draft_.model.arms.size(), limb.S, of_arm, true};
+      add_arm(*limb.arm, at, limb);
+      list.push_back({names[names.size() - 2], limb.S, C, of_arm, limb.arm->arm, on_arm});
+      on_arm.is_arm = false;
+      list.push_back({names.back(), C, at.B, of_rod, limb.arm->rod, on_arm});
     } else if (table_.has("rod")) {
-      list.push_back(rigid("rod", C, at.B, length("rod", "a length")));
+      list.push_back({"rod", limb.S, at.B, length("rod", "a length"), at.B - limb.S});
     }
     return list;
+  }
+  Term link_length(std::size_t which) const {
+    return draft_.scope.of_design(table_.find("links")->elements("two lengths [l_1, l_2]")[which], "m", name_);
+  }
+  void add_arm(const limbs::Arm& arm, const limbs::Ends& at, const Limb& limb) {
+    const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
+    draft_.model.arms.push_back({nodes(arm.arm), nodes(arm.axis), nodes(arm.rod), nodes(at.B),
+                                 drive_ == "crank" ? std::optional(limb.joint.node()) : std::nullopt});
   }
 
   void add_links(const std::string& name, const Limb& limb, const limbs::Ends& at) {

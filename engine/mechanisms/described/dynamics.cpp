@@ -1,19 +1,21 @@
 #include "engine/mechanisms/described/dynamics.hpp"
 
+#include <memory>
 #include <stdexcept>
 
 #include "engine/core/unit.hpp"
+#include "engine/math/lanes.hpp"
 
 namespace pkm::described {
 namespace {
 
-/// What a program gives, in the order of its outputs.
-template <class S>
+/// What a program gives, in the order of its outputs. @param value_of_register  [](std::uint32_t)
+template <class ValueOf>
 class Outputs {
  public:
-  Outputs(const graph::Program& program, std::span<const S> registers)
-      : next_(program.outputs().begin()), registers_(registers) {}
-  const S& operator()() { return registers_[*next_++]; }
+  Outputs(const graph::Program& program, ValueOf value_of_register)
+      : next_(program.outputs().begin()), value_(value_of_register) {}
+  auto operator()() { return value_(*next_++); }
   template <SmallMatrix M>
   void fill(M& matrix) {
     for (auto& element : matrix) element = (*this)();
@@ -21,12 +23,12 @@ class Outputs {
 
  private:
   std::vector<std::uint32_t>::const_iterator next_;
-  std::span<const S> registers_;
+  ValueOf value_;
 };
 
 /// @return  whether the pose assembles
-template <class S>
-bool read(const Inputs& at, std::size_t domains, Outputs<S>& next, PoseDynamics<S>& d) {
+template <class S, class ValueOf>
+bool read(const Inputs& at, std::size_t domains, Outputs<ValueOf> next, PoseDynamics<S>& d) {
   const std::size_t n = at.coordinates, m = at.joints;
   d.q = AxisVector<S>(m);
   next.fill(d.q);
@@ -56,7 +58,7 @@ void check_masses(const Evaluation& e, std::span<const S> parameters) {
     const std::span<S> inputs = room.first(at.count()), registers = room.subspan(at.count());
     e.fill_inputs<S>(parameters, no_limits(e.model.info), 0, inputs);
     e.masses.template run_all<S>(inputs, registers);
-    Outputs<S> next(e.masses, registers);
+    Outputs next(e.masses, [registers](std::uint32_t at_register) { return registers[at_register]; });
     for (const MassCheck& check : e.model.masses) {
       const double value = value_of(next());
       if (value > 0 || (check.may_vanish && value == 0)) continue;
@@ -65,9 +67,39 @@ void check_masses(const Evaluation& e, std::span<const S> parameters) {
   });
 }
 
+namespace {
+
+/// States of whole rows side by side.
+void find_row(const Evaluation& e, std::span<const double> registers, std::span<const MotionState<double>> states,
+              double* rows, std::span<PoseDynamics<double>> found) {
+  const Inputs& at = e.model.inputs;
+  const std::size_t count = states.size(), whole = (count + kLanes - 1) / kLanes * kLanes;
+  const auto& inputs = e.motion.stages()[1].inputs;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    double* const row = rows + e.motions->inputs()[i] * graph::kRow;
+    const std::size_t position = inputs[i].position;
+    const bool is_rate = position >= at.rate(0);
+    for (std::size_t k = 0; k < whole; ++k) {  // beyond the last state: it again
+      const MotionState<double>& state = states[std::min(k, count - 1)];
+      row[k] = is_rate ? state.velocity[position - at.rate(0)] : state.pose[position - at.coordinate(0)];
+    }
+  }
+  e.motions->run(registers.data(), rows, whole);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto value = [&, k](std::uint32_t at_register) {
+      const graph::Operand of = e.motions->operand(at_register);
+      return of.row ? rows[of.index * graph::kRow + k] : registers[of.index];
+    };
+    found[k].assembles = read(at, e.model.domains.size(), Outputs(e.motion, value), found[k]);
+  }
+}
+
+}  // namespace
+
 template <class S>
 void find_dynamics(const Evaluation& e, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found) {
+  constexpr std::size_t kFewest = 4;  // that are worth a row
   check_masses(e, parameters);
   const Inputs& at = e.model.inputs;
   with_room<S>(at.count() + e.motion.registers(), [&](std::span<S> room) {
@@ -75,13 +107,23 @@ void find_dynamics(const Evaluation& e, std::span<const S> parameters, std::size
     e.fill_inputs<S>(parameters, no_limits(e.model.info), mode, inputs);
     e.motion.template start<S>(registers);
     e.motion.template run<S>(0, inputs, registers);
+    if constexpr (std::is_same_v<S, double>) {
+      if (states.size() >= kFewest) {
+        const auto rows = std::make_unique_for_overwrite<double[]>(e.motions->slots() * graph::kRow);
+        for (std::size_t first = 0; first < states.size(); first += graph::kRow) {
+          const std::size_t count = std::min(graph::kRow, states.size() - first);
+          find_row(e, registers, states.subspan(first, count), rows.get(), found.subspan(first, count));
+        }
+        return;
+      }
+    }
     for (std::size_t k = 0; k < states.size(); ++k) {
       for (std::size_t i = 0; i < at.coordinates; ++i) {
         inputs[at.coordinate(i)] = states[k].pose[i];
         inputs[at.rate(i)] = states[k].velocity[i];
       }
       e.motion.template run<S>(1, inputs, registers);
-      Outputs<S> next(e.motion, registers);
+      const Outputs next(e.motion, [registers](std::uint32_t at_register) { return registers[at_register]; });
       found[k].assembles = read(at, e.model.domains.size(), next, found[k]);
     }
   });

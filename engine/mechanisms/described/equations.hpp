@@ -1,12 +1,12 @@
 // The equations of motion of a description as nodes of its graph.
 //
-// A body's kinetic energy is the sum of weights times squared rates: of the coordinates of its centre (its mass), of
-// directions fixed in it (second moments of its mass along them). With s(X) for such a number and w for the sum of the
-// weights of all that have the same derivatives,
+// Twice a body's kinetic energy is a sum of weights times products of rates f' g' (DescribedBody). With the derivatives
+// f_X by the coordinates and the acceleration f'' where Xddot = 0,
 //
-//   M_X = sum of w s_X s_X^T,   h_X = sum of w s_X s'' where Xddot = 0,   G_X = g sum of m z_X  (virtual work)
+//   M_X = sum of w (f_X g_X^T + g_X f_X^T) / 2,   h_X = sum of w (f_X g'' + g_X f'') / 2,   G_X = g sum of m z_X
 //
-// so nothing but derivatives of the graph is needed, those of velocities for s'' included.
+// by virtual work, and weights of what has the same derivatives are added first. Nothing but derivatives of the graph
+// is needed; those of arms follow from their turn.
 #pragma once
 
 #include "engine/mechanisms/described/model.hpp"

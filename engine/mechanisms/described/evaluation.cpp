@@ -44,11 +44,12 @@ Evaluation::Evaluation(Model described) : model(std::move(described)) {
   if (const auto& equations = model.equations) {
     std::vector<Node> of_motion = model.joints;
     std::ranges::copy(nodes_of(model.domains), std::back_inserter(of_motion));
-    for (const auto* const list : {&equations->J, &equations->J_rate_X, &equations->M_X, &equations->h_X,
-                                   &equations->G_X, &equations->J_wrench})
+    for (const auto* const list :
+         {&equations->J, &equations->J_rate_X, &equations->M_X, &equations->h_X, &equations->G_X, &equations->J_wrench})
       std::ranges::copy(*list, std::back_inserter(of_motion));
     const std::array<Groups, 2> stages = {Inputs::kDesign, ~Inputs::kDesign};
     motion = Program(graph, of_motion, stages);
+    motions.emplace(motion, 1, motion.outputs());
     std::vector<Node> checked;
     for (const MassCheck& check : model.masses) checked.push_back(check.node);
     masses = Program(graph, checked);

@@ -51,7 +51,7 @@ void InertiaRows::finish(InertiaRoom& room, Survey<double>& to) const {
     for (std::size_t k = count; k < whole; ++k)
       room.rows[each.slot * kRow + k] = room.rows[each.slot * kRow + count - 1];
   stage_->run(room.registers.data(), room.rows.data(), whole);
-  const InertiaRow row{J_.data(), M_X_.data(),      room.registers.data(), room.rows.data(),   n_,
+  const InertiaRow row{J_.data(), M_X_.data(),     room.registers.data(), room.rows.data(), n_,
                        whole,     room.M_q.data(), room.indices.data(),   room.found.data()};
   with_instruction_set([&]<InstructionSet set> { find_joint_inertia<set>(row); });
   auto* const indices = to.find(kCouplingIndex);

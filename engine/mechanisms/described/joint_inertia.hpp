@@ -15,7 +15,7 @@ struct InertiaRow {
   std::size_t n, count;  ///< poses: whole lanes
   double* M_q;           ///< n x n rows of graph::kRow
   double* indices;       ///< n rows
-  double* found;         ///< 1 where they are found; 0: one by one (rows exchanged otherwise than beside it, no value)
+  double* found;         ///< 1 where they are found; 0: one by one (nearly singular, infinite)
 };
 
 /// The same bits as those of joint_inertia() and coupling_indices() of each pose.

@@ -1,4 +1,4 @@
-// Solves as engine/math/small_matrix.hpp does, with the lanes' common choice of leading rows.
+// Solves as engine/math/small_matrix.hpp does.
 #include "engine/dynamics/coupling_indices.hpp"
 #include "engine/math/lanes_functions.hpp"
 #include "engine/mechanisms/described/joint_inertia.hpp"
@@ -19,43 +19,46 @@ template <class L, class Mask>
 }
 
 /// Upper triangle, factors and exchanges of an elimination.
-template <class L, int n>
+template <class L, class Mask, int n>
 struct Eliminated {
   L u[n][n], factor[n][n];
-  int lead[n];
+  int lead[n];       ///< of all lanes; -1: each its own
+  Mask leads[n][n];  ///< by step and row, where each has its own
 
-  /// Takes `u` as it is. False where lanes would choose different rows.
-  [[gnu::always_inline]] inline bool run() {
+  /// Exchanges row k of the columns from `first` on with the row that leads step k.
+  [[gnu::always_inline]] inline void exchange(L (&m)[n][n], int k, int first) const {
+    for (int i = k + 1; i < n; ++i)
+      for (int j = first; j < n && (lead[k] == i || lead[k] < 0); ++j) {
+        const L upper = m[k][j], lower = m[i][j];
+        m[k][j] = lead[k] == i ? lower : select(leads[k][i], lower, upper);
+        m[i][j] = lead[k] == i ? upper : select(leads[k][i], upper, lower);
+      }
+  }
+  /// Takes `u` as it is.
+  [[gnu::always_inline]] inline void run() {
     for (int k = 0; k < n; ++k) {
-      lead[k] = k;
+      L greatest_yet = magnitude(u[k][k]), row(static_cast<double>(k));
       for (int i = k + 1; i < n; ++i) {
-        const auto greater = magnitude(u[i][k]) > magnitude(u[lead[k]][k]);
-        if (all<L>(greater))
-          lead[k] = i;
-        else if (any(greater))
-          return false;
+        const auto greater = magnitude(u[i][k]) > greatest_yet;
+        greatest_yet = select(greater, magnitude(u[i][k]), greatest_yet);
+        row = select(greater, L(static_cast<double>(i)), row);
       }
-      for (int j = k; j < n && lead[k] != k; ++j) {
-        const L kept = u[k][j];
-        u[k][j] = u[lead[k]][j];
-        u[lead[k]][j] = kept;
-      }
+      const double first = least(row);
+      lead[k] = first >= greatest(row) ? static_cast<int>(first) : -1;
+      for (int i = k + 1; i < n && lead[k] < 0; ++i)
+        leads[k][i] = (row >= static_cast<double>(i)) & (row <= static_cast<double>(i));
+      exchange(u, k, k);
       const L inverse = 1.0 / u[k][k];
       for (int i = k + 1; i < n; ++i) {
         factor[i][k] = u[i][k] * inverse;
         for (int j = k + 1; j < n; ++j) u[i][j] = u[i][j] - factor[i][k] * u[k][j];
       }
     }
-    return true;
   }
   /// b becomes X of A X = b.
   [[gnu::always_inline]] inline void solve(L (&b)[n][n]) const {
     for (int k = 0; k < n; ++k) {
-      for (int j = 0; j < n && lead[k] != k; ++j) {
-        const L kept = b[k][j];
-        b[k][j] = b[lead[k]][j];
-        b[lead[k]][j] = kept;
-      }
+      exchange(b, k, 0);
       for (int i = k + 1; i < n; ++i)
         for (int j = 0; j < n; ++j) b[i][j] = b[i][j] - factor[i][k] * b[k][j];
     }
@@ -70,7 +73,7 @@ struct Eliminated {
 /// Lanes from pose k on. False where they need to be found one by one.
 template <class L, int n>
 [[gnu::always_inline]] inline bool find_lanes(const InertiaRow& row, std::size_t k) {
-  Eliminated<L, n> e;
+  Eliminated<L, decltype(L() < L()), n> e;
   L size(0.0), half[n][n], M[n][n];
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
@@ -78,7 +81,7 @@ template <class L, int n>
       half[i][j] = value_at<L>(row.M_X[i * n + j], row, k);
       size += magnitude(e.u[i][j]);
     }
-  if (!e.run()) return false;
+  e.run();
   // is_clearly_regular()
   L beside(0.0), inverse(0.0);
   for (int i = 0; i < n; ++i) {
@@ -113,8 +116,7 @@ template <class L, int n>
 
 template <class L, int n>
 [[gnu::always_inline]] inline void find_row(const InertiaRow& row) {
-  for (std::size_t k = 0; k < row.count; k += kLanes)
-    L(find_lanes<L, n>(row, k) ? 1.0 : 0.0).store(row.found + k);
+  for (std::size_t k = 0; k < row.count; k += kLanes) L(find_lanes<L, n>(row, k) ? 1.0 : 0.0).store(row.found + k);
 }
 
 }  // namespace

@@ -56,16 +56,35 @@ struct DescribedSize {
   std::string unit, meaning;
 };
 
-/// A rigid body by its kinetic energy: mass |centre'|^2 / 2, and moment |follows'|^2 / 2 of each turn.
+/// limbs::Arm, whose rates equations of motion take from there. B is the rod's other end.
+struct DescribedArm {
+  std::array<Node, 3> arm, axis, rod, B;
+  std::optional<Node> joint;  ///< where the turn is a joint
+};
+
+/// A rigid body by twice its kinetic energy: the sum of these.
 struct DescribedBody {
-  struct Turn {
-    std::array<Node, 3> follows;  ///< a direction fixed in the body; about a fixed axis [angle, 0, 0]
-    Node moment;  ///< second moment of the mass along that direction; about a fixed axis the inertia [kg m^2]
+  /// weight f' . g'
+  struct Product {
+    std::array<Node, 3> f, g;
+    Node weight;
+  };
+  /// weight turn'^2
+  struct ArmTurn {
+    std::size_t arm;
+    Node weight;
+  };
+  /// weight |d x d'|^2 / |d|^4: a line turns with d, without spin about it.
+  struct LineTurn {
+    std::array<Node, 3> d;
+    Node weight;
   };
   std::string name;
   Node mass;
-  std::array<Node, 3> centre;
-  std::vector<Turn> turns;
+  std::array<Node, 3> centre;  ///< of mass
+  std::vector<Product> products;
+  std::vector<ArmTurn> arm_turns;
+  std::vector<LineTurn> line_turns;
 };
 
 /// A number that has to be positive for a design to have masses.
@@ -103,6 +122,7 @@ struct Model {
   std::vector<std::optional<Node>> middle;              ///< by coordinate: where a survey holds it
   std::vector<std::optional<std::size_t>> turns_about;  ///< by coordinate: the axis of a rotation, 0 to 2
   std::vector<std::array<Node, 3>> turn_axes;           ///< by coordinate: the same in the base's frame; 0: none
+  std::vector<DescribedArm> arms;
   std::vector<DescribedBody> bodies;
   std::vector<MassCheck> masses;
   std::optional<std::array<Node, 3>> wrench_point;  ///< where a wrench acts on the platform
