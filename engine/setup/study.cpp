@@ -129,7 +129,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
                       "a study, which names such a file in [mechanism] file = \"..\"");
   const ConfigValue root(document, file_name, "");
   root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
-              "report", "reference", "stage", "checkpoint", "final"},
+              "report", "reference", "drive_train", "stage", "checkpoint", "final"},
              "section");
 
   StudyDraft draft{catalogues, find_description, {}, {}};
@@ -137,6 +137,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   draft.study.file_name = file_name;
   read_study_section(root, draft.study);
   read_mechanism(root, draft);
+  read_drive_trains(root, draft);
   read_variables(root, draft);
   read_baseline(root, draft);
   read_workspace(root, draft);

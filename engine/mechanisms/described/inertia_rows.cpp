@@ -9,8 +9,10 @@ namespace pkm::described {
 
 using graph::kRow;
 
-InertiaRows::InertiaRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode)
-    : inputs_(evaluation.model.inputs.count()), n_(evaluation.model.inputs.coordinates) {
+InertiaRows::InertiaRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
+                         const std::vector<double>& rotors)
+    : n_(evaluation.model.inputs.coordinates), rotors_(rotors) {
+  rotors_.resize(n_);
   const Model& model = evaluation.model;
   std::vector<std::optional<double>> signs(model.inputs.sign(0));
   for (const double sign : model.signs[mode]) signs.emplace_back(sign);
@@ -51,8 +53,16 @@ void InertiaRows::finish(InertiaRoom& room, Survey<double>& to) const {
     for (std::size_t k = count; k < whole; ++k)
       room.rows[each.slot * kRow + k] = room.rows[each.slot * kRow + count - 1];
   stage_->run(room.registers.data(), room.rows.data(), whole);
-  const InertiaRow row{J_.data(), M_X_.data(),     room.registers.data(), room.rows.data(), n_,
-                       whole,     room.M_q.data(), room.indices.data(),   room.found.data()};
+  const InertiaRow row{.J = J_.data(),
+                       .M_X = M_X_.data(),
+                       .registers = room.registers.data(),
+                       .rows = room.rows.data(),
+                       .n = n_,
+                       .count = whole,
+                       .rotors = rotors_.data(),
+                       .M_q = room.M_q.data(),
+                       .indices = room.indices.data(),
+                       .found = room.found.data()};
   with_instruction_set([&]<InstructionSet set> { find_joint_inertia<set>(row); });
   auto* const indices = to.find(kCouplingIndex);
   const bool others = std::ranges::any_of(
@@ -81,7 +91,9 @@ AxisMatrix<double> InertiaRows::one_by_one(std::size_t pose, const InertiaRoom& 
     d.J[i] = value(J_[i]);
     d.M_X[i] = value(M_X_[i]);
   }
-  return joint_inertia(d);
+  AxisMatrix<double> M_q = joint_inertia(d);
+  for (std::size_t i = 0; i < n_; ++i) M_q(i, i) += rotors_[i];
+  return M_q;
 }
 
 }  // namespace pkm::described

@@ -18,7 +18,9 @@ struct InertiaRoom {
 class InertiaRows {
  public:
   /// @param evaluation  of a model with bodies
-  InertiaRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode);
+  /// @param rotors      Demand::rotors
+  InertiaRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
+              const std::vector<double>& rotors);
 
   /// Computes what no swept coordinate changes. @param inputs  of the design, with held coordinates
   void start(const std::vector<double>& inputs, InertiaRoom& room) const;
@@ -33,7 +35,8 @@ class InertiaRows {
     std::size_t number;
     std::uint32_t slot;
   };
-  std::size_t inputs_, n_;
+  std::size_t n_;
+  std::vector<double> rotors_;
   graph::Program program_;
   std::optional<graph::RowStage> stage_;
   std::vector<Coordinate> coordinates_;  ///< swept ones that the program uses

@@ -13,6 +13,7 @@ struct InertiaRow {
   const graph::Operand *J, *M_X;  ///< n x n, by rows
   const double *registers, *rows;
   std::size_t n, count;  ///< poses: whole lanes
+  const double* rotors;  ///< n numbers, added to the diagonal of M_q
   double* M_q;           ///< n x n rows of graph::kRow
   double* indices;       ///< n rows
   double* found;         ///< 1 where they are found; 0: one by one (nearly singular, infinite)

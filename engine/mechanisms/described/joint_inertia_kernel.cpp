@@ -99,6 +99,7 @@ template <class L, int n>
   L nothing(0.0), smallest = M[0][0];  // 0 times finite numbers
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < i; ++j) M[i][j] = M[j][i] = (M[i][j] + M[j][i]) * 0.5;
+    M[i][i] = M[i][i] + row.rotors[i];
     for (int j = 0; j <= i; ++j) nothing += M[i][j] * 0.0;
     smallest = lesser(smallest, M[i][i]);
   }

@@ -82,6 +82,7 @@ class DescribedMechanism final : public Mechanism,
                                                const Demand& demand) const override {
     return prepare_voxels(*this, e_, plan, voxels, demand);
   }
+  bool take_rotors() const override { return true; }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {
     return influence_at(e_, parameters, pose, number_of_mode(info(), mode));

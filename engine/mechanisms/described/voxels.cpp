@@ -32,7 +32,7 @@ class DescribedVoxels final : public VoxelSurveyor {
     if (demand.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
-    if (demand.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_);
+    if (demand.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, demand.rotors);
   }
 
   void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
