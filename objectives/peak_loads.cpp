@@ -232,7 +232,8 @@ std::string force_unit(const EntryContext& context) {
 Refusal refuse_without_drive_trains(const std::string& objective, const Mechanism& mechanism) {
   if (Refusal reason = refuse_without_dynamics(objective, mechanism)) return reason;
   if (mechanism.drive_trains()) return {};
-  return "objective " + objective + " needs drive trains: [[drive_train]] in the study";
+  return "objective " + objective + " needs drive trains, and mechanism " + mechanism.info().name +
+         " has none; a study gives it some in [[drive_train]]";
 }
 
 std::vector<OptionSpec> torque_options() {

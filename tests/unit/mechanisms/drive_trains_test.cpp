@@ -235,7 +235,7 @@ TEST(DriveTrainStudy, MistakesAreNamed) {
   EXPECT_THAT(message_of("[[drive_train]]\njoint = \"all\"\nlead = 0\n"), HasSubstr("a number > 0 m"));
   EXPECT_THAT(message_of(kDrives + "gera = 3\n"), HasSubstr("did you mean 'gear'?"));
   EXPECT_THAT(message_of("[[objective]]\ntype = \"motor-torque\"\nmotion = \"cycle\"\n"),
-              HasSubstr("objective motor-torque needs drive trains: [[drive_train]] in the study"));
+              HasSubstr("objective motor-torque needs drive trains, and mechanism 3crr-r-cru has none"));
 }
 
 }  // namespace
