@@ -11,7 +11,10 @@
 #include "benchmarks/peers/voxel_loop.hpp"
 #include "benchmarks/timing.hpp"
 #include "engine/core/team.hpp"
+#include "engine/mechanism/drive_along.hpp"
+#include "engine/mechanisms/all.hpp"
 #include "engine/setup/mechanism_file.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/survey_set.hpp"
 
 namespace pkm::benchmarks {
@@ -134,6 +137,69 @@ BENCHMARK_CAPTURE(grid, delta, "rotary-delta")
     ->RangeMultiplier(2)
     ->Range(32, 256)
     ->Unit(benchmark::kMicrosecond);
+
+/// A mechanism of a file, or "built-in NAME".
+const Mechanism& called(const std::string& name) {
+  const std::string built_in = "built-in ";
+  if (!name.starts_with(built_in)) return described(name);
+  return **std::ranges::find_if(all_mechanisms(),
+                                [&](const auto& m) { return m->info().name == name.substr(built_in.size()); });
+}
+SurveyPlan plan_of_60_cubed(const Mechanism& mechanism) {
+  SurveyPlan plan{.method = VoxelOptions{.cells = {60, 60, 60}}, .held = {}, .limits = no_limits(mechanism.info())};
+  for (std::size_t i = 0; i < mechanism.info().limits.size(); ++i)
+    if (mechanism.info().limits[i].name == "s_min") plan.limits.given[i] = 0.2;
+  return plan;
+}
+
+// M_q and coupling indices of every feasible cell of 60^3; `per_pose` is the time of one.
+void coupling(benchmark::State& state, const std::string& name) {
+  const WithoutTeam alone;
+  const Mechanism& mechanism = called(name);
+  const auto surveyor = prepare_survey(mechanism, plan_of_60_cubed(mechanism), {.fields = {&kCouplingIndex}});
+  const std::vector<double> design = nominal(mechanism);
+  Scratch scratch;
+  Survey<double> result;
+  for (auto _ : state) {
+    surveyor->survey(design, scratch, result);
+    benchmark::DoNotOptimize(result.weight.data());
+  }
+  state.counters["per_pose"] =
+      benchmark::Counter(static_cast<double>(result.feasible_cells),
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(coupling, built_in, "built-in 3crr-r-cru")->Name("described/coupling/built-in_3crr-r-cru");
+BENCHMARK_CAPTURE(coupling, crr, "3crr-r-cru")->Name("described/coupling/3crr-r-cru");
+BENCHMARK_CAPTURE(coupling, delta, "rotary-delta")->Name("described/coupling/rotary-delta");
+
+// Drive forces of states along a motion; `per_pose` is the time of one.
+void inverse_dynamics(benchmark::State& state, const std::string& name) {
+  const Mechanism& mechanism = called(name);
+  const std::vector<double> design = nominal(mechanism);
+  Survey<double> found;
+  survey_once<double>(
+      *prepare_survey(mechanism, plan_of_60_cubed(mechanism), {.fields = {&kCouplingIndex}, .poses = true}), design,
+      found);
+  std::vector<MotionSample> samples(1024);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].pose = found.pose[k * 7919 % found.pose.size()];
+    samples[k].velocity = samples[k].pose * 0.5;
+    samples[k].acceleration = samples[k].pose * 3.0;
+  }
+  DriveScratch<double> scratch;
+  for (auto _ : state) {
+    double sum = 0;
+    drive_along<double>(*mechanism.dynamics(), design, mechanism.info().modes.front(), samples, {}, scratch,
+                        [&](std::size_t, const Drive<double>& drive) { sum += drive.forces[0]; });
+    benchmark::DoNotOptimize(sum);
+  }
+  state.counters["per_pose"] = benchmark::Counter(
+      static_cast<double>(samples.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(inverse_dynamics, built_in, "built-in 3crr-r-cru")
+    ->Name("described/inverse_dynamics/built-in_3crr-r-cru");
+BENCHMARK_CAPTURE(inverse_dynamics, crr, "3crr-r-cru")->Name("described/inverse_dynamics/3crr-r-cru");
+BENCHMARK_CAPTURE(inverse_dynamics, delta, "rotary-delta")->Name("described/inverse_dynamics/rotary-delta");
 
 }  // namespace
 }  // namespace pkm::benchmarks

@@ -1,5 +1,6 @@
-// Greatest magnitude of an actuator's force, or of its power (force times speed, driving or braking), along a motion,
-// over its samples. Gradient solvers see the power mean of the magnitudes (power_mean).
+// Greatest magnitude along a motion, over its samples, of an actuator's force, of its power (force times speed, driving
+// or braking), and with drive trains of its motor's torque and speed; of the torque also the root of the mean square.
+// Gradient solvers see the power mean of the magnitudes (power_mean).
 //
 // They look at the design alone: no survey, and none of the limits of poses, which say where a workspace ends. What a
 // motion needs of the workspace is the affair of constraints. Where the mechanism does not assemble somewhere along the
@@ -20,7 +21,7 @@ namespace pkm {
 namespace {
 
 /// What is looked at of each actuator.
-enum class Load { force, power };
+enum class Load { force, power, motor_torque, motor_speed };
 
 const NamedMotion& motion_of(const EntryContext& context) {
   const std::string& name = context.options.word("motion");
@@ -63,7 +64,8 @@ class AlongMotion final : public Quantity {
         wrench_(wrench_of(context.options)),
         joint_(context.options.word("joint")),
         sharpness_(context.options.number("sharpness")),
-        load_(load) {
+        load_(load),
+        by_rms_(load == Load::motor_torque && context.options.word("statistic") == "rms") {
     for (const MotionSample& at : samples_)
       for (std::size_t i = 0; i < at.pose.size(); ++i)
         if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
@@ -74,6 +76,7 @@ class AlongMotion final : public Quantity {
   double value(const DesignView<double>& design) const override {
     std::vector<double>& loads = design.scratch.get<Loads<double>>().of_samples;
     if (collect(design, loads) < samples_.size()) return std::numeric_limits<double>::quiet_NaN();
+    if (by_rms_) take_roots_of_mean_squares(loads);
     double greatest = 0;
     for (const double load : loads) {
       if (!std::isfinite(load)) return load;
@@ -86,6 +89,7 @@ class AlongMotion final : public Quantity {
     const bool known = collect(design, loads) == samples_.size() &&
                        std::ranges::all_of(loads, [](const Dual4& load) { return std::isfinite(load.a); });
     if (!known) return Dual4(std::numeric_limits<double>::quiet_NaN());
+    if (by_rms_) take_roots_of_mean_squares(loads);
     return power_mean(loads, sharpness_);
   }
   std::string why_undefined(const DesignView<double>& design) const override {
@@ -113,7 +117,7 @@ class AlongMotion final : public Quantity {
     if (has_team()) return collect_with_team(design, loads);
     return drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
                           design.scratch.template get<DriveScratch<S>>(),
-                          [&](std::size_t, const Drive<S>& drive) { append(drive, loads); });
+                          [&](std::size_t, const Drive<S>& drive) { append(design, drive, loads); });
   }
   template <class S>
   std::size_t collect_with_team(const DesignView<S>& design, std::vector<S>& loads) const {
@@ -125,9 +129,10 @@ class AlongMotion final : public Quantity {
         typename Loads<S>::Batch& batch = room.batches[number];
         batch.loads.clear();
         const auto some = std::span(samples_).subspan(number * kDriveBatch);
-        batch.assembled = drive_along<S>(
-            *design.mechanism.dynamics(), design.parameters, mode_, some.first(std::min(kDriveBatch, some.size())),
-            wrench_, room.of_workers[worker], [&](std::size_t, const Drive<S>& drive) { append(drive, batch.loads); });
+        batch.assembled =
+            drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_,
+                           some.first(std::min(kDriveBatch, some.size())), wrench_, room.of_workers[worker],
+                           [&](std::size_t, const Drive<S>& drive) { append(design, drive, batch.loads); });
       }
     });
     std::size_t assembled = 0;
@@ -140,14 +145,32 @@ class AlongMotion final : public Quantity {
   }
   /// Appends those of one sample, of the joints looked at.
   template <class S>
-  void append(const Drive<S>& drive, std::vector<S>& loads) const {
+  void append(const DesignView<S>& design, const Drive<S>& drive, std::vector<S>& loads) const {
     S total(0.0);
     for (std::size_t i = 0; i < drive.forces.size(); ++i) {
-      const S load = load_ == Load::force ? drive.forces[i] : drive.power(i);
+      const S load = load_of(design, drive, i);
       total += load;
       if (joint_ == "worst" || joint_[0] == static_cast<char>('1' + i)) loads.push_back(magnitude(load));
     }
     if (joint_ == "total") loads.push_back(magnitude(total));
+  }
+  template <class S>
+  S load_of(const DesignView<S>& design, const Drive<S>& drive, std::size_t joint) const {
+    if (load_ == Load::force) return drive.forces[joint];
+    if (load_ == Load::power) return drive.power(joint);
+    const DriveTrain& train = (*design.mechanism.drive_trains())[joint];
+    return load_ == Load::motor_torque ? drive.torque(train, joint) : drive.speeds[joint] * train.ratio;
+  }
+  /// Of each joint over the samples, in place of its loads.
+  template <class S>
+  void take_roots_of_mean_squares(std::vector<S>& loads) const {
+    const std::size_t joints = loads.size() / samples_.size();
+    for (std::size_t j = 0; j < joints; ++j) {
+      S sum(0.0);
+      for (std::size_t k = j; k < loads.size(); k += joints) sum += loads[k] * loads[k];
+      loads[j] = root_or_zero(S(sum / static_cast<double>(samples_.size())));
+    }
+    loads.resize(joints);
   }
 
   std::string name_;
@@ -157,6 +180,7 @@ class AlongMotion final : public Quantity {
   std::string joint_;
   double sharpness_;
   Load load_;
+  bool by_rms_;
 };
 
 /// @param joints  the words that `joint` knows besides numbers; the first is the default
@@ -205,26 +229,49 @@ std::string force_unit(const EntryContext& context) {
   return turns ? "N m" : "N";
 }
 
+Refusal refuse_without_drive_trains(const std::string& objective, const Mechanism& mechanism) {
+  if (Refusal reason = refuse_without_dynamics(objective, mechanism)) return reason;
+  if (mechanism.drive_trains()) return {};
+  return "objective " + objective + " needs drive trains, and mechanism " + mechanism.info().name +
+         " has none; a study gives it some in [[drive_train]]";
+}
+
+std::vector<OptionSpec> torque_options() {
+  std::vector<OptionSpec> options = load_options({"worst"});
+  options.push_back({.name = "statistic",
+                     .kind = OptionKind::word,
+                     .initial = std::string("peak"),
+                     .choices = {"peak", "rms"},
+                     .meaning = "the greatest, or the root of the mean square over the samples"});
+  return options;
+}
+
 /// @param what  "peak force", for listings: "peak force of joint 2 along the motion pick"
 ObjectiveEntry load_entry(Load load, const std::string& what, const std::string& meaning,
-                          const std::vector<std::string>& joints, std::string (*unit)(const EntryContext&)) {
+                          const std::vector<OptionSpec>& options, std::string (*unit)(const EntryContext&)) {
   std::string name = what;
   std::ranges::replace(name, ' ', '-');
+  const bool of_motor = load == Load::motor_torque || load == Load::motor_speed;
   return {
       .name = name,
       .meaning = meaning,
       .direction = Direction::minimise,
-      .options = load_options(joints),
+      .options = options,
       .unit = unit,
-      .refusal = [name](const Mechanism& mechanism) { return refuse_without_dynamics(name, mechanism); },
+      .refusal =
+          [name, of_motor](const Mechanism& mechanism) {
+            return of_motor ? refuse_without_drive_trains(name, mechanism) : refuse_without_dynamics(name, mechanism);
+          },
       .make = [load](const EntryContext& context) { return std::make_unique<AlongMotion>(context, load); },
       .detail =
           [what](const EntryContext& context) {
             const std::string& joint = context.options.word("joint");
+            refuse_unknown_joint(context.mechanism, joint);
             const std::string of = joint == "worst"   ? "the worst joint"
                                    : joint == "total" ? "all joints together"
                                                       : "joint " + joint;
-            return what + " of " + of + " along the motion " + context.options.word("motion");
+            const bool rms = context.options.has("statistic") && context.options.word("statistic") == "rms";
+            return (rms ? "RMS " : "") + what + " of " + of + " along the motion " + context.options.word("motion");
           },
       .range = not_negative,
       .reads_survey = false,
@@ -234,10 +281,14 @@ ObjectiveEntry load_entry(Load load, const std::string& what, const std::string&
 }  // namespace
 
 std::vector<ObjectiveEntry> peak_objectives() {
-  return {
-      load_entry(Load::force, "peak force", "greatest force of the actuators along a motion", {"worst"}, force_unit),
-      load_entry(Load::power, "peak power", "greatest power of the actuators along a motion, driving or braking",
-                 {"worst", "total"}, [](const EntryContext&) { return std::string("W"); })};
+  return {load_entry(Load::force, "peak force", "greatest force of the actuators along a motion",
+                     load_options({"worst"}), force_unit),
+          load_entry(Load::power, "peak power", "greatest power of the actuators along a motion, driving or braking",
+                     load_options({"worst", "total"}), [](const EntryContext&) { return std::string("W"); }),
+          load_entry(Load::motor_torque, "motor torque", "torque of the motors along a motion, with drive trains",
+                     torque_options(), [](const EntryContext&) { return std::string("N m"); }),
+          load_entry(Load::motor_speed, "motor speed", "greatest speed of the motors along a motion, with drive trains",
+                     load_options({"worst"}), [](const EntryContext&) { return std::string("rad/s"); })};
 }
 
 }  // namespace pkm

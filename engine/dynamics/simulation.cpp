@@ -32,7 +32,7 @@ double largest(const AxisVector<double>& x) {
 /// One state of a step on its way, and the powers there [W].
 struct Stage {
   AxisVector<double> velocity, acceleration;
-  double drives = 0, weight = 0, wrench = 0;
+  double drives = 0, friction = 0, weight = 0, wrench = 0;
 };
 
 class Integrator {
@@ -52,6 +52,7 @@ class Integrator {
       to.pose += stages[i].velocity * weight;
       to.velocity += stages[i].acceleration * weight;
       to.work_of_drives += weight * stages[i].drives;
+      to.work_of_friction += weight * stages[i].friction;
       to.work_of_weight += weight * stages[i].weight;
       to.work_of_wrench += weight * stages[i].wrench;
     }
@@ -63,7 +64,7 @@ class Integrator {
     const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
     if (!d.assembles) return at(state.time) + kLeavesReach;
     if (is_singular(d.J)) return at(state.time) + "the mechanism is in a singularity";
-    state.acceleration = acceleration(d, setup_.forces(state.time), setup_.wrench);
+    state.acceleration = acceleration(d, at_joints(d, state.time, state.velocity).first, setup_.wrench);
     state.kinetic_energy = kinetic_energy(d, state.velocity);
     if (!std::isfinite(largest(state.acceleration))) return at(state.time) + "the mechanism has no finite acceleration";
     const std::string refused = setup_.refuse ? setup_.refuse(state.pose) : std::string();
@@ -101,13 +102,22 @@ class Integrator {
     return at(from.time) + "the accelerations do not settle" + kOddOrLong;
   }
 
+  /// What is left of the actuators' forces, and friction.
+  std::pair<AxisVector<double>, AxisVector<double>> at_joints(const PoseDynamics<double>& d, double time,
+                                                              const AxisVector<double>& velocity) const {
+    const AxisVector<double> tau = setup_.forces(time);
+    const AxisVector<double> friction = setup_.friction ? setup_.friction(d.J * velocity) : tau * 0.0;
+    return {tau - friction, friction};
+  }
   bool evaluate(double time, const AxisVector<double>& pose, const AxisVector<double>& velocity, Stage& stage) const {
     const PoseDynamics<double> d = setup_.dynamics({pose, velocity});
     if (!d.assembles) return false;
-    const AxisVector<double> tau = setup_.forces(time);
+    const auto [forces, friction] = at_joints(d, time, velocity);
+    const AxisVector<double> speeds = d.J * velocity;
     stage.velocity = velocity;
-    stage.acceleration = acceleration(d, tau, setup_.wrench);
-    stage.drives = dot(tau, d.J * velocity);
+    stage.acceleration = acceleration(d, forces, setup_.wrench);
+    stage.friction = -dot(friction, speeds);
+    stage.drives = dot(forces + friction, speeds);
     stage.weight = -dot(d.G_X, velocity);
     stage.wrench = dot(transpose(d.J_wrench) * setup_.wrench, velocity);
     return true;
@@ -137,9 +147,10 @@ Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose
     result.stopped = integrator.step(state, end, next);
     if (!result.stopped.empty()) return result;
     result.turned_over += std::fabs(next.work_of_drives - state.work_of_drives) +
+                          std::fabs(next.work_of_friction - state.work_of_friction) +
                           std::fabs(next.work_of_weight - state.work_of_weight) +
                           std::fabs(next.work_of_wrench - state.work_of_wrench);
-    const double work = next.work_of_drives + next.work_of_weight + next.work_of_wrench;
+    const double work = next.work_of_drives + next.work_of_friction + next.work_of_weight + next.work_of_wrench;
     const double imbalance = std::fabs(next.kinetic_energy - at_first - work);
     if (!(imbalance <= setup.tolerance * result.turned_over)) {
       result.stopped = at(end) + "the energy is no longer conserved" + kOddOrLong;

@@ -2,8 +2,9 @@
 //
 // The equations of motion are integrated by Gauss' method of three stages (order 6, implicit, symmetric: run backwards
 // it returns to where it began, so the energy does not drift as it does with explicit methods). Along with the state it
-// adds up the work of the actuators, of the weight and of the wrench by the same rule. What the kinetic energy differs
-// from their sum is the error of the integration: a run ends, with a sentence, where it exceeds the tolerance.
+// adds up the work of the actuators, of friction, of the weight and of the wrench by the same rule. What the kinetic
+// energy differs from their sum is the error of the integration: a run ends, with a sentence, where it exceeds the
+// tolerance.
 //
 // Source of the method: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.7, table 7.4.
 #pragma once
@@ -22,12 +23,15 @@ struct SimulationState {
   AxisVector<double> pose, velocity, acceleration;
   double kinetic_energy = 0;                                          ///< [J]
   double work_of_drives = 0, work_of_weight = 0, work_of_wrench = 0;  ///< since the beginning [J]
+  double work_of_friction = 0;                                        ///< <= 0
 };
 
 struct SimulationSetup {
   std::function<PoseDynamics<double>(const MotionState<double>&)> dynamics;
   std::function<AxisVector<double>(double time)> forces;  ///< tau [N] at a time [s]
-  Wrench<double> wrench;                                  ///< on the platform, the same all the time
+  /// Forces against the joints' motion at their speeds [N, N m]; none: there is no friction.
+  std::function<AxisVector<double>(const AxisVector<double>& speeds)> friction;
+  Wrench<double> wrench;  ///< on the platform, the same all the time
   /// "" or a sentence saying why a pose ends the run (a limit of the mechanism); none: nothing ends it.
   std::function<std::string(const Pose<double>&)> refuse;
   double duration = 0;      ///< [s], > 0

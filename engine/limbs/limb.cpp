@@ -54,12 +54,13 @@ Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, c
   // the elbow: along the line between the outer ends of the links, and beside it
   const Term along = (distance_2 + l_1 * l_1 - l_2 * l_2) / (distance * 2.0);
   const Term beside = branch * sqrt(l_1 * l_1 - along * along);
-  const Vector3 slide = ends.A + e * s;
+  const Vector3 slide = ends.A + e * s, arm = (aside * along - cross(axis, aside) * beside) / distance;
   return {.joint = s,
           .conditions = {{"reaches", "m", l_1 + l_2 - distance}, {"unfolds", "m", distance - abs(l_1 - l_2)}},
           .closure = s - q,
-          .C = slide + (aside * along - cross(axis, aside) * beside) / distance,
-          .S = slide};
+          .C = slide + arm,
+          .S = slide,
+          .arm = Arm{arm, axis, aside - arm}};
 }
 
 Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,
@@ -71,11 +72,15 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
   const Term angle = atan2(w, u) + branch * acos(k / h);
   const Term joint = middle + call(graph::turn(), angle - middle);
   const auto arm = [&](const Term& at) { return zero * (crank * cos(at)) + beside * (crank * sin(at)); };
+  // cosine and sine of phi + branch acos(k / h), times h^2
+  const Term beside_k = branch * sqrt(h * h - k * k), cosine = u * k - w * beside_k, sine = w * k + u * beside_k;
+  const Vector3 to_C = (zero * cosine + beside * sine) * (crank / (h * h));
   Limb limb = {.joint = joint,
                .conditions = {{"reaches", "m", h - k}, {"unfolds", "m", h + k}},
                .closure = rod_closure(v - arm(q), rod),
                .C = ends.A + arm(joint),
-               .S = ends.A};
+               .S = ends.A,
+               .arm = Arm{to_C, axis, v - to_C}};
   if (!range) return limb;
   const Term pi(q.graph(), kPi);
   const Term from = call(graph::operation("max"), (*range)[0], middle - pi);

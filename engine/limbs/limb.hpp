@@ -33,6 +33,13 @@ struct CrankRange {
   Term branch;
 };
 
+/// A link of constant length that turns about a pivot, and the rod from its end to B: rates follow from them without
+/// angles, arm' = turn' axis x arm with turn' = rod . B' / rod . (axis x arm). The pivot moves along the axis at most.
+struct Arm {
+  Vector3 arm;        ///< from the pivot to C, by roots alone
+  Vector3 axis, rod;  ///< axis: unit vector
+};
+
 struct Limb {
   Term joint;                         ///< undefined where a condition is < 0
   std::vector<Condition> conditions;  ///< for it to assemble
@@ -41,6 +48,7 @@ struct Limb {
   Vector3 C;  ///< where the rod begins: the crank's end, the elbow, the slide; of a telescope A
   Vector3 S;  ///< the slide; of cranks and telescopes A
   std::optional<CrankRange> crank_range{};
+  std::optional<Arm> arm{};
 };
 
 /// The ends of a limb.

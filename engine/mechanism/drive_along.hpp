@@ -18,6 +18,11 @@ struct Drive {
   AxisVector<S> forces;                         ///< tau [N, N m]; NaN where J is singular to working precision
 
   S power(std::size_t joint) const { return forces[joint] * speeds[joint]; }  ///< > 0: the actuator drives [W]
+  /// Torque of the joint's motor [N m]. @param train  whose reflected inertia is in the forces
+  S torque(const DriveTrain& train, std::size_t joint) const {
+    const S bare = forces[joint] - accelerations[joint] * train.reflected();
+    return train.torque(bare, speeds[joint], accelerations[joint]);
+  }
 };
 
 /// Room for the states that the mechanism is asked for at once.

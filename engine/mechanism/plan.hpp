@@ -78,6 +78,7 @@ struct Demand {
   bool poses = false;                           ///< where the samples are, of those of inertia
   std::optional<double> characteristic_length;  ///< of all fields that need no inertia [m]; none: the mechanism's own
   std::string mode;                             ///< working mode of those that do; "": the mechanism's default
+  std::vector<double> rotors;                   ///< by joint, what drive trains add to M_q; empty: nothing
 
   bool has(const PoseQuantity& quantity) const { return std::ranges::find(fields, &quantity) != fields.end(); }
   void add(const PoseQuantity& quantity) {

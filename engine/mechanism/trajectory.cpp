@@ -15,6 +15,7 @@ bool is_finite(const AxisVector<double>& x) {
 TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::size_t joints) {
   TrajectorySummary s;
   s.peak_force = s.rms_force = s.peak_power = AxisVector<double>(joints);
+  s.peak_torque = s.rms_torque = s.peak_motor_speed = AxisVector<double>(joints);
   s.has_forces = std::ranges::all_of(points, [](const auto& p) { return p.forces.has_value(); });
   const auto n = static_cast<double>(points.size());
   double drawn_before = 0, total_before = 0;
@@ -33,6 +34,10 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::siz
       s.peak_power[i] = std::fmax(s.peak_power[i], std::fabs(power));
       total += power;
       drawn += std::fmax(power, 0);
+      if (!p.torques) continue;
+      s.peak_torque[i] = std::fmax(s.peak_torque[i], std::fabs((*p.torques)[i]));
+      s.rms_torque[i] += (*p.torques)[i] * (*p.torques)[i] / n;
+      s.peak_motor_speed[i] = std::fmax(s.peak_motor_speed[i], std::fabs((*p.motor_speeds)[i]));
     }
     s.peak_total_power = k == 0 ? total : std::fmax(s.peak_total_power, total);
     s.least_total_power = k == 0 ? total : std::fmin(s.least_total_power, total);
@@ -45,6 +50,7 @@ TrajectorySummary summarise(const std::vector<TrajectoryPoint>& points, std::siz
     drawn_before = drawn;
   }
   for (double& force : s.rms_force) force = std::sqrt(force);
+  for (double& torque : s.rms_torque) torque = std::sqrt(torque);
   return s;
 }
 
@@ -66,6 +72,7 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
                   double phase) {
   const MechanismInfo& info = mechanism.info();
   const Dynamics* const dynamics = no_joint_forces(mechanism) ? nullptr : mechanism.dynamics();
+  const DriveTrains* const trains = mechanism.drive_trains();
   const Velocities* const velocities = mechanism.velocities();
   DriveScratch<double> scratch;
   Trajectory trajectory;
@@ -93,6 +100,12 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
         point.forces = drive.forces;
         point.power = AxisVector<double>(drive.forces.size());
         for (std::size_t i = 0; i < drive.forces.size(); ++i) (*point.power)[i] = drive.power(i);
+        if (!trains) return;
+        point.torques = point.motor_speeds = AxisVector<double>(drive.forces.size());
+        for (std::size_t i = 0; i < drive.forces.size(); ++i) {
+          (*point.torques)[i] = drive.torque((*trains)[i], i);
+          (*point.motor_speeds)[i] = drive.speeds[i] * (*trains)[i].ratio;
+        }
       };
       drive_along<double>(*dynamics, parameters, mode, {&at, 1}, wrench, scratch, visit);
     } else if (velocities && report.assembles) {

@@ -20,18 +20,20 @@ struct TrajectoryPoint {
   std::string reason;  ///< why it is not; "" when feasible
   std::optional<double> conditioning;
   std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot, qddot
-  std::optional<AxisVector<double>> forces, power;  ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
-  std::optional<ChainReport> chain;                 ///< of the auxiliary chain
+  std::optional<AxisVector<double>> forces, power;          ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
+  std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, with drive trains [N m, rad/s]
+  std::optional<ChainReport> chain;                         ///< of the auxiliary chain
 };
 
 /// Over the samples that have the numbers; the rest is told by `infeasible`.
 struct TrajectorySummary {
   std::size_t infeasible = 0;
-  std::optional<AxisVector<double>> peak_speed;        ///< greatest |qdot| [m/s, rad/s]; absent when no sample has any
-  bool has_forces = false;                             ///< of every sample; the following are set
-  AxisVector<double> peak_force, rms_force;            ///< greatest |tau|; root of the mean square over the samples [N]
-  AxisVector<double> peak_power;                       ///< greatest |tau qdot|, driving or braking [W]
-  double peak_total_power = 0, least_total_power = 0;  ///< of the sum over the joints [W]
+  std::optional<AxisVector<double>> peak_speed;  ///< greatest |qdot| [m/s, rad/s]; absent when no sample has any
+  bool has_forces = false;                       ///< of every sample; the following are set
+  AxisVector<double> peak_force, rms_force;      ///< greatest |tau|; root of the mean square over the samples [N]
+  AxisVector<double> peak_power;                 ///< greatest |tau qdot|, driving or braking [W]
+  AxisVector<double> peak_torque, rms_torque, peak_motor_speed;  ///< of the motors, with drive trains [N m, rad/s]
+  double peak_total_power = 0, least_total_power = 0;            ///< of the sum over the joints [W]
   /// Integrals over the time, by the trapezoidal rule [J]: of the sum of tau qdot (what is left of it when braking
   /// gives back what it takes), and of each joint's tau qdot where it drives (when it gives back nothing).
   double energy = 0, energy_drawn = 0;

@@ -107,6 +107,12 @@ double ConfigValue::number(std::string_view unit, double lower, double upper) co
   return *result;
 }
 
+double ConfigValue::positive(std::string_view unit) const {
+  const double value = number(unit);
+  if (!(value > 0)) throw error("a number > 0 " + std::string(unit));
+  return value;
+}
+
 std::int64_t ConfigValue::integer(double lower, double upper) const {
   const auto number = static_cast<double>(value_->integer);
   if (value_->kind != TomlValue::Kind::integer || number < lower || number > upper)

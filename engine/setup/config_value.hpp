@@ -33,6 +33,8 @@ class ConfigValue {
 
   /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].
   double number(std::string_view unit, double lower = -kUnbounded, double upper = kUnbounded) const;
+  /// A finite number > 0.
+  double positive(std::string_view unit) const;
   /// A whole number written without point or exponent.
   std::int64_t integer(double lower = -kUnbounded, double upper = kUnbounded) const;
   bool flag() const;

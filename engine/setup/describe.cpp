@@ -168,6 +168,17 @@ std::string describe(const Study& study) {
   if (!study.changes.empty()) head.push_back({"changed", "by " + join(study.changes, " ")});
   out << aligned(head);
   write_parameters(out, study);
+  if (const DriveTrains* const trains = parts.mechanism->drive_trains()) {
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < trains->size(); ++i) {
+      const DriveTrain& train = (*trains)[i];
+      const AxisInfo& joint = info.joints[i];
+      rows.push_back({joint.name, "motor turns " + with_unit(train.ratio, joint.turns() ? "1" : "rad/m") + " as fast",
+                      "reflected inertia " + with_unit(train.reflected(), joint.turns() ? "kg m^2" : "kg"),
+                      "efficiency " + shortest(train.efficiency)});
+    }
+    out << titled("drive trains", rows);
+  }
   out << titled("workspace", survey_rows(info, parts.plan));
   for (const Region& region : parts.regions) out << titled("region " + region.name, survey_rows(info, region.plan));
   std::vector<Row> motions;

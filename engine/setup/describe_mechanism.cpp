@@ -123,7 +123,9 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   tell(mechanism.size(), "workspace-ratio", "", "[platform] size is missing");
   tell(mechanism.design_tests(), "tests of the design", "", "there is no [[design]]");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
-  tell(mechanism.dynamics(), "forces and coupling", "", "masses of a described mechanism are checked, not used");
+  const Refusal no_forces = no_joint_forces(mechanism);
+  tell(!no_forces, "forces and coupling", "", no_forces ? no_forces->c_str() : "");
+  tell(mechanism.reactions(), "forces in the joints", "", "a file does not say which couples its joints carry");
   out << titled("available", can);
   out << titled("not available, and why", cannot);
 }

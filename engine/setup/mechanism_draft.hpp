@@ -12,12 +12,28 @@
 
 namespace pkm {
 
+/// A part of a limb, or a link: what may have a mass, and what [[body]] calls "arm1.crank".
+struct LimbPart {
+  std::string name;                         ///< "crank", "rod", "slider"
+  limbs::Vector3 from, to;                  ///< its ends
+  std::optional<limbs::Term> length = {};   ///< where it is constant
+  std::optional<limbs::Vector3> line = {};  ///< along it, of any length; none: it does not turn
+  /// Where `from` is the end of an arm, or the part is the arm itself.
+  struct OnArm {
+    std::size_t arm;
+    limbs::Vector3 pivot;
+    limbs::Term length;  ///< of the arm
+    bool is_arm;
+  };
+  std::optional<OnArm> on_arm = {};
+};
+
 /// A limb as other sections name it.
 struct NamedLimb {
   std::string name;                              ///< "arm2"
   std::string group;                             ///< "arm": all copies
   std::map<std::string, limbs::Vector3> points;  ///< "A", "B", "C", "S"
-  std::vector<std::string> parts;                ///< "crank", "rod"
+  std::vector<LimbPart> parts;
 };
 
 /// A limb's own parameter in the graph.
@@ -59,17 +75,31 @@ void refuse_idle_parameters(const MechanismDraft& draft);
 void read_limits(const ConfigValue& root, MechanismDraft& draft);
 /// [modes]
 void read_modes(const ConfigValue& root, MechanismDraft& draft);
-/// The limbs of the file: joints, closures, conditions, ranges, angles, links.
+/// The limbs of the file: joints, closures, conditions, ranges, angles, links, bodies.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
 /// [[margin]] and [[design]]
 void read_margins(const ConfigValue& root, MechanismDraft& draft);
 /// Refuses signs of [modes] that double the working modes for nothing.
 void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft);
-/// [[link]] and [[body]]
-void read_links(const ConfigValue& root, MechanismDraft& draft);
+/// [[link]]. @return  the links as [[body]] names them
+std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft);
 /// [survey]
 void read_survey(const ConfigValue& root, MechanismDraft& draft);
 /// All combinations of the signs, the file's first.
 void list_modes(MechanismDraft& draft);
+
+/// Keys of a limb's table that say the mass of a part.
+std::vector<std::string> mass_keys(const std::string& part);
+/// The body of a limb's part, where its table gives it a mass.
+void add_part_body(const ConfigValue& table, const std::string& limb, const LimbPart& part, MechanismDraft& draft);
+/// A link with `mass` and `inertia`, thin between two points.
+void add_link_body(const ConfigValue& table, const std::string& name, const limbs::Vector3& from,
+                   const limbs::Vector3& to, MechanismDraft& draft);
+/// The platform's own mass, centre and inertia.
+void read_platform_body(const ConfigValue& platform, MechanismDraft& draft);
+/// [[body]]. @param links  names of [[link]]s with their directions
+void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft);
+/// [x, y, z] or a limb's point, "arm1.C".
+limbs::Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft);
 
 }  // namespace pkm

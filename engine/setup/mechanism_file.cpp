@@ -14,7 +14,7 @@ namespace {
 using described::Inputs;
 using limbs::Term;
 
-const std::vector<std::string> kUnits = {"m", "rad", "kg", "kg m^2", "kg/m", "N", "N/m", "N m/rad", "1"};
+const std::vector<std::string> kUnits = {"m", "rad", "kg", "kg m^2", "kg/m", "kg/m^3", "N", "N/m", "N m/rad", "1"};
 const std::vector<std::string> kAxes = {"along x", "along y", "along z", "about x", "about y", "about z"};
 
 void read_names(const ConfigValue& root, MechanismDraft& draft) {
@@ -111,7 +111,10 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
     draft.scope.add(value, name, coordinate.node());
     model.info.coordinates.push_back({name, turns ? "rad" : "m"});
     model.turns_about.push_back(turns ? std::optional(axis) : std::nullopt);
+    const graph::Node none = model.graph.number(0);
+    model.turn_axes.push_back({none, none, none});
     if (turns) {
+      for (std::size_t row = 0; row < 3; ++row) model.turn_axes.back()[row] = draft.turn[row][axis].node();
       if (std::ranges::count_if(model.turns_about, [](const auto& each) { return each.has_value(); }) > 3)
         throw value.refusal("a platform has at most three rotations");
       draft.turn = draft.turn * limbs::turn_about(axis, sin(coordinate), cos(coordinate));
@@ -151,10 +154,7 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
     const ConfigValue formula = size->at("formula", "a formula of parameters");
     model.size = {draft.scope.of_design(formula, unit, "size").node(), unit, text_of(*size, "meaning")};
   }
-  if (const auto mass = platform.find("mass")) draft.scope.of_design(*mass, "kg", "mass");
-  if (const auto centre = platform.find("centre")) draft.scope.point(*centre, "centre");
-  if (const auto inertia = platform.find("inertia"))
-    for (const ConfigValue& each : inertia->elements("three values")) draft.scope.of_design(each, "kg m^2", "inertia");
+  read_platform_body(platform, draft);
 }
 
 }  // namespace
@@ -196,7 +196,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   read_margins(root, draft);
   refuse_idle_signs(root, draft);
   refuse_idle_parameters(draft);
-  read_links(root, draft);
+  read_bodies(root, read_links(root, draft), draft);
   read_survey(root, draft);
   draft.scope.note_domains();
   list_modes(draft);

@@ -15,8 +15,6 @@ using limbs::Limb, limbs::Rotation, limbs::Term, limbs::Vector3;
 
 const std::vector<std::string> kDrives = {"telescope", "slider", "crank", "formula"};
 const std::vector<std::string> kOfAll = {"name", "drive", "range"};
-const std::vector<std::string> kMasses = {"crank_mass", "rod_mass", "slider_mass", "crank_mass_per_length",
-                                          "rod_mass_per_length"};
 
 /// Reads limbs of one table: itself, or its copies.
 class LimbReader {
@@ -53,7 +51,10 @@ class LimbReader {
     } else {
       also({"copies", "base", "platform", "end", "across", "across_in", "radius", "joint_base", "joint_platform",
             "joint_name"});
-      keys.insert(keys.end(), kMasses.begin(), kMasses.end());
+      for (const std::string& part : names_of_parts()) {
+        const std::vector<std::string> of_mass = mass_keys(part);
+        keys.insert(keys.end(), of_mass.begin(), of_mass.end());
+      }
     }
     if (drive_ == "slider") also({"direction", "along", "rod", "links", "axis", "branch"});
     if (drive_ == "crank") also({"axis", "zero", "crank", "rod", "branch"});
@@ -277,20 +278,52 @@ class LimbReader {
     }
     add_passive_joint("joint_base", name, limb.C, at.B);
     add_passive_joint("joint_platform", name, at.B, limb.C);
-    for (const std::string& mass : kMasses)
-      if (const auto given = table_.find(mass)) draft_.scope.of_design(*given, "kg", name);
-    draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts()});
+    draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts(limb, at)});
+    const NamedLimb named = draft_.limbs.back();
+    for (const LimbPart& part : named.parts) add_part_body(table_, named.name, part, draft_);
     add_links(name, limb, at);
     add_reach(at, model.info.joints.back().unit);
   }
 
   /// Its bodies, as [[body]] names them.
-  std::vector<std::string> parts() const {
-    if (drive_ == "telescope") return {"leg"};
+  std::vector<std::string> names_of_parts() const {
+    if (drive_ == "telescope") return {"cylinder", "piston"};
     if (drive_ == "crank") return {"crank", "rod"};
     if (table_.has("links")) return {"slider", "first_link", "second_link"};
     if (table_.has("rod")) return {"slider", "rod"};
     return {"slider"};
+  }
+  /// The same with their ends.
+  std::vector<LimbPart> parts(const Limb& limb, const limbs::Ends& at) {
+    if (drive_ == "telescope") {
+      const Vector3 v = at.B - at.A, line = (at.across ? v - *at.across * dot(v, *at.across) : v) / limb.joint;
+      return {{.name = "cylinder", .from = at.A, .to = at.B, .line = line},
+              {.name = "piston", .from = at.A, .to = at.B, .line = line}};
+    }
+    std::vector<LimbPart> list;
+    if (drive_ == "slider") list.push_back({.name = "slider", .from = limb.S, .to = limb.S});
+    if (limb.arm) {
+      const Term of_arm = drive_ == "crank" ? length("crank", "a length") : link_length(0),
+                 of_rod = drive_ == "crank" ? length("rod", "a length") : link_length(1);
+      const std::vector<std::string> names = names_of_parts();
+      const Vector3 C = limb.S + limb.arm->arm;
+      LimbPart::OnArm on_arm{draft_.model.arms.size(), limb.S, of_arm, true};
+      add_arm(*limb.arm, at, limb);
+      list.push_back({names[names.size() - 2], limb.S, C, of_arm, limb.arm->arm, on_arm});
+      on_arm.is_arm = false;
+      list.push_back({names.back(), C, at.B, of_rod, limb.arm->rod, on_arm});
+    } else if (table_.has("rod")) {
+      list.push_back({"rod", limb.S, at.B, length("rod", "a length"), at.B - limb.S});
+    }
+    return list;
+  }
+  Term link_length(std::size_t which) const {
+    return draft_.scope.of_design(table_.find("links")->elements("two lengths [l_1, l_2]")[which], "m", name_);
+  }
+  void add_arm(const limbs::Arm& arm, const limbs::Ends& at, const Limb& limb) {
+    const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
+    draft_.model.arms.push_back({nodes(arm.arm), nodes(arm.axis), nodes(arm.rod), nodes(at.B),
+                                 drive_ == "crank" ? std::optional(limb.joint.node()) : std::nullopt});
   }
 
   void add_links(const std::string& name, const Limb& limb, const limbs::Ends& at) {

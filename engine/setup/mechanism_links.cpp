@@ -1,4 +1,4 @@
-// [[link]] and [[body]]: what is drawn and weighed beside the limbs' own.
+// [[link]]: what is drawn beside the limbs' own links.
 
 #include "engine/core/catalogue.hpp"
 #include "engine/setup/mechanism_draft.hpp"
@@ -8,9 +8,6 @@ namespace pkm {
 
 using limbs::Term, limbs::Vector3;
 
-namespace {
-
-/// [x, y, z] or a limb's point, "arm1.C".
 Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft) {
   if (!value.is_text()) return draft.scope.point(value, what);
   const std::string& text = value.text("a point");
@@ -23,16 +20,11 @@ Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismD
   throw value.error("[x, y, z] or the point of a limb: " + join(known), nearest_name(text, known));
 }
 
-}  // namespace
-
-void read_links(const ConfigValue& root, MechanismDraft& draft) {
-  std::vector<std::string> turning = {"platform"};
-  for (const NamedLimb& limb : draft.limbs)
-    for (const std::string& part : limb.parts) turning.push_back(limb.name + "." + part);
+std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft) {
+  std::vector<LimbPart> links;
   for (const ConfigValue& table : tables_of(root, "link")) {
     table.allow({"name", "from", "to", "radius", "group", "mass", "inertia"});
     const std::string& name = table.at("name", "the link's name").text("the link's name");
-    turning.push_back(name);
     const Vector3 from = read_point(table.at("from", "a point"), name, draft),
                   to = read_point(table.at("to", "a point"), name, draft);
     const Term radius = draft.scope.of_design(table.at("radius", "the link's radius"), "m", name);
@@ -46,18 +38,10 @@ void read_links(const ConfigValue& root, MechanismDraft& draft) {
     }
     const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
     draft.model.links.push_back({name, part, nodes(from), nodes(to), radius.node()});
-    if (const auto mass = table.find("mass")) draft.scope.of_design(*mass, "kg", name);
-    if (const auto inertia = table.find("inertia")) draft.scope.of_design(*inertia, "kg m^2", name);
+    add_link_body(table, name, from, to, draft);
+    links.push_back({.name = name, .from = from, .to = to, .line = to - from});
   }
-  for (const ConfigValue& table : tables_of(root, "body")) {
-    table.allow({"name", "centre", "mass", "inertia", "rotation"});
-    const std::string& name = table.at("name", "the body's name").text("the body's name");
-    read_point(table.at("centre", "a point"), name, draft);
-    draft.scope.of_design(table.at("mass", "the body's mass"), "kg", name);
-    if (const auto inertia = table.find("inertia"))
-      for (const ConfigValue& each : inertia->elements("three values")) draft.scope.of_design(each, "kg m^2", name);
-    if (const auto rotation = table.find("rotation")) rotation->word(turning);
-  }
+  return links;
 }
 
 }  // namespace pkm

@@ -15,20 +15,14 @@ using Keys = std::vector<std::string>;
 
 constexpr double kLongestMotion = 1e9;  // [s], about 30 years
 
-double positive(const ConfigValue& value, const std::string& unit) {
-  const double number = value.number(unit);
-  if (!(number > 0)) throw value.error("a number > 0 " + unit);
-  return number;
-}
-
 /// A number > 0 that must be there.
 double positive_at(const ConfigValue& table, const std::string& key, const std::string& unit) {
-  return positive(table.at(key, "a number > 0 " + unit), unit);
+  return table.at(key, "a number > 0 " + unit).positive(unit);
 }
 
 std::optional<double> find_positive(const ConfigValue& table, const std::string& key, const std::string& unit) {
   const auto value = table.find(key);
-  return value ? std::optional(positive(*value, unit)) : std::nullopt;
+  return value ? std::optional(value->positive(unit)) : std::nullopt;
 }
 
 double wait_of(const ConfigValue& table) { return table.find_number("wait", "s", 0).value_or(0); }

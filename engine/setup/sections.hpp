@@ -32,6 +32,8 @@ void override_parameters(const ConfigValue& root, StudyDraft& draft);
 void override_limits(StudyDraft& draft);
 /// [mechanism]: type or file, masses, fixed parameters.
 void read_mechanism(const ConfigValue& root, StudyDraft& draft);
+/// [[drive_train]]: gears, screws, rotors and losses between motors and joints, which the mechanism has from there on.
+void read_drive_trains(const ConfigValue& root, StudyDraft& draft);
 /// [variables]
 void read_variables(const ConfigValue& root, StudyDraft& draft);
 /// [baseline]

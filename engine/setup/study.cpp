@@ -129,7 +129,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
                       "a study, which names such a file in [mechanism] file = \"..\"");
   const ConfigValue root(document, file_name, "");
   root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
-              "report", "reference", "stage", "checkpoint", "final", "override"},
+              "report", "reference", "drive_train", "stage", "checkpoint", "final", "override"},
              "section");
 
   StudyDraft draft{catalogues, find_description, {}, {}};
@@ -141,6 +141,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
     std::ranges::copy(each.arguments(), std::back_inserter(draft.study.changes));
   read_study_section(root, draft.study);
   read_mechanism(root, draft);
+  read_drive_trains(root, draft);
   read_variables(root, draft);
   read_baseline(root, draft);
   read_workspace(root, draft);

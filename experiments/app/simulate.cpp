@@ -34,6 +34,12 @@ SimulationSetup setup_of(const Target& target, const Dynamics& dynamics, const s
   };
   setup.forces = [tau = axis_vector(parse_some_assignments(arguments.forces, "--forces", assignable_forces(info)))](
                      double) { return tau; };
+  if (const DriveTrains* const trains = target.mechanism->drive_trains())
+    setup.friction = [trains](const AxisVector<double>& speeds) {
+      AxisVector<double> forces = speeds;
+      for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = (*trains)[i].friction(speeds[i]);
+      return forces;
+    };
   setup.wrench = parse_wrench(arguments.wrench);
   setup.refuse = [&target, mode](const Pose<double>& pose) {
     const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
@@ -46,11 +52,13 @@ SimulationSetup setup_of(const Target& target, const Dynamics& dynamics, const s
   return setup;
 }
 
-CsvTable table_of(const MechanismInfo& info, const Simulation& run) {
+/// @param friction  whether there is any
+CsvTable table_of(const MechanismInfo& info, const Simulation& run, bool friction) {
   std::vector<std::string> columns = {"time"};
   for (const char* suffix : {"", "_speed", "_acceleration"})
     for (const AxisInfo& axis : info.coordinates) columns.push_back(axis.name + suffix);
   columns.insert(columns.end(), {"kinetic_energy", "work_of_drives", "work_of_weight", "work_of_wrench"});
+  if (friction) columns.emplace_back("work_of_friction");
   CsvTable table(columns);
   for (const SimulationState& s : run.states) {
     table.begin_row();
@@ -58,6 +66,7 @@ CsvTable table_of(const MechanismInfo& info, const Simulation& run) {
     for (const auto* values : {&s.pose, &s.velocity, &s.acceleration}) table.add(*values);
     for (const double value : {s.kinetic_energy, s.work_of_drives, s.work_of_weight, s.work_of_wrench})
       table.add(value);
+    if (friction) table.add(s.work_of_friction);
   }
   return table;
 }
@@ -69,6 +78,7 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
           {"acceleration", values_by_name(info.coordinates, s.acceleration)},
           {"kinetic_energy", s.kinetic_energy},
           {"work_of_drives", s.work_of_drives},
+          {"work_of_friction", s.work_of_friction},
           {"work_of_weight", s.work_of_weight},
           {"work_of_wrench", s.work_of_wrench}};
 }
@@ -83,7 +93,7 @@ std::string simulate_target(const Target& target, const SimulateArguments& argum
   const MotionSample at = parse_motion(*target.mechanism, arguments);
   const Simulation run = simulate(setup_of(target, dynamics, mode, arguments), at.pose, at.velocity);
   if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
-  if (!arguments.csv.empty()) write_table(arguments, table_of(info, run));
+  if (!arguments.csv.empty()) write_table(arguments, table_of(info, run, target.mechanism->drive_trains()));
 
   const SimulationState &first = run.states.front(), &last = run.states.back();
   out.say("mechanism", info.name);
@@ -103,13 +113,16 @@ std::string simulate_target(const Target& target, const SimulateArguments& argum
         {name, number(first.pose[i], unit), number(last.pose[i], unit), number(last.velocity[i], unit + "/s")});
   }
   out.section("pose", rows);
-  out.section("energy", {{"kinetic energy, begin", number(first.kinetic_energy, "J")},
-                         {"work of the actuators", number(last.work_of_drives, "J")},
-                         {"work of the weight", number(last.work_of_weight, "J")},
-                         {"work of the wrench", number(last.work_of_wrench, "J")},
-                         {"kinetic energy, end", number(last.kinetic_energy, "J")},
-                         {"greatest imbalance", number(run.imbalance, "J"),
-                          "of " + number(run.turned_over, "J") + " turned over"}});
+  std::vector<Row> energy = {
+      {"kinetic energy, begin", number(first.kinetic_energy, "J")},
+      {"work of the actuators", number(last.work_of_drives, "J")},
+      {"work of the weight", number(last.work_of_weight, "J")},
+      {"work of the wrench", number(last.work_of_wrench, "J")},
+      {"kinetic energy, end", number(last.kinetic_energy, "J")},
+      {"greatest imbalance", number(run.imbalance, "J"), "of " + number(run.turned_over, "J") + " turned over"}};
+  if (target.mechanism->drive_trains())
+    energy.insert(energy.begin() + 2, {"work of friction", number(last.work_of_friction, "J")});
+  out.section("energy", energy);
   return run.stopped.empty() ? "" : "the simulation ends early: " + run.stopped;
 }
 

@@ -4,10 +4,12 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/dynamics/coupling.hpp"
 #include "engine/mechanism/trajectory.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/setup/motion_section.hpp"
+#include "engine/setup/motor_table.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/target.hpp"
@@ -19,6 +21,7 @@ struct TrajectoryArguments : DesignArguments, ModeArguments, TableOutput {
   std::string motion;
   std::size_t samples = 201;
   std::string zeta;
+  std::string motors;
   std::vector<std::string> wrench;
   bool allow_infeasible = false;
 };
@@ -68,6 +71,8 @@ CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
     for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
     columns.emplace_back("power");
   }
+  if (mechanism.drive_trains())
+    for (const char* suffix : {"_motor_torque", "_motor_speed"}) add_names(info.joints, suffix);
   const auto with_chain = std::ranges::find_if(trajectory.points, [](const auto& p) { return p.chain.has_value(); });
   NamedValues chain;
   if (with_chain != trajectory.points.end()) chain = chain_values(mechanism.chain(), *with_chain);
@@ -86,6 +91,10 @@ CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
       add(p.forces);
       add(p.power);
       p.power ? table.add(std::accumulate(p.power->begin() + 1, p.power->end(), (*p.power)[0])) : table.add_empty(1);
+    }
+    if (mechanism.drive_trains()) {
+      add(p.torques);
+      add(p.motor_speeds);
     }
     for (const auto& [name, value] : chain_values(mechanism.chain(), p)) table.add(value);
     if (!p.chain) table.add_empty(chain.size());
@@ -108,6 +117,10 @@ Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
   if (mechanism.dynamics()) {
     json["forces"] = axes_json(info.joints, p.forces);
     json["power"] = axes_json(info.joints, p.power);
+  }
+  if (mechanism.drive_trains()) {
+    json["motor_torque"] = axes_json(info.joints, p.torques);
+    json["motor_speed"] = axes_json(info.joints, p.motor_speeds);
   }
   if (p.chain) json["chain"] = values_by_name(chain_values(mechanism.chain(), p));
   return json;
@@ -155,6 +168,11 @@ void tell_summary(const Mechanism& mechanism, const Trajectory& trajectory, Prin
     add("peak_force", "peak force [" + forces + "]", if_known(s.peak_force));
     add("rms_force", "RMS force [" + forces + "]", if_known(s.rms_force));
     add("peak_power", "peak power [W]", if_known(s.peak_power));
+    if (mechanism.drive_trains()) {
+      add("peak_motor_torque", "motor, peak torque [N m]", if_known(s.peak_torque));
+      add("rms_motor_torque", "motor, RMS torque [N m]", if_known(s.rms_torque));
+      add("peak_motor_speed", "motor, peak speed [rad/s]", if_known(s.peak_motor_speed));
+    }
     add_total("peak_total_power", "peak power", s.peak_total_power, "W");
     add_total("least_total_power", "least power", s.least_total_power, "W");
     add_total("energy", "energy " + per, s.energy, "J", "braking gives back what it takes");
@@ -165,9 +183,77 @@ void tell_summary(const Mechanism& mechanism, const Trajectory& trajectory, Prin
   out.text += why_absent(mechanism, trajectory);
 }
 
+/// What each joint does along the motion, by joint.
+std::vector<std::vector<JointLoad>> loads_of(const DriveTrains& trains, const Trajectory& trajectory) {
+  std::vector<std::vector<JointLoad>> loads(trains.size());
+  for (const TrajectoryPoint& p : trajectory.points)
+    for (std::size_t i = 0; i < trains.size(); ++i) {
+      const double acceleration = (*p.accelerations)[i];
+      loads[i].push_back({(*p.forces)[i] - trains[i].reflected() * acceleration, (*p.speeds)[i], acceleration});
+    }
+  return loads;
+}
+
+/// Mean over the samples of the largest coupling index where every joint has this motor.
+double coupling_with(const Motor& motor, const Mechanism& mechanism, std::span<const double> parameters,
+                     const std::string& mode, const Trajectory& trajectory) {
+  double sum = 0;
+  for (const TrajectoryPoint& p : trajectory.points) {
+    const MotionState<double> state{p.motion.pose, p.motion.velocity};
+    PoseDynamics<double> d;
+    mechanism.dynamics()->equations(parameters, mode, {&state, 1}, {&d, 1});
+    AxisMatrix<double> M_q = joint_inertia(d);
+    for (std::size_t i = 0; i < M_q.rows(); ++i) {
+      DriveTrain train = (*mechanism.drive_trains())[i];
+      const double own = train.reflected();
+      train.rotor = motor.rotor;
+      M_q(i, i) += train.reflected() - own;
+    }
+    sum += std::ranges::max(coupling_indices(M_q));
+  }
+  return sum / static_cast<double>(trajectory.points.size());
+}
+
+/// Which motors do the motion at every joint, and their reserve.
+void tell_motors(const Target& target, const std::string& mode, const Trajectory& trajectory, const std::string& file,
+                 Printout& out) {
+  const Mechanism& mechanism = *target.mechanism;
+  const DriveTrains& trains = *mechanism.drive_trains();
+  const auto& joints = target.info().joints;
+  const auto loads = loads_of(trains, trajectory);
+  std::vector<Row> rows = {{"", "does it", "reserve", "bounded by", "coupling index"}};
+  out.json["motors"] = Json::array();
+  for (const Motor& motor : load_motors_toml(file)) {
+    MotorFit worst;
+    std::string where;
+    Json reserves = Json::object();
+    for (std::size_t i = 0; i < trains.size(); ++i) {
+      const MotorFit here = fit(motor, trains[i], loads[i]);
+      reserves[joints[i].name] = {{"reserve", here.reserve},
+                                  {"bounded_by", here.bounded_by},
+                                  {"peak_torque", here.peak_torque},
+                                  {"rms_torque", here.rms_torque},
+                                  {"speed", here.speed}};
+      if (!where.empty() && !(here.reserve < worst.reserve)) continue;
+      worst = here;
+      where = joints[i].name;
+    }
+    const double coupling = coupling_with(motor, mechanism, target.parameters, mode, trajectory);
+    rows.push_back({motor.name, worst.reserve >= 1 ? "yes" : "no", number(worst.reserve),
+                    worst.bounded_by + " of " + where, number(coupling)});
+    out.json["motors"].push_back({{"name", motor.name},
+                                  {"does_it", worst.reserve >= 1},
+                                  {"reserve", worst.reserve},
+                                  {"joints", reserves},
+                                  {"dci", coupling}});
+  }
+  out.section("motors: what they can over what the motion asks, and the mean largest coupling index", rows);
+}
+
 std::string trajectory(const Target& target, const TrajectoryArguments& arguments, Printout& out) {
   std::vector<std::string> inputs = target.files;
-  inputs.push_back(arguments.motion);
+  for (const std::string& file : {arguments.motion, arguments.motors})
+    if (!file.empty()) inputs.push_back(file);
   check_outputs({arguments.csv}, inputs, if_forced(arguments.force));
   const Mechanism& mechanism = *target.mechanism;
   const MechanismInfo& info = target.info();
@@ -177,6 +263,8 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
     throw ConfigError({"", 0, "trajectory"}, *reason + ", so no forces of its drives");
   if (!arguments.wrench.empty() && !mechanism.dynamics())
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
+  if (!arguments.motors.empty() && !mechanism.drive_trains())
+    throw ConfigError({"", 0, "--motors"}, "no drive trains", "a study with [[drive_train]]");
   if (!arguments.zeta.empty() && !mechanism.chain())
     throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");
   const double zeta = arguments.zeta.empty() ? 0 : parse_number(arguments.zeta, "--zeta", "rad");
@@ -194,6 +282,7 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   out.head.push_back({"samples", all});
   out.head.push_back({"feasible", found.summary.infeasible == 0 ? "yes" : "not at " + infeasible + " samples"});
   tell_summary(mechanism, found, out);
+  if (!arguments.motors.empty() && found.summary.has_forces) tell_motors(target, mode, found, arguments.motors, out);
   out.json["samples"] = Json::array();
   for (const auto& point : found.points)
     if (out.for_programs) out.json["samples"].push_back(sample_json(mechanism, point));
@@ -221,6 +310,8 @@ void add_trajectory(CLI::App& app, Session& session) {
   add_mode_options(command, arguments);
   add_list_option(command, "--wrench", arguments.wrench, "Force and moment on the platform, the same all the time");
   add_option(command, "--zeta ANGLE", arguments.zeta, "Phase of an auxiliary chain's forks; default 0");
+  add_option(command, "--motors MOTORS.toml", arguments.motors,
+             "A table of motors: which of them do the motion, with the study's drive trains, and their reserve");
   add_table_output(command, arguments, "Write all samples to this file, numbers in SI");
   command.add_flag("--allow-infeasible", arguments.allow_infeasible, "Exit code 0 also with infeasible samples");
 }

@@ -274,5 +274,39 @@ TEST(CliMotionStudy, ADesignThatCannotFollowSaysWhy) {
               HasSubstr("peak-force: the motion swing leaves the reach of the mechanism at t = 0 s (limb 1"));
 }
 
+TEST(CliTrajectory, SaysWhichMotorsDoTheMotion) {
+  const std::string folder = PKM_EXPERIMENTS "/mechanisms/motors/";
+  const auto run = [&](const std::string& motors) {
+    return pkmopt({"trajectory", folder + "rotary-delta.toml", "--motion", "cycle", "--motors", motors, "--json"});
+  };
+  const auto result = run(folder + "motors.toml");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json found = result.json();
+  ASSERT_EQ(found["motors"].size(), 4u);
+  EXPECT_FALSE(found["motors"][0]["does_it"]);
+  for (const json& motor : found["motors"]) {
+    double least = 1e9;
+    for (const json& joint : motor["joints"]) least = std::min(least, joint["reserve"].get<double>());
+    EXPECT_EQ(motor["reserve"], least);
+    EXPECT_EQ(motor["does_it"], least >= 1);
+  }
+  for (std::size_t k = 1; k < 4; ++k) {
+    EXPECT_GT(found["motors"][k]["reserve"], found["motors"][k - 1]["reserve"]);
+    EXPECT_LT(found["motors"][k]["dci"], found["motors"][k - 1]["dci"]) << "rotors add to the diagonal alone";
+  }
+  EXPECT_GT(found["summary"]["peak_motor_torque"]["arm1"], found["summary"]["rms_motor_torque"]["arm1"]);
+  EXPECT_NEAR(found["summary"]["peak_motor_speed"]["arm1"].get<double>(),
+              10 * found["summary"]["peak_speed"]["arm1"].get<double>(), 1e-9);
+
+  const StudyFolder own;
+  own.write("m.toml", "[[motor]]\nname = \"M\"\ncontinuous_torque = 1\npeak_torque = 0\n");
+  EXPECT_THAT(run(own.path() + "/m.toml").err,
+              HasSubstr("m.toml:4: motor[1].peak_torque: found 0; expected a number > 0 N m"));
+  own.write("m.toml", kOscillation);
+  const auto bare = pkmopt({"trajectory", "3crr-r-cru", "--motion", "m.toml", "--motors", "m.toml"}, own.path());
+  EXPECT_EQ(bare.exit_code, 2);
+  EXPECT_EQ(bare.err, "pkmopt: --motors: found no drive trains; expected a study with [[drive_train]]\n");
+}
+
 }  // namespace
 }  // namespace pkm::testing

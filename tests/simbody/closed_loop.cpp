@@ -1,9 +1,8 @@
 #include "tests/simbody/closed_loop.hpp"
 
-#include <Simbody.h>
-#include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
+
+#include "tests/simbody/loop_forces.hpp"
 
 namespace pkm::simbody {
 namespace {
@@ -142,93 +141,14 @@ SimTK::State ClosedLoop::Model::place(const Case& at) const {
 ClosedLoop::ClosedLoop(const Parameters& parameters) : model_(std::make_unique<const Model>(parameters)) {}
 ClosedLoop::~ClosedLoop() = default;
 
-namespace {
-
-Eigen::VectorXd eigen(const SimTK::Vector& v) {
-  Eigen::VectorXd copy(v.size());
-  for (int k = 0; k < v.size(); ++k) copy[k] = v[k];
-  return copy;
-}
-
-SimTK::Vector simtk(const Eigen::VectorXd& v) {
-  SimTK::Vector copy(static_cast<int>(v.size()));
-  for (int k = 0; k < copy.size(); ++k) copy[k] = v[k];
-  return copy;
-}
-
-Eigen::MatrixXd eigen(const SimTK::Matrix& m) {
-  Eigen::MatrixXd copy(m.nrow(), m.ncol());
-  for (int i = 0; i < m.nrow(); ++i)
-    for (int j = 0; j < m.ncol(); ++j) copy(i, j) = m(i, j);
-  return copy;
-}
-
-/// Velocity of D and yaw rate.
-Eigen::Vector4d of_platform(const SimTK::SpatialVec& v) { return {v[1][0], v[1][1], v[1][2], v[0][2]}; }
-
-Eigen::VectorXd stacked(const Eigen::VectorXd& a, const Eigen::Vector4d& b) {
-  Eigen::VectorXd both(a.size() + 4);
-  both << a, b;
-  return both;
-}
-
-}  // namespace
-
 Solution ClosedLoop::solve(const Case& at) const {
-  using Eigen::MatrixXd, Eigen::VectorXd, Eigen::Index;
-  using Least = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
   const Model& m = *model_;
-  SimTK::State state = m.place(at);
-  m.system.realize(state, SimTK::Stage::Position);
-  Solution solution;
-  const auto note = [](double& worst, const VectorXd& errors) {
-    worst = std::max(worst, errors.lpNorm<Eigen::Infinity>());
-  };
-  note(solution.open, eigen(SimTK::Vector(state.getQErr())));
-
-  // Rates: loops stay closed, G u = 0, and the platform moves as told.
-  SimTK::Matrix simtk_G, frame;
-  m.matter.calcG(state, simtk_G);
-  m.matter.calcFrameJacobian(state, m.moving.getMobilizedBodyIndex(), Vec3(0), frame);
-  const MatrixXd G = eigen(simtk_G), J = eigen(frame);
-  const Index unknowns = G.cols();
-  MatrixXd moves(G.rows() + 4, unknowns);
-  moves << G, J.middleRows<3>(3), J.row(2);
-  Least loops;
-  loops.setThreshold(1e-9);
-  loops.compute(G);
-  solution.constraints = static_cast<int>(G.rows());
-  solution.constraint_rank = static_cast<int>(loops.rank());
-  const Least rates(moves);
-  const VectorXd speeds = stacked(VectorXd::Zero(G.rows()), Eigen::Vector4d(at.velocity.data()));
-  const VectorXd u = rates.solve(speeds);
-  note(solution.open, moves * u - speeds);
-  state.updU() = simtk(u);
-  m.system.realize(state, SimTK::Stage::Dynamics);
-
-  SimTK::Vector loop_bias;
-  m.matter.calcBiasForAccelerationConstraints(state, loop_bias);
-  const Eigen::Vector4d platform_bias =
-      of_platform(m.matter.calcBiasForFrameJacobian(state, m.moving.getMobilizedBodyIndex(), Vec3(0)));
-  const VectorXd wanted = stacked(-eigen(loop_bias), Eigen::Vector4d(at.acceleration.data()) - platform_bias);
-  const VectorXd acceleration = rates.solve(wanted);
-  note(solution.open, moves * acceleration - wanted);
-
-  // M udot + G^T lambda + f_inertial - f_applied = B tau
-  SimTK::Vector_<SimTK::SpatialVec> on_bodies = m.system.getRigidBodyForces(state, SimTK::Stage::Dynamics);
-  const auto& w = at.wrench;
-  m.matter.addInStationForce(state, m.moving.getMobilizedBodyIndex(), Vec3(m.p.c, 0, 0), Vec3(w[0], w[1], w[2]),
-                             on_bodies);
-  m.matter.addInBodyTorque(state, m.moving.getMobilizedBodyIndex(), Vec3(w[3], w[4], w[5]), on_bodies);
-  SimTK::Vector needed;
-  m.matter.calcResidualForce(state, SimTK::Vector(), on_bodies, simtk(acceleration), SimTK::Vector(), needed);
-  MatrixXd carried(unknowns, 4 + G.rows());
-  carried << MatrixXd::Zero(unknowns, 4), -G.transpose();
-  for (std::size_t i = 0; i < 4; ++i)
-    carried(static_cast<int>(m.slide[i].getFirstUIndex(state)), static_cast<Index>(i)) = 1;
-  const VectorXd found = Least(carried).solve(eigen(needed));
-  note(solution.unbalanced, carried * found - eigen(needed));
-  for (std::size_t i = 0; i < 4; ++i) solution.drive_forces[i] = found[static_cast<Index>(i)];
+  const Eigen::Vector4d velocity(at.velocity.data()), acceleration(at.acceleration.data());
+  const LoopForces found =
+      loop_forces(m.system, m.matter, m.place(at), m.moving, {{3, 4, 5, 2}, velocity, acceleration}, Vec3(m.p.c, 0, 0),
+                  at.wrench, {m.slide.begin(), m.slide.end()});
+  Solution solution{{}, found.constraints, found.constraint_rank, found.open, found.unbalanced};
+  for (int i = 0; i < 4; ++i) solution.drive_forces[static_cast<std::size_t>(i)] = found.drives[i];
   return solution;
 }
 

@@ -16,6 +16,8 @@ class Columns {
                                                   const Demand& demand) const = 0;
   /// Whether ColumnOptions::box can cut them.
   virtual bool take_box() const { return false; }
+  /// Whether they count Demand::rotors.
+  virtual bool take_rotors() const { return false; }
 };
 
 class Voxels {
@@ -24,6 +26,8 @@ class Voxels {
   /// Throws std::invalid_argument with a sentence when the mechanism cannot serve the plan.
   virtual std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                        const Demand& demand) const = 0;
+  /// Whether they count Demand::rotors.
+  virtual bool take_rotors() const { return false; }
 };
 
 }  // namespace pkm

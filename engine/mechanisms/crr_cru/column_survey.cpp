@@ -77,7 +77,7 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
   void sample_inertia(const Sweeping<S>& s, std::span<const S> parameters, ColumnScratch<S>& scratch,
                       Survey<S>& survey) const {
     const Geometry<S>& g = s.design.g;
-    const Masses<S> b = masses(planned_.mass_model, parameters);
+    const Masses<S> b = planned_.masses(parameters);
     std::vector<S>* const conditioning = survey.find(kConditioning);
     InertiaFrame<S> frame;
     S angle(0.0), index(0.0);

@@ -31,6 +31,7 @@ InertiaFrame<S> inertia_frame(const Geometry<S>& g, const Masses<S>& b, const S&
 
   Matrix<S, 4, 4> M = platform_inertia(g, b, sin, cos);
   InertiaFrame<S> f;
+  f.rotors = b.rotors;
   for (std::size_t i = 0; i < 4; ++i) {
     const LimbFrame& limb = kLimbs[i];
     f.arm[i] = arm[i].to_joint;

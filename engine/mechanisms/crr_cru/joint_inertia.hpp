@@ -23,6 +23,7 @@ struct SlideFrame {
   std::array<std::array<S, 2>, 4> per_slide;  ///< s_i in the limb's plane, along the lower and the higher world axis
   // platforms, and what slides along the rails
   S xx, yy, zz, vx, vy, vz, k;
+  std::array<double, 4> rotors{};  ///< what drive trains add
 };
 
 /// M_q from the limbs' shares [kg]. S may be lanes, of which all have one frame.
@@ -41,10 +42,10 @@ template <class S, class T>
   };
   const S k = f.k + ((twice(0, v1) + twice(1, v2)) + (twice(2, v3) + twice(3, v4)));
   JointInertia<S> M;
-  M.m00 = f.xx + (l2.pp + l3.pp + l4.pp);
-  M.m11 = f.yy + (l1.pp + l3.qq) - vy * 2.0 + k;
-  M.m22 = f.zz + (l1.qq + l2.qq + l4.qq);
-  M.m33 = k;
+  M.m00 = f.xx + (l2.pp + l3.pp + l4.pp) + f.rotors[0];
+  M.m11 = f.yy + (l1.pp + l3.qq) - vy * 2.0 + k + f.rotors[1];
+  M.m22 = f.zz + (l1.qq + l2.qq + l4.qq) + f.rotors[2];
+  M.m33 = k + f.rotors[3];
   M.m01 = l3.pq - vx;
   M.m02 = l2.pq + l4.pq;
   M.m03 = vx;

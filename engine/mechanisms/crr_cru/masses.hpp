@@ -46,12 +46,13 @@ enum GeometryIndex {
 
 template <class S>
 struct Masses {
-  std::array<S, 4> m_1, m_2;  ///< rods next to the slide and next to the platform [kg]
-  std::array<S, 4> I_1, I_2;  ///< about their centres and e_i [kg m^2]
-  S m, I_zz, c;               ///< moving platform: mass, inertia about its centre, distance of the centre from D
-  S m_middle, I_middle;       ///< middle platform: m_1, I_1zz
-  S slide;                    ///< mass that each slide adds along its rail
-  S payload, c_payload;       ///< point mass on the arm D-C_4, and its distance from D
+  std::array<S, 4> m_1, m_2;       ///< rods next to the slide and next to the platform [kg]
+  std::array<S, 4> I_1, I_2;       ///< about their centres and e_i [kg m^2]
+  S m, I_zz, c;                    ///< moving platform: mass, inertia about its centre, distance of the centre from D
+  S m_middle, I_middle;            ///< middle platform: m_1, I_1zz
+  S slide;                         ///< mass that each slide adds along its rail
+  S payload, c_payload;            ///< point mass on the arm D-C_4, and its distance from D
+  std::array<double, 4> rotors{};  ///< inertia of drive trains at the joints [kg], in M_q alone
 };
 
 /// Throws std::domain_error with a sentence where a mass or an inertia is not positive.

@@ -126,6 +126,7 @@ class CrrCru final : public MechanismWith<Voxels, Columns, PoseMarginsOf<CrrCru>
     return make_surveyor(planned(plan, demand), columns);
   }
   bool take_box() const override { return true; }
+  bool take_rotors() const override { return true; }
 
   std::optional<pkm::Influence<double>> influence(std::span<const double> p, const pkm::Pose<double>& pose,
                                                   const std::string& mode) const override {

@@ -20,6 +20,12 @@ struct Planned {
   Demand demand;
   bool with_conditioning = demand.has(kConditioning);
 
+  template <class S>
+  Masses<S> masses(std::span<const S> parameters) const {
+    Masses<S> all = crr_cru::masses(mass_model, parameters);
+    std::ranges::copy(demand.rotors, all.rotors.begin());
+    return all;
+  }
   /// Conditioning depends on phi alone.
   template <class S>
   S conditioning_at(const Geometry<S>& g, const S& phi) const {

@@ -126,7 +126,7 @@ class OfVoxels final : public VoxelSurveyor {
     survey.cells = s.grid.count();
     survey.cell_volume = s.grid.cell_volume();
     if (planned_.demand.needs_inertia())
-      sample(s, masses(planned_.mass_model, parameters), scratch, survey);
+      sample(s, planned_.masses(parameters), scratch, survey);
     else
       count(s, scratch, survey);
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;

@@ -41,6 +41,19 @@ Evaluation::Evaluation(Model described) : model(std::move(described)) {
     placed.push_back(link.radius);
   }
   links = Program(graph, placed);
+  if (const auto& equations = model.equations) {
+    std::vector<Node> of_motion = model.joints;
+    std::ranges::copy(nodes_of(model.domains), std::back_inserter(of_motion));
+    for (const auto* const list :
+         {&equations->J, &equations->J_rate_X, &equations->M_X, &equations->h_X, &equations->G_X, &equations->J_wrench})
+      std::ranges::copy(*list, std::back_inserter(of_motion));
+    const std::array<Groups, 2> stages = {Inputs::kDesign, ~Inputs::kDesign};
+    motion = Program(graph, of_motion, stages);
+    motions.emplace(motion, 1, motion.outputs());
+    std::vector<Node> checked;
+    for (const MassCheck& check : model.masses) checked.push_back(check.node);
+    masses = Program(graph, checked);
+  }
   size = program_of(graph, model.size ? std::optional(model.size->node) : std::nullopt);
   length = program_of(graph, model.length);
   radius = program_of(graph, model.radius);

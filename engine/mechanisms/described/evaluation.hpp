@@ -1,7 +1,7 @@
 // A description's formulas as programs, by what is asked for.
 #pragma once
 
-#include "engine/graph/program.hpp"
+#include "engine/graph/rows.hpp"
 #include "engine/mechanisms/described/model.hpp"
 
 namespace pkm::described {
@@ -13,6 +13,8 @@ struct Evaluation {
   Model model;
   graph::Program conditions;  ///< of a pose: joints, domains, margins, angles
   graph::Program joints, closures, links, tests;
+  graph::Program motion, masses;  ///< joints, domains and EquationNodes of a state, after the design; MassCheck
+  std::optional<graph::RowStage> motions;                     ///< `motion` of many states
   graph::Program size, length, radius;                        ///< of a design; without outputs: it is not described
   std::vector<graph::Program> derived, lower, upper, middle;  ///< by limit; the others by coordinate
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanisms/described/dynamics.hpp"
+#include "engine/mechanisms/described/equations.hpp"
 #include "engine/mechanisms/described/forward.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
 #include "engine/mechanisms/described/voxels.hpp"
@@ -10,7 +13,15 @@ namespace pkm::described {
 namespace {
 
 /// Its abilities are those that the description has what for.
-class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKinematics, Links, DesignTests, Size {
+class DescribedMechanism final : public Mechanism,
+                                 public std::enable_shared_from_this<DescribedMechanism>,
+                                 Voxels,
+                                 Velocities,
+                                 ForwardKinematics,
+                                 Links,
+                                 DesignTests,
+                                 Size,
+                                 DynamicsOf<DescribedMechanism> {
  public:
   explicit DescribedMechanism(Model model) : e_(std::move(model)) {}
 
@@ -49,12 +60,30 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
   const Links* links() const override { return e_.model.links.empty() ? nullptr : this; }
   const DesignTests* design_tests() const override { return e_.model.tests.empty() ? nullptr : this; }
   const Size* size() const override { return e_.model.size ? this : nullptr; }
+  const Dynamics* dynamics() const override { return e_.model.equations ? this : nullptr; }
 
  private:
+  friend DynamicsOf<DescribedMechanism>;
+
+  template <class S>
+  void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
+                     std::span<PoseDynamics<S>> found) const {
+    described::find_dynamics(e_, parameters, number_of_mode(info(), mode), states, found);
+  }
+  const std::vector<std::string>& mass_models() const override {
+    static const std::vector<std::string> models = {"file"};
+    return models;
+  }
+  const std::string& mass_model() const override { return mass_models().front(); }
+  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
+    return model == mass_model() ? shared_from_this() : nullptr;
+  }
+
   std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                const Demand& demand) const override {
     return prepare_voxels(*this, e_, plan, voxels, demand);
   }
+  bool take_rotors() const override { return true; }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {
     return influence_at(e_, parameters, pose, number_of_mode(info(), mode));
@@ -117,6 +146,7 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
 }  // namespace
 
 std::shared_ptr<const Mechanism> make_mechanism(Model model) {
+  if (!model.bodies.empty()) model.equations = equations_of(model);
   return std::make_shared<const DescribedMechanism>(std::move(model));
 }
 

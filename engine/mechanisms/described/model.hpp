@@ -15,19 +15,20 @@ using graph::Groups;
 using graph::Node;
 
 /// Where the graph's inputs are, and the groups that they form: parameters, thresholds and signs of the working mode;
-/// each coordinate; the joints, as variables of the closures.
+/// each coordinate; the joints, as variables of the closures; the coordinates' rates.
 struct Inputs {
   std::size_t parameters = 0, limits = 0, signs = 0, coordinates = 0, joints = 0;
 
   static constexpr std::size_t kMostSigns = 8;
-  static constexpr Groups kDesign = 1, kJoints = 2;
+  static constexpr Groups kDesign = 1, kJoints = 2, kRates = 4U << kMostCoordinates;
   static constexpr Groups coordinate_group(std::size_t i) { return 4U << i; }
 
   std::size_t limit(std::size_t i) const { return parameters + i; }
   std::size_t sign(std::size_t i) const { return limit(limits) + i; }
   std::size_t coordinate(std::size_t i) const { return sign(kMostSigns) + i; }
   std::size_t joint(std::size_t i) const { return coordinate(coordinates) + i; }
-  std::size_t count() const { return joint(kMostJoints); }
+  std::size_t rate(std::size_t i) const { return joint(kMostJoints) + i; }
+  std::size_t count() const { return rate(coordinates); }
 };
 
 /// A named number of a pose or of a design.
@@ -55,6 +56,50 @@ struct DescribedSize {
   std::string unit, meaning;
 };
 
+/// limbs::Arm, whose rates equations of motion take from there. B is the rod's other end.
+struct DescribedArm {
+  std::array<Node, 3> arm, axis, rod, B;
+  std::optional<Node> joint;  ///< where the turn is a joint
+};
+
+/// A rigid body by twice its kinetic energy: the sum of these.
+struct DescribedBody {
+  /// weight f' . g'
+  struct Product {
+    std::array<Node, 3> f, g;
+    Node weight;
+  };
+  /// weight turn'^2
+  struct ArmTurn {
+    std::size_t arm;
+    Node weight;
+  };
+  /// weight |d x d'|^2 / |d|^4: a line turns with d, without spin about it.
+  struct LineTurn {
+    std::array<Node, 3> d;
+    Node weight;
+  };
+  std::string name;
+  Node mass;
+  std::array<Node, 3> centre;  ///< of mass
+  std::vector<Product> products;
+  std::vector<ArmTurn> arm_turns;
+  std::vector<LineTurn> line_turns;
+};
+
+/// A number that has to be positive for a design to have masses.
+struct MassCheck {
+  std::string name;  ///< "the mass of rod 11"
+  std::string unit;
+  Node node;
+  bool may_vanish;
+};
+
+/// What the equations of motion are made of, by coordinates and their rates (PoseDynamics); matrices by rows.
+struct EquationNodes {
+  std::vector<Node> J, J_rate_X, M_X, h_X, G_X, J_wrench;
+};
+
 struct Model {
   MechanismInfo info;
   Graph graph;
@@ -76,6 +121,12 @@ struct Model {
   std::vector<std::optional<std::array<Node, 2>>> box;  ///< by coordinate
   std::vector<std::optional<Node>> middle;              ///< by coordinate: where a survey holds it
   std::vector<std::optional<std::size_t>> turns_about;  ///< by coordinate: the axis of a rotation, 0 to 2
+  std::vector<std::array<Node, 3>> turn_axes;           ///< by coordinate: the same in the base's frame; 0: none
+  std::vector<DescribedArm> arms;
+  std::vector<DescribedBody> bodies;
+  std::vector<MassCheck> masses;
+  std::optional<std::array<Node, 3>> wrench_point;  ///< where a wrench acts on the platform
+  std::optional<EquationNodes> equations;           ///< where there are bodies
 
   limbs::Term term(Node node) { return {graph, node}; }
 };

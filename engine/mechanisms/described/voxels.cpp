@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "engine/mechanisms/described/cells.hpp"
+#include "engine/mechanisms/described/dynamics.hpp"
+#include "engine/mechanisms/described/inertia_rows.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
 #include "engine/survey/cell_samples.hpp"
 #include "engine/survey/pose_quantities.hpp"
@@ -30,9 +32,11 @@ class DescribedVoxels final : public VoxelSurveyor {
     if (demand.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
+    if (demand.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, demand.rotors);
   }
 
   void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    if (inertia_) check_masses(e_, parameters);
     const VoxelGrid grid = grid_of(parameters);
     Rooms& all = scratch.get<Rooms>();
     integrated(parameters, all.held);
@@ -87,6 +91,7 @@ class DescribedVoxels final : public VoxelSurveyor {
     std::optional<std::size_t> repeat;  ///< that it is ready for
     std::vector<double> inputs;
     CellRoom cells;
+    InertiaRoom inertia;
   };
   struct Rooms {
     std::vector<Room> of;  ///< by worker
@@ -105,6 +110,7 @@ class DescribedVoxels final : public VoxelSurveyor {
       repeat /= cells;
     }
     test_.start(room.inputs, room.cells);
+    if (inertia_) inertia_->start(room.inputs, room.inertia);
   }
 
   std::array<double, 2> range_of(std::span<const double> parameters, std::size_t coordinate) const {
@@ -168,18 +174,22 @@ class DescribedVoxels final : public VoxelSurveyor {
       std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
       for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
         pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid.centre(axis, cell[axis]);
-      add_sample(parameters, pose, measure, room.inputs, to);
+      add_sample(parameters, pose, measure, room, to);
     });
+    if (inertia_) inertia_->finish(room.inertia, to);
   }
-  /// @param inputs  of the slice; the pose's coordinates are overwritten
-  void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight,
-                  std::vector<double>& inputs, Survey<double>& to) const {
+  /// @param room  of the slice; the pose's coordinates among its inputs are overwritten
+  void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight, Room& room,
+                  Survey<double>& to) const {
     to.weight.push_back(weight);
     if (demand_.poses) to.pose.push_back(pose);
-    if (demand_.fields.empty()) return;
+    if (inertia_) inertia_->add(pose, room.inertia, to);
+    if (!demand_.needs_jacobian()) return;
+    std::vector<double>& inputs = room.inputs;
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
     const PoseReport report =
-        std::ranges::all_of(demand_.fields, [](const PoseQuantity* q) { return q == &kConditioning; })
+        std::ranges::all_of(demand_.fields,
+                            [](const PoseQuantity* q) { return q == &kConditioning || q->needs_inertia(); })
             ? report_of_sample(e_, parameters, pose, inputs)
             : inspect_pose(e_, parameters, pose, mode_, plan_.limits);
     add_reported(report, e_.model.inputs.joints, to);
@@ -193,6 +203,7 @@ class DescribedVoxels final : public VoxelSurveyor {
   const Sweep& sweep_;
   std::size_t mode_;
   CellTest test_;
+  std::optional<InertiaRows> inertia_;  ///< where fields of inertia are demanded
 };
 
 }  // namespace

@@ -55,6 +55,7 @@ Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S&
   add(b.payload, middle_y + theta * S(b.c_payload * cos_theta));
   for (std::size_t r = 1; r < 4; ++r)
     for (std::size_t c = 0; c < r; ++c) M(r, c) = M(c, r);
+  for (std::size_t r = 0; r < 4; ++r) M(r, r) = M(r, r) + b.rotors[r];
   return M;
 }
 

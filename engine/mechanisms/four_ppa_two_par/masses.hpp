@@ -26,9 +26,10 @@ enum MassIndex {
 template <class S>
 struct Masses {
   S slider, upper_bar, lower_bar, upper_connector, lower_connector, platform, payload;  ///< one of each [kg]
-  S I_upper, I_lower;  ///< of a bar about its middle, across the bar [kg m^2]
-  S I_platform;        ///< about its centre and z [kg m^2]
-  S c_payload;         ///< [m]
+  S I_upper, I_lower;              ///< of a bar about its middle, across the bar [kg m^2]
+  S I_platform;                    ///< about its centre and z [kg m^2]
+  S c_payload;                     ///< [m]
+  std::array<double, 4> rotors{};  ///< inertia of drive trains at the sliders [kg], in M_q alone
 };
 
 /// Throws std::domain_error with a sentence when a link's mass or inertia is not positive.

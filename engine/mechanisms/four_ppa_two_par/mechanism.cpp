@@ -121,6 +121,7 @@ class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTe
  private:
   friend DynamicsOf<FourPpaTwoPar>;
 
+  bool take_rotors() const override { return true; }
   std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                const Demand& demand) const override {
     return make_voxel_surveyor(plan, voxels, demand);

@@ -32,7 +32,10 @@ SampleContents<S> contents(std::span<const S> parameters, const Demand& demand) 
                       .inertia = demand.needs_inertia(),
                       .gamma = gamma(geometry(parameters), demand),
                       .masses = {}};
-  if (c.inertia) c.masses = masses(parameters);
+  if (c.inertia) {
+    c.masses = masses(parameters);
+    std::ranges::copy(demand.rotors, c.masses.rotors.begin());
+  }
   return c;
 }
 
@@ -221,7 +224,16 @@ class OfVoxels final : public VoxelSurveyor {
   VoxelCounter counter_;
 };
 
-void refuse_mode(const Demand& demand) {
+/// Samples stand for mirrored poses, where the two sliders of a rail change places.
+void refuse_unequal_rotors(const Demand& demand) {
+  const std::vector<double>& rotors = demand.rotors;
+  if (demand.needs_inertia() && !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]))
+    throw std::invalid_argument(
+        "workspaces of mechanism 4ppa-2par need drive trains of the same inertia on both sliders of a rail");
+}
+
+void refuse_demand(const Demand& demand) {
+  refuse_unequal_rotors(demand);
   if (demand.needs_inertia() && !demand.mode.empty() && demand.mode != kSurveyedMode)
     throw std::invalid_argument("workspaces of mechanism 4ppa-2par are of the working mode " +
                                 std::string(kSurveyedMode) + ", so inertia is not surveyed in the mode " + demand.mode);
@@ -233,7 +245,7 @@ bool is_over_y(const SurveyPlan& plan) { return how_held(plan, kY).kind == HeldC
 
 std::unique_ptr<const Surveyor> make_column_surveyor(const SurveyPlan& plan, const ColumnOptions& columns,
                                                      const Demand& demand) {
-  refuse_mode(demand);
+  refuse_demand(demand);
   if (is_over_y(plan) && columns.nodes[0] > 0)
     throw std::invalid_argument(
         "nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance instead");
@@ -242,7 +254,7 @@ std::unique_ptr<const Surveyor> make_column_surveyor(const SurveyPlan& plan, con
 
 std::unique_ptr<const VoxelSurveyor> make_voxel_surveyor(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                          const Demand& demand) {
-  refuse_mode(demand);
+  refuse_demand(demand);
   if (is_over_y(plan) && how_held(plan, kY).cells < 1)
     throw std::invalid_argument("voxels integrated over y need a number of cells for y");
   return std::make_unique<OfVoxels>(plan, voxels, demand);

@@ -8,6 +8,7 @@
 #include "constraints/all.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/math/random.hpp"
+#include "engine/mechanism/driven.hpp"
 #include "objectives/all.hpp"
 #include "tests/own_mechanisms/three_ropes.hpp"
 #include "tests/unit/contracts/nominal.hpp"
@@ -37,12 +38,21 @@ class Bare final : public Mechanism {
   MechanismInfo info_;
 };
 
+/// Those of the suites, and one with drive trains.
+MechanismList mechanisms_with_a_driven_one() {
+  MechanismList all = test::mechanisms();
+  const auto bare = *std::ranges::find_if(all, [](const auto& m) { return m->info().name == "3crr-r-cru"; });
+  const DriveTrain screw{.ratio = 300, .rotor = 1e-6, .efficiency = 0.9, .coulomb = 1, .viscous = 2};
+  all.push_back(with_drive_trains(bare, DriveTrains(4, screw)));
+  return all;
+}
+
 /// All pairs of an entry and a mechanism that it serves.
 template <class List, class Do>
 void for_all_served(const List& entries, const Do& action) {
   for (const auto& entry : entries) {
     int served = 0;
-    for (const auto& mechanism : test::mechanisms()) {
+    for (const auto& mechanism : mechanisms_with_a_driven_one()) {
       SCOPED_TRACE(entry.name + " of " + mechanism->info().name);
       if (entry.refusal(*mechanism)) continue;
       ++served;

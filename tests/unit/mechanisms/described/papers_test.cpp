@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "engine/dynamics/coupling.hpp"
+#include "engine/math/statistics.hpp"
 #include "engine/survey/survey_set.hpp"
 #include "tests/unit/contracts/everything.hpp"
 #include "tests/unit/mechanisms/crr_cru/golden.hpp"
@@ -260,6 +262,69 @@ TEST_P(PaperMechanism, HasTheSameCellsOnEveryGoldenGrid) {
       EXPECT_EQ(survey.feasible_cells, grid.feasible);
     }
     EXPECT_NEAR(survey.volume, test::survey(own(), grid.design, theirs).volume, 1e-12 * survey.volume);
+  }
+}
+
+/// Largest difference of two matrices over the largest element.
+template <class M>
+double off(const M& mine, const M& theirs) {
+  double difference = 0, largest = 0;
+  for (std::size_t k = 0; k < theirs.size(); ++k) {
+    difference = std::fmax(difference, std::fabs(mine[k] - theirs[k]));
+    largest = std::fmax(largest, std::fabs(theirs[k]));
+  }
+  return largest > 0 ? difference / largest : difference;
+}
+
+TEST_P(PaperMechanism, HasTheSameForcesAndInertiaOnGoldenPosesInEveryMode) {
+  if (!own().dynamics()) GTEST_SKIP() << "no masses";
+  const AxisVector<double> rates = {0.4, -0.3, 0.2, 1.1}, acceleration = {3, -5, 4, 12};
+  const Wrench<double> wrench{{7, -3, 5, 0.2, -0.4, 0.3}};
+  int compared = 0;
+  std::vector<GoldenPose> poses = golden_poses();
+  for (const double payload : {0.0, 0.4})
+    for (GoldenPose& golden : poses) {
+      for (const auto& [name, value] : std::map<std::string, double>{{"m_p", payload}, {"c_p", payload / 10}})
+        golden.design[static_cast<std::size_t>(find_named(own().info().parameters, name) -
+                                               own().info().parameters.data())] = value;
+      for (const std::string& mode : file().info().modes) {
+        const MotionState<double> state{golden.pose, rates};
+        PoseDynamics<double> mine, theirs;
+        file().dynamics()->equations(std::span<const double>(of_file(golden.design)), mode, {&state, 1}, {&mine, 1});
+        own().dynamics()->equations(std::span<const double>(golden.design), own_mode(mode), {&state, 1}, {&theirs, 1});
+        if (!mine.assembles || !theirs.assembles || is_singular(theirs.J)) continue;
+        const AxisMatrix<double> M_q = joint_inertia(theirs);
+        if (!std::ranges::all_of(M_q, [](double x) { return std::fabs(x) < 1e4; })) continue;  // a limb is stretched
+        EXPECT_LE(off(joint_inertia(mine), M_q), 1e-10) << mode;
+        EXPECT_LE(off(coupling_indices(joint_inertia(mine)), coupling_indices(M_q)), 1e-10) << mode;
+        EXPECT_LE(off(drive_forces(mine, acceleration, wrench), drive_forces(theirs, acceleration, wrench)), 1e-10);
+        EXPECT_LE(off(joint_space(mine).c_q, joint_space(theirs).c_q), 1e-9) << mode;
+        EXPECT_LE(off(joint_space(mine).G_q, joint_space(theirs).G_q), 1e-10) << mode;
+        ++compared;
+      }
+    }
+  EXPECT_GT(compared, 100);
+}
+
+TEST_P(PaperMechanism, HasTheSameCouplingOverEveryGoldenGrid) {
+  if (!own().dynamics()) GTEST_SKIP() << "no masses";
+  for (const GoldenGrid& grid : golden_grids()) {
+    SurveyPlan mine{.method = grid.voxels, .held = grid.held, .limits = of_file(grid.limits)},
+        theirs{.method = grid.voxels, .held = grid.held, .limits = grid.limits};
+    const Demand demand{.fields = {&kCouplingIndex, &kInertiaCondition}};
+    const Survey<double> here = test::survey(file(), of_file(grid.design), mine, demand),
+                         there = test::survey(own(), grid.design, theirs, demand);
+    ASSERT_EQ(here.weight.size(), there.weight.size());
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(weighted_mean(here.weight, here.of(kCouplingIndex, i)),
+                  weighted_mean(there.weight, there.of(kCouplingIndex, i)), 1e-10);
+      EXPECT_NEAR(weighted_deviation(here.weight, here.of(kCouplingIndex, i)),
+                  weighted_deviation(there.weight, there.of(kCouplingIndex, i)), 1e-8);
+      EXPECT_NEAR(weighted_quantile(here.weight, here.of(kCouplingIndex, i), 0.95),
+                  weighted_quantile(there.weight, there.of(kCouplingIndex, i), 0.95), 1e-8);
+    }
+    EXPECT_NEAR(weighted_mean(here.weight, here.of(kInertiaCondition)),
+                weighted_mean(there.weight, there.of(kInertiaCondition)), 1e-10);
   }
 }
 

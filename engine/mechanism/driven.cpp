@@ -1,0 +1,119 @@
+#include "engine/mechanism/driven.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/core/error.hpp"
+#include "engine/mechanism/both_scalars.hpp"
+
+namespace pkm {
+namespace {
+
+class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
+ public:
+  Driven(std::shared_ptr<const Mechanism> bare, DriveTrains trains)
+      : bare_(std::move(bare)), trains_(std::move(trains)), rotors_(reflected(trains_)) {
+    PKM_EXPECTS(trains_.size() == bare_->info().joints.size() && !no_joint_forces(*bare_));
+  }
+
+  const MechanismInfo& info() const override { return bare_->info(); }
+  Refusal refuse(std::span<const double> parameters) const override { return bare_->refuse(parameters); }
+  PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
+                     const LimitSpec& limits) const override {
+    return bare_->inspect(parameters, pose, mode, limits);
+  }
+  std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double> parameters) const override {
+    return bare_->ranges(parameters);
+  }
+  std::optional<std::array<double, 2>> reach(std::span<const double> parameters, int coordinate) const override {
+    return bare_->reach(parameters, coordinate);
+  }
+  std::optional<double> middle(std::span<const double> parameters, int coordinate) const override {
+    return bare_->middle(parameters, coordinate);
+  }
+  void thresholds(std::span<const double> parameters, const LimitSpec& limits,
+                  std::span<double> values) const override {
+    bare_->thresholds(parameters, limits, values);
+  }
+  void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const override {
+    bare_->thresholds(parameters, limits, values);
+  }
+  NamedValues facts(std::span<const double> parameters, const LimitSpec& limits) const override {
+    return bare_->facts(parameters, limits);
+  }
+
+  /// Where its surveys do not know rotors, none: they are those of any mechanism, cell by cell.
+  const Voxels* voxels() const override {
+    return bare_->voxels() && (!has_rotors() || bare_->voxels()->take_rotors()) ? this : nullptr;
+  }
+  const Columns* columns() const override { return bare_->columns() ? this : nullptr; }
+  const Size* size() const override { return bare_->size(); }
+  const DesignTests* design_tests() const override { return bare_->design_tests(); }
+  const PoseMargins* pose_margins() const override { return bare_->pose_margins(); }
+  const Velocities* velocities() const override { return bare_->velocities(); }
+  const ForwardKinematics* forward() const override { return bare_->forward(); }
+  const Links* links() const override { return bare_->links(); }
+  const Dynamics* dynamics() const override { return this; }
+  const JointReactions* reactions() const override { return bare_->reactions(); }
+  const AuxiliaryChain* chain() const override { return bare_->chain(); }
+  const DriveTrains* drive_trains() const override { return &trains_; }
+
+ private:
+  friend DynamicsOf<Driven>;
+
+  bool has_rotors() const {
+    return std::ranges::any_of(rotors_, [](double rotor) { return rotor > 0; });
+  }
+  Demand with_rotors(Demand demand) const {
+    demand.rotors = rotors_;
+    return demand;
+  }
+  std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
+                                               const Demand& demand) const override {
+    return bare_->voxels()->prepare(plan, voxels, with_rotors(demand));
+  }
+  bool take_rotors() const override { return true; }
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+                                          const Demand& demand) const override {
+    if (demand.needs_inertia() && has_rotors() && !bare_->columns()->take_rotors())
+      throw std::invalid_argument("column surveys of mechanism " + info().name +
+                                  " have no inertia of drive trains; take workspace.method = \"voxels\"");
+    return bare_->columns()->prepare(plan, columns, with_rotors(demand));
+  }
+  bool take_box() const override { return bare_->columns()->take_box(); }
+
+  const std::vector<std::string>& mass_models() const override { return bare_->dynamics()->mass_models(); }
+  const std::string& mass_model() const override { return bare_->dynamics()->mass_model(); }
+  std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {
+    auto other = bare_->dynamics()->with_masses(model);
+    return other ? with_drive_trains(std::move(other), trains_) : nullptr;
+  }
+
+  /// A rotor's kinetic energy is J (g qdot)^2 / 2: J^T D J to M_X, J^T D Jdot Xdot to h_X.
+  template <class S>
+  void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
+                     std::span<PoseDynamics<S>> found) const {
+    bare_->dynamics()->equations(parameters, mode, states, found);
+    if (!has_rotors()) return;
+    for (PoseDynamics<S>& d : found) {
+      if (!d.assembles) continue;
+      AxisMatrix<S> weighted = d.J;
+      for (std::size_t i = 0; i < weighted.rows(); ++i)
+        for (std::size_t j = 0; j < weighted.cols(); ++j) weighted(i, j) = weighted(i, j) * rotors_[i];
+      d.M_X += transpose(weighted) * d.J;
+      d.h_X += transpose(weighted) * d.J_rate_X;
+    }
+  }
+
+  std::shared_ptr<const Mechanism> bare_;
+  DriveTrains trains_;
+  std::vector<double> rotors_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains) {
+  return std::make_shared<Driven>(std::move(mechanism), std::move(trains));
+}
+
+}  // namespace pkm

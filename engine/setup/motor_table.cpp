@@ -1,0 +1,27 @@
+#include "engine/setup/motor_table.hpp"
+
+#include "engine/core/catalogue.hpp"
+#include "engine/setup/sections.hpp"
+#include "engine/setup/text_file.hpp"
+#include "engine/setup/toml.hpp"
+
+namespace pkm {
+
+std::vector<Motor> load_motors_toml(const std::string& path) {
+  const TomlValue document = parse_toml(read_text_file(path, "motors in TOML"), path, "motors in TOML");
+  const ConfigValue root(document, path, "");
+  root.allow({"motor"});
+  std::vector<Motor> motors;
+  for (const ConfigValue& table : tables_of(root, "motor")) {
+    table.allow({"name", "continuous_torque", "peak_torque", "speed", "rotor_inertia"});
+    motors.push_back({.name = new_name(table, "motor", motors, "the motor's name"),
+                      .continuous_torque = table.at("continuous_torque", "the torque that it can hold").positive("N m"),
+                      .peak_torque = table.at("peak_torque", "the torque of short times").positive("N m"),
+                      .speed = table.at("speed", "the greatest speed").positive("rad/s"),
+                      .rotor = table.at("rotor_inertia", "the rotor's inertia").number("kg m^2", 0)});
+  }
+  if (motors.empty()) throw ConfigError({path, 0, ""}, "no [[motor]]", "motors in TOML: [[motor]] with name, ..");
+  return motors;
+}
+
+}  // namespace pkm

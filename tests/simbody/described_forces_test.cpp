@@ -1,0 +1,134 @@
+// Driving forces of the Delta and the Gough platform of experiments/mechanisms against Simbody's: along a cycle and at
+// random states under wrenches.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/dynamics/pose_dynamics.hpp"
+#include "engine/math/random.hpp"
+#include "engine/motion/motions.hpp"
+#include "tests/simbody/described_loops.hpp"
+#include "tests/unit/mechanisms/described/files.hpp"
+
+namespace pkm::simbody {
+namespace {
+
+constexpr double kAccuracy = 1e-9;  // of the largest force of a state
+
+std::vector<double> defaults(const MechanismInfo& info) {
+  std::vector<double> design;
+  for (const Parameter& p : info.parameters) design.push_back(p.nominal);
+  return design;
+}
+double parameter(const MechanismInfo& info, const std::string& name) {
+  return find_named(info.parameters, name)->nominal;
+}
+
+/// What the files say, worked out by hand.
+DeltaParameters delta() {
+  const MechanismInfo& info = test::described("rotary-delta")->info();
+  const double l_a = parameter(info, "l_a"), l_b = parameter(info, "l_b");
+  const double crank = 2700 * kPi / 4 * (0.03 * 0.03 - 0.026 * 0.026) * l_a, rod = 0.12 * l_b;
+  return {.R = parameter(info, "R"),
+          .r = parameter(info, "r"),
+          .l_a = l_a,
+          .l_b = l_b,
+          .crank_mass = crank,
+          .crank_inertia = crank * (l_a * l_a / 12 + (0.03 * 0.03 + 0.026 * 0.026) / 16),
+          .rod_mass = rod,
+          .rod_inertia = rod * l_b * l_b / 12,
+          .platform_mass = 0.25};
+}
+GoughParameters gough() {
+  const MechanismInfo& info = test::described("gough")->info();
+  const double r = parameter(info, "r");
+  return {.R = parameter(info, "R"),
+          .r = r,
+          .a_b = parameter(info, "a_b"),
+          .a_p = parameter(info, "a_p"),
+          .cylinder_mass = 12,
+          .cylinder_centre = 0.45,
+          .cylinder_inertia = 1,
+          .piston_mass = 6,
+          .piston_centre = 0.4,
+          .piston_inertia = 0.5,
+          .platform_mass = 40,
+          .platform_inertia = {10 * r * r, 10 * r * r, 20 * r * r}};
+}
+
+class Comparison {
+ public:
+  template <class Parameters>
+  Comparison(const std::string& name, const Parameters& parameters)
+      : mechanism_(*test::described(name)), design_(defaults(mechanism_.info())), loops_(parameters) {}
+
+  void check(const Pose<double>& pose, const AxisVector<double>& velocity, const AxisVector<double>& acceleration,
+             const Wrench<double>& wrench) {
+    const auto list = [](const AxisVector<double>& v) { return std::vector<double>(v.begin(), v.end()); };
+    const LoopSolution theirs = loops_.solve({list(pose), list(velocity), list(acceleration), wrench.m});
+    const MotionState<double> state{pose, velocity};
+    PoseDynamics<double> d;
+    mechanism_.dynamics()->equations(std::span<const double>(design_), mechanism_.info().modes.front(), {&state, 1},
+                                     {&d, 1});
+    ASSERT_TRUE(d.assembles);
+    const AxisVector<double> ours = drive_forces(d, acceleration, wrench);
+    double largest = 0, off = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      largest = std::max(largest, std::fabs(theirs.drive_forces[i]));
+      off = std::max(off, std::fabs(ours[i] - theirs.drive_forces[i]));
+    }
+    EXPECT_LE(off, kAccuracy * largest) << "at " << pose[0] << ", " << pose[1] << ", " << pose[2];
+    EXPECT_LE(theirs.open, 1e-9);
+    EXPECT_LE(theirs.unbalanced, 1e-9 * largest);
+    ++compared_;
+  }
+  /// Feasible poses in a box about the middle, in any state of motion.
+  void check_random(const Pose<double>& middle, const Pose<double>& reach, int count) {
+    Stream random(17, 0, 0, Stream::Use::start);
+    const std::size_t n = middle.size();
+    const auto some = [&](double scale) {
+      AxisVector<double> v(n);
+      for (double& x : v) x = scale * (2 * random.u01() - 1);
+      return v;
+    };
+    while (compared_ < count) {
+      Pose<double> pose = middle;
+      for (std::size_t i = 0; i < n; ++i) pose[i] += reach[i] * (2 * random.u01() - 1);
+      const PoseReport report =
+          mechanism_.inspect(design_, pose, mechanism_.info().modes.front(), no_limits(mechanism_.info()));
+      if (!report.feasible || report.conditioning.value_or(1) < 0.02) continue;
+      Wrench<double> wrench;
+      for (std::size_t i = 0; i < 6; ++i) wrench[i] = (i < 3 ? 50 : n < 6 ? 0 : 10) * (2 * random.u01() - 1);
+      check(pose, some(2), some(20), wrench);
+    }
+  }
+
+ private:
+  const Mechanism& mechanism_;
+  std::vector<double> design_;
+  DescribedLoops loops_;
+  int compared_ = 0;
+};
+
+TEST(DescribedForces, OfTheDeltaAlongACycle) {
+  Comparison comparison("rotary-delta", delta());
+  const auto cycle = pick_and_place({.axes = {.x = 0, .y = 1, .z = 2, .turn = {}},
+                                     .start = {-0.1, 0.05, -0.45},
+                                     .reach = 0.2,
+                                     .overlap = 0.02,
+                                     .direction = 0.4,
+                                     .back = true});
+  for (const MotionSample& at : sample(*cycle, 101)) comparison.check(at.pose, at.velocity, at.acceleration, {});
+}
+
+TEST(DescribedForces, OfTheDeltaAtRandomStates) {
+  Comparison("rotary-delta", delta()).check_random({0, 0, -0.45}, {0.25, 0.25, 0.15}, 1000);
+}
+
+TEST(DescribedForces, OfTheGoughPlatformAtRandomStates) {
+  Comparison("gough", gough()).check_random({0, 0, 1.3, 0, 0, 0}, {0.3, 0.3, 0.2, 0.4, 0.4, 0.4}, 1000);
+}
+
+}  // namespace
+}  // namespace pkm::simbody
