@@ -22,6 +22,11 @@ pkm_test_packages=(
   libopenmpi-dev openmpi-bin                  # several processes
   slurm-wlm munge                             # and as a cluster starts them
 )
+# The documentation as a site: its C++ interface, its buttons and formulas, the places in a study file.
+pkm_docs_packages=(
+  python3-sphinx python3-myst-parser furo python3-breathe doxygen python3-sphinx-copybutton libjs-katex python3-h5py
+)
+pkm_test_packages+=("${pkm_docs_packages[@]}")
 # For the page of pkmopt report. By the command's name: where node comes from elsewhere, Debian's package does not install.
 command -v npm >/dev/null || pkm_build_packages+=(npm)
 

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Writes the pages of the C++ interface: cpp.py REPOSITORY DOCS XML, with what Doxygen made of the headers in XML; or
+cpp.py --headers for their names.
+
+A page has each header's first comment and Breathe's directives for what the header declares."""
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+# Headers that users of the library include, in the order in which they are told of.
+HEADERS = {
+    "The command line as a library": ["experiments/app/program.hpp"],
+    "A mechanism": ["engine/mechanism/mechanism.hpp", "engine/core/parameter.hpp", "engine/core/refusal.hpp",
+                    "engine/model/pose.hpp"],
+    "What a mechanism may be able to": [
+        "engine/mechanism/abilities/kinematics.hpp", "engine/mechanism/abilities/design.hpp",
+        "engine/mechanism/abilities/columns.hpp", "engine/mechanism/abilities/dynamics.hpp",
+        "engine/model/influence.hpp", "engine/model/placed_link.hpp", "engine/model/chain.hpp",
+        "engine/dynamics/pose_dynamics.hpp", "engine/dynamics/reactions.hpp", "engine/motion/motion.hpp",
+        "engine/mechanism/pose_quantity.hpp"],
+    "Surveys": ["engine/mechanism/plan.hpp", "engine/mechanism/survey.hpp", "engine/mechanism/surveyor.hpp"],
+    "A design problem": ["engine/problem/problem.hpp", "engine/problem/evaluation.hpp",
+                         "engine/problem/evaluator.hpp", "engine/problem/design_problem.hpp",
+                         "engine/problem/quantity.hpp"],
+    "Optimisers and options": ["engine/optimisers/optimiser.hpp", "engine/core/options.hpp"],
+    "Studies": ["engine/setup/study.hpp"],
+}
+
+
+def fenced(code):
+    return f"```cpp\n{code}\n```\n\n"
+
+
+def first_comment(header):
+    lines = []
+    for line in header.read_text().splitlines():
+        if not line.startswith("//"):
+            break
+        lines.append(line[2:].removeprefix(" "))
+    return "\n".join(lines)
+
+
+def markdown_of(comment):
+    """Indented lines of a comment as a block of C++."""
+    text, code = "", []
+    for line in comment.splitlines() + [""]:
+        if line.startswith("  "):
+            code.append(line[2:])
+        else:
+            text += ("\n" + fenced("\n".join(code)) if code else "") + line + "\n"
+            code = []
+    return text.strip() + "\n\n"
+
+
+def declared_in(header, xml):
+    """Breathe's directives for what a header declares, in the header's order."""
+    directives = []
+    compounds = [ElementTree.parse(file).getroot()[0] for file in sorted(xml.glob("*_1_1*.xml"))]
+    for entry in compounds:
+        if entry.find("location").get("file") == header and entry.get("prot", "public") == "public":
+            name = entry.findtext("compoundname")
+            if name.count("::") == 1:
+                directives.append((int(entry.find("location").get("line")),
+                                   f"doxygen{entry.get('kind')}", name, ":members:\n:undoc-members:\n"))
+    for member in ElementTree.parse(xml / "namespacepkm.xml").getroot().iter("memberdef"):
+        if member.find("location").get("file") == header:
+            kind = {"variable": "doxygenvariable", "function": "doxygenfunction", "enum": "doxygenenum",
+                    "typedef": "doxygentypedef"}[member.get("kind")]
+            name = "pkm::" + member.findtext("name")
+            if kind == "doxygenfunction":
+                name += member.findtext("argsstring")
+            directives.append((int(member.find("location").get("line")), kind, name, ""))
+    return [f"```{{{kind}}} {name}\n{rest}```\n\n" for _, kind, name, rest in sorted(directives)]
+
+
+def write_pages(repository, docs, xml):
+    index = ("# The library in C++\n\nHeaders that programs of your own include, `#include` lines as they stand here. "
+             "[A mechanism in C++](../../tutorials/own-mechanism.md#in-c) begins with a whole program.\n\n")
+    toc = []
+    for title, group in HEADERS.items():
+        name = title.lower().replace(" ", "-")
+        toc.append(f"{title} <{name}>")
+        text = f"# {title}\n\n"
+        for header in group:
+            text += f"## {header}\n\n" + markdown_of(first_comment(repository / header))
+            text += "".join(declared_in(header, xml))
+        (docs / f"{name}.md").write_text(text)
+    (docs / "index.md").write_text(index + "```{toctree}\n:maxdepth: 2\n\n" + "\n".join(toc) + "\n```\n")
+
+
+def main():
+    if sys.argv[1:] == ["--headers"]:
+        print(*(header for group in HEADERS.values() for header in group))
+        return
+    repository, docs, xml = map(Path, sys.argv[1:])
+    pages = docs / "reference" / "cpp"
+    pages.mkdir(exist_ok=True)
+    write_pages(repository, pages, xml)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,267 @@
+#!/usr/bin/env python3
+"""Writes the pages of the reference that the program itself knows: reference.py PROGRAM REPOSITORY DOCS
+
+Catalogues come from `pkmopt list --json`, commands from `--help`, keys of JSON from what commands print, and the places
+in a study file, with a report, from a study that is run here."""
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+
+# Commands whose JSON is told, as they are typed.
+JSON = [
+    "list mechanisms 4ppa-2par",
+    "list optimisers nlopt",
+    "check experiments/4ppa-2par/wide-bounds.toml",
+    "evaluate experiments/4ppa-2par/wide-bounds.toml",
+    "pose 4ppa-2par --at x=0.25,y=0.85,z=-0.8,theta=30deg",
+    "forward 4ppa-2par --joints q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846",
+    "dynamics 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --acceleration x=5",
+    "coupling 3crr-r-cru --cells x=4,y=4,z=4 --phi 0",
+    "trajectory 3crr-r-cru --motion experiments/3crr-r-cru/motions/pick-and-place.toml --allow-infeasible",
+    "simulate 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --forces rho3=8 --duration 10ms --step 1ms",
+    "workspace 3crr-r-cru --cells x=8,y=8,z=8",
+    "show study.h5",
+]
+
+
+def cell(value):
+    """A value in a cell of a table."""
+    if value is None or value == [] or value == "":
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    if isinstance(value, list):
+        return ", ".join(f"`{v}`" for v in value)
+    return str(value).replace("|", "\\|")
+
+
+def table(head, rows):
+    """A Markdown table without the columns in which nothing stands."""
+    kept = [i for i in range(len(head)) if any(cell(row[i]) for row in rows)]
+    lines = ["| " + " | ".join(head[i] for i in kept) + " |", "|" + "---|" * len(kept)]
+    lines += ["| " + " | ".join(cell(row[i]) for i in kept) + " |" for row in rows]
+    return "\n".join(lines) + "\n\n"
+
+
+def span(entry):
+    low, high = entry["min"], entry["max"]
+    if low is None and high is None:
+        return ""
+    if high is None:
+        return f"from {cell(low)}"
+    return f"up to {cell(high)}" if low is None else f"{cell(low)} .. {cell(high)}"
+
+
+def unit(entry):
+    return None if entry["unit"] in (None, "1") else entry["unit"]
+
+
+def sentence(text):
+    return text[0].upper() + text[1:] + "."
+
+
+def parameters(entries):
+    return table(["name", "unit", "default", "range", "meaning"],
+                 [[f"`{e['name']}`", unit(e), e["default"], span(e), e["meaning"]] for e in entries])
+
+
+def options(entries):
+    def default(entry):
+        return "required" if entry["required"] else entry["default"]
+    return table(["key", "kind", "unit", "default", "range", "choices", "meaning"],
+                 [[f"`{e['name']}`", e["kind"], unit(e), default(e), span(e), e["choices"], e["meaning"]]
+                  for e in entries])
+
+
+def mechanism_page(entry):
+    text = f"# {entry['name']}\n\n{sentence(entry['meaning'])}\n\nSource: {entry['source']}.\n\n"
+    names = {"coordinates": "pose", "joints": "joints", "modes": "working modes; the first is the default",
+             "branches": "branches of the assembly", "swept": "swept by surveys", "held": "held by surveys",
+             "columns_along": "columns run along", "volume_unit": "unit of the volume",
+             "integrated_unit": "unit of the volume that is integrated over what is held",
+             "size": "size, for workspace-ratio",
+             "size_unit": "unit of the size", "characteristic_length": "characteristic length of the conditioning",
+             "mass_models": "where masses may come from", "masses": "where they come from unless a study says so",
+             "chain_input": "input of the auxiliary chain", "chain_output": "output of the auxiliary chain",
+             "objectives": "objectives that serve", "constraints": "constraints that serve"}
+    text += table(["what", "value"], [[title, entry[key]] for key, title in names.items() if cell(entry[key])])
+    if entry["other_sweeps"]:
+        text += "## Other sweeps\n\n" + table(["held", "swept", "columns along", "unit of the volume"], [
+            [s["held"], s["swept"], s["columns_along"], s["volume_unit"]] for s in entry["other_sweeps"]])
+    text += "## Parameters\n\n" + parameters(entry["parameters"])
+    for model, besides in entry.get("parameters_besides", {}).items():
+        text += f"## Parameters of {model.replace(' = ', ' ')}\n\n" + parameters(besides)
+    if entry["limits"]:
+        text += "## Limits of poses\n\n" + table(
+            ["name", "unit", "inactive", "range", "constraint", "derivation", "meaning"],
+            [[f"`{e['name']}`", unit(e), e["inactive"], span(e), f"`{e['constraint']}`", e["derivation"], e["meaning"]]
+             for e in entry["limits"]])
+    if entry["design_tests"]:
+        text += "## Tests of the design\n\n" + table(
+            ["constraint", "unit", "meaning"],
+            [[f"`{e['name']}`", unit(e), e["meaning"]] for e in entry["design_tests"]])
+    own = {e["name"] for e in entry["parameters"]}
+    text += "## Names that formulas know besides the parameters\n\n" + table(
+        ["name", "unit", "known", "meaning"],
+        [[f"`{e['name']}`", unit(e), e["known"], e["meaning"]]
+         for e in entry["expression_names"] if e["name"] not in own])
+    return text
+
+
+def served(entry):
+    if all(m["serves"] for m in entry["mechanisms"]):
+        return "It serves every mechanism that is built in.\n\n"
+    able = [m["name"] for m in entry["mechanisms"] if m["serves"]]
+    return f"Of the mechanisms that are built in it serves {cell(able)}.\n\n"
+
+
+def objectives_page(entries):
+    text = ("# Objectives\n\nThe `type` of an `[[objective]]`, a `[[report]]`, or, with `min` or `max`, a "
+            "`[[constraint]]`. Options are keys of the same table.\n\n")
+    for e in entries:
+        text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\n"
+        text += f"A study wants it to {e['direction']} unless it says otherwise. "
+        text += served(e) + (options(e["options"]) if e["options"] else "")
+    return text
+
+
+def constraints_page(entries):
+    text = ("# Constraints\n\nThe `type` of a `[[constraint]]`. Those of poses cut the workspace; those of the design "
+            "give a margin, which holds where it is not negative. Every [objective](objectives.md) is a constraint, "
+            "too, with `min` or `max`.\n\n")
+    for e in entries:
+        text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\nIt looks at the {e['level']}. " + served(e)
+        alike = {}
+        for mechanism, specs in e["options"].items():
+            alike.setdefault(json.dumps(specs), []).append(mechanism)
+        for specs, mechanisms in alike.items():
+            if json.loads(specs):
+                text += ("Of " + ", ".join(f"`{m}`" for m in mechanisms) + ":\n\n" if len(alike) > 1 else "")
+                text += options(json.loads(specs))
+    return text
+
+
+def optimisers_page(entries):
+    text = ("# Optimisers\n\nThe `optimiser` of a `[[stage]]`. Options are keys of the same table. Stages run one "
+            "after the other, each from what the ones before have found.\n\n")
+    for e in entries:
+        c = e["capabilities"]
+        most = c["max_objectives"]
+        objectives = ("one objective" if most == 1 else "any number of objectives" if most is None else
+                      f"{c['min_objectives']} to {most} objectives")
+        facts = [objectives, "constraints" if c["constraints"] else "no constraints",
+                 "variables with a step" if c["discrete"] else "no variables with a step"]
+        if c["needs_gradient"]:
+            facts.append("asks for gradients")
+        text += f"## {e['name']}\n\n{sentence(e['meaning'])}\n\nIt takes: {', '.join(facts)}.\n\n"
+        text += options(e["options"])
+    return text
+
+
+def fenced(text, language="text"):
+    return f"```{language}\n{text.rstrip()}\n```\n\n"
+
+
+def keys_of(value, path=""):
+    """(key, example) of every number and word in a JSON object; of a list its first element stands for all."""
+    if isinstance(value, dict):
+        if len(value) > 5 and all(isinstance(inner, float) for inner in value.values()):  # names are the mechanism's
+            name, number = next(iter(value.items()))
+            yield f"{path}.NAME", f"{name}: {number}"
+            return
+        for key, inner in value.items():
+            yield from keys_of(inner, f"{path}.{key}" if path else key)
+    elif isinstance(value, list) and value and isinstance(value[0], (dict, list)):
+        yield from keys_of(value[0], path + "[]")
+    else:
+        text = json.dumps(value, ensure_ascii=False)
+        yield path, text if len(text) <= 60 else text[:57] + "..."
+
+
+def json_page(run):
+    text = ("# JSON\n\nWith `--json` a command prints one object. Numbers have full precision, matrices are lists of "
+            "rows, `null` is what does not exist. `[]` in a key stands for each element of a list. The tables below "
+            "are made from what the commands print.\n\n")
+    for line in JSON:
+        answer = json.loads(run(*line.split(), "--json"))
+        title = " ".join(word for word in line.split()[:2] if word.isalpha())
+        text += f"## {title}\n\n" + fenced(f"pkmopt {line} --json", "sh")
+        text += table(["key", "here"], [[f"`{key}`", f"`{example}`"] for key, example in keys_of(answer)])
+    return text
+
+
+def schema_page(study):
+    rows, groups = [], []
+
+    def words(attribute):
+        """Of an attribute that is a text or an array of texts."""
+        texts = [attribute] if isinstance(attribute, (str, bytes)) else attribute
+        return [text.decode() if isinstance(text, bytes) else str(text) for text in texts]
+
+    with h5py.File(study) as file:
+        def visit(name, item):
+            about = ", ".join(words(item.attrs.get("description", "")))
+            if isinstance(item, h5py.Dataset):
+                units = dict.fromkeys(words(item.attrs.get("unit", "")))
+                rows.append([f"`/{name}`", " x ".join(map(str, item.shape)) or "1", ", ".join(units), about])
+            else:
+                groups.append([f"`/{name}`", ", ".join(f"`{a}`" for a in item.attrs if a != "description"), about])
+        file.visititems(visit)
+    return ("# Places in a study file\n\nWhat stands in the file of "
+            "`experiments/4ppa-2par/wide-bounds-20-by-2.toml`, told by the file itself. "
+            "[The study file](study-file.md) says how to read it.\n\n## Groups\n\n" +
+            table(["group", "attributes", "meaning"], groups) + "## Datasets\n\n" +
+            table(["dataset", "size here", "unit", "meaning"], rows))
+
+
+def main():
+    program, repository, docs = (Path(argument).resolve() for argument in sys.argv[1:])
+
+    def run(*arguments):
+        done = subprocess.run([program, *arguments], cwd=repository, stdout=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{program} {' '.join(arguments)} ends with code {done.returncode}")
+        return done.stdout
+
+    reference = docs / "reference"
+    (reference / "catalogue").mkdir(exist_ok=True)
+
+    catalogue = json.loads(run("list", "--json"))
+    pages = {m["name"]: mechanism_page(m) for m in catalogue["mechanisms"]}
+    pages["objectives"] = objectives_page(catalogue["objectives"])
+    pages["constraints"] = constraints_page(catalogue["constraints"])
+    pages["optimisers"] = optimisers_page(catalogue["optimisers"])
+    index = "# What a study may name\n\nThe catalogues of the program, as `pkmopt list --json` tells them.\n\n"
+    for kind, entries in catalogue.items():
+        page = "{}.md" if kind == "mechanisms" else kind + ".md#{}"
+        index += f"## {kind.capitalize()}\n\n" + table(
+            ["name", "meaning"], [[f"[{e['name']}]({page.format(e['name'])})", e["meaning"]] for e in entries])
+    pages["index"] = index + "```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+    for name, text in pages.items():
+        (reference / "catalogue" / f"{name}.md").write_text(text)
+
+    help_text = run("--help")
+    table_of_commands = help_text.split("Subcommands:\n")[1].split("\n\n")[0]
+    commands = [line.split()[0] for line in table_of_commands.splitlines()]
+    text = "# Commands\n\nWhat `pkmopt --help` and `pkmopt COMMAND --help` print.\n\n" + fenced(help_text)
+    for command in commands:
+        text += f"## {command}\n\n" + fenced(run(command, "--help"))
+    (reference / "commands.md").write_text(text)
+
+    with tempfile.TemporaryDirectory() as folder:
+        study = Path(folder) / "study.h5"
+        run("run", "experiments/4ppa-2par/wide-bounds-20-by-2.toml", "--output", str(study), "--quiet")
+        run("report", str(study), "-o", str(docs / "_static" / "report.html"))
+        (reference / "schema.md").write_text(schema_page(study))
+        (reference / "json.md").write_text(
+            json_page(lambda *words: run(*[str(study) if word == "study.h5" else word for word in words])))
+
+
+if __name__ == "__main__":
+    main()
