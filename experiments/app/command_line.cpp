@@ -68,15 +68,14 @@ ConfigError left_over(const CLI::App& app, const std::string& command) {
                      nearest_name(name, known));
 }
 
-/// Our help under the name of a user's own program.
+}  // namespace
+
 std::string with_name(std::string help, const std::string& name) {
   const std::string own = "pkmopt ";
   for (auto at = help.find(own); at != std::string::npos; at = help.find(own, at + name.size()))
     help.replace(at, own.size() - 1, name);
   return help;
 }
-
-}  // namespace
 
 std::int64_t parse_option(const std::string& text, const std::string& option, std::int64_t lower, std::int64_t upper) {
   const auto number = parse_integer(text);

@@ -12,4 +12,7 @@ namespace pkm {
 /// these are asked for. Throws ConfigError for a command line that is wrong, naming the nearest known word.
 void parse_command_line(CLI::App& app, const std::vector<std::string>& arguments);
 
+/// Our help under the name of a user's own program.
+std::string with_name(std::string help, const std::string& name);
+
 }  // namespace pkm

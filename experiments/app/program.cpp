@@ -53,7 +53,9 @@ constexpr Command kCommands[] = {{"run", add_run, true},
                                  {"report", add_report},
                                  {"export", add_export},
                                  {"list", add_list},
-                                 {"new", add_new}};
+                                 {"new", add_new},
+                                 {"completion", add_completion},
+                                 {"manual", add_manual}};
 
 /// For comparisons: results are the same on all.
 void add_instruction_set(CLI::App& command) {
@@ -76,32 +78,36 @@ void add_instruction_set(CLI::App& command) {
       ->type_name("SET");
 }
 
+void add(const Command& command, CLI::App& app, Session& session) {
+  command.add(app, session);
+  if (command.evaluates) add_instruction_set(*app.get_subcommand(std::string(command.name)));
+}
+
 void run(const std::vector<std::string>& arguments, Session& session) {
-  CLI::App app("Design-space optimisation of parallel kinematic machines.", session.program);
+  CLI::App app(kProgramMeaning, session.program);
   app.set_version_flag("--version", program_words() + "\ninstruction set: " + std::string(name_of(instruction_set())) +
                                         " of " + join({kInstructionSets.begin(), kInstructionSets.end()}));
   app.get_formatter()->column_width(36);
   app.get_formatter()->label("REQUIRED", "(required)");
   app.require_subcommand(1);
-  app.footer(
-      "'pkmopt COMMAND --help' tells more of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
-      "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint to go on from, 4 nothing "
-      "feasible.\n"
-      "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml");
+  app.footer(kProgramNotes);
   // To declare all commands takes longer than to carry out most of them: where one is named, the others are left out.
   const auto named =
       arguments.empty() ? std::end(kCommands) : std::ranges::find(kCommands, arguments[0], &Command::name);
-  for (const Command& command : kCommands) {
-    if (named != std::end(kCommands) && &command != named) continue;
-    command.add(app, session);
-    if (command.evaluates) add_instruction_set(*app.get_subcommand(std::string(command.name)));
-  }
+  if (named != std::end(kCommands))
+    add(*named, app, session);
+  else
+    add_all_commands(app, session);
   parse_command_line(app, arguments);
   std::cout.flush();
   if (!std::cout) throw std::runtime_error("the results cannot be written to the standard output");
 }
 
 }  // namespace
+
+void add_all_commands(CLI::App& app, Session& session) {
+  for (const Command& command : kCommands) add(command, app, session);
+}
 
 Catalogues all_catalogues() { return {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()}; }
 

@@ -1,0 +1,96 @@
+// What shells complete and what man shows is what the program declares.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+using testing::run_program;
+using ::testing::UnorderedElementsAre;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// What bash offers for the last of some words, in a folder.
+std::vector<std::string> offered(const std::vector<std::string>& words, const std::string& folder) {
+  std::string list;
+  for (const std::string& word : words) list += " '" + word + "'";
+  const auto result = run_program(
+      {"/bin/bash", "-c",
+       "compopt() { :; }; eval \"$('" PKM_PROGRAM "' completion bash)\"; COMP_WORDS=(" + list +
+           "); COMP_CWORD=" + std::to_string(words.size() - 1) + "; _pkmopt; printf '%s\\n' \"${COMPREPLY[@]}\""},
+      folder);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return lines_of(result.out);
+}
+
+TEST(Completion, OffersCommandsOptionsNamesAndFiles) {
+  const testing::StudyFolder folder;
+  for (const char* const name : {"a.toml", "b.h5", "c.txt"}) folder.write(name, "\n");
+  const std::string& here = folder.path();
+  std::filesystem::create_directory(here + "/deeper");
+  EXPECT_THAT(offered({"pkmopt", "re"}, here), UnorderedElementsAre("resume", "report"));
+  EXPECT_THAT(offered({"pkmopt", "run", "--see"}, here), UnorderedElementsAre("--seed", "--seeds"));
+  EXPECT_THAT(offered({"pkmopt", "run", "--instruction-set", "avx"}, here), UnorderedElementsAre("avx2", "avx512"));
+  EXPECT_THAT(offered({"pkmopt", "run", ""}, here),
+              AllOf(Contains("a.toml"), Contains("deeper"), Not(Contains("b.h5"))));
+  EXPECT_THAT(offered({"pkmopt", "show", ""}, here), AllOf(Contains("b.h5"), Not(Contains("a.toml"))));
+  EXPECT_THAT(offered({"pkmopt", "pose", "3crr"}, here), ElementsAre("3crr-r-cru"));
+  EXPECT_THAT(offered({"pkmopt", "pose", "a"}, here), ElementsAre("a.toml"));
+  EXPECT_THAT(offered({"pkmopt", "new", ""}, here), UnorderedElementsAre("mechanism", "study"));
+}
+
+TEST(Completion, OfOtherShellsNamesEveryOption) {
+  for (const std::string shell : {"zsh", "fish"}) {
+    const auto result = run_program({PKM_PROGRAM, "completion", shell});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    for (const char* const word : {"resume", "generations", "instruction-set", "4ppa-2par", "vtk"})
+      EXPECT_THAT(result.out, HasSubstr(word)) << shell;
+    const std::string path = "/usr/bin/" + shell;
+    if (!std::filesystem::exists(path)) continue;
+    const testing::StudyFolder folder;
+    const auto checked = run_program({path, "-n", folder.write("script", result.out)});
+    EXPECT_EQ(checked.exit_code, 0) << shell << ": " << checked.err;
+  }
+}
+
+TEST(Completion, OfAnUnknownShellNamesTheNearest) {
+  const auto result = run_program({PKM_PROGRAM, "completion", "bsh"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err,
+            "pkmopt: completion: found the unknown shell 'bsh'; expected one of bash, zsh, fish; did you mean "
+            "'bash'?\n");
+}
+
+TEST(Manual, HasAPageForEveryCommandWithEveryOption) {
+  const testing::StudyFolder folder;
+  const auto result = run_program({PKM_PROGRAM, "manual", "--into", folder.path() + "/man"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::vector<std::string> pages;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path() + "/man"))
+    pages.push_back(entry.path().filename().string());
+  EXPECT_THAT(pages, IsSupersetOf({"pkmopt.1", "pkmopt-run.1", "pkmopt-manual.1", "pkmopt-workspace.1"}));
+  EXPECT_THAT(run_program({PKM_PROGRAM, "manual"}).out,
+              AllOf(HasSubstr("pkmopt\\-run"), HasSubstr("Exit codes"), HasSubstr("paper\\-problem.toml")));
+  EXPECT_THAT(run_program({PKM_PROGRAM, "manual", "workspace"}).out,
+              AllOf(HasSubstr("\\-\\-vtk F.vtkhdf"), HasSubstr(".SH SEE ALSO")));
+}
+
+}  // namespace
+}  // namespace pkm
