@@ -14,13 +14,13 @@ Term is_less(const Term& x, const Term& y) { return call(operation("<"), x, y); 
 
 }  // namespace
 
-Term Derivative::of(Node root) {
+Term Rates::of(Node root) {
   for (const Node node : graph_.reachable({&root, 1}))
     if (!known_.contains(node)) known_.emplace(node, of_operation(node).node());
   return known(root);
 }
 
-Term Derivative::of_operation(Node node) {
+Term Rates::of_operation(Node node) {
   const Entry entry = graph_[node];
   const Term zero(graph_, 0.0), one(graph_, 1.0), f(graph_, node);
   if (!entry.operation) return zero;

@@ -11,10 +11,10 @@
 
 namespace pkm::graph {
 
-/// Along one direction of the inputs.
-class Derivative {
+/// While inputs move at given rates.
+class Rates {
  public:
-  explicit Derivative(Graph& graph) : graph_(graph) {}
+  explicit Rates(Graph& graph) : graph_(graph) {}
 
   /// Lets an input move at this rate; before the first derivative.
   void move(Node input, Node rate) { known_.emplace(input, rate); }
@@ -28,5 +28,13 @@ class Derivative {
   Graph& graph_;
   std::unordered_map<Node, Node> known_;  ///< derivatives
 };
+
+/// The derivative of f by one input, to be bounded by intervals as f is: over a box that holds a kink it holds both
+/// sides. At a jump it means nothing; there, an interval of f says that f is not continuous.
+inline Node derivative(Graph& graph, Node f, Node input) {
+  Rates rates(graph);
+  rates.move(input, graph.number(1));
+  return rates.of(f).node();
+}
 
 }  // namespace pkm::graph

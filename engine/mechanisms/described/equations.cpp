@@ -9,7 +9,7 @@
 namespace pkm::described {
 namespace {
 
-using graph::Derivative, graph::Term;
+using graph::Rates, graph::Term;
 using limbs::Vector3;
 
 class Equations {
@@ -26,7 +26,7 @@ class Equations {
   EquationNodes found() {
     EquationNodes e;
     for (const Node joint : model_.joints) {
-      for (Derivative& by : by_) e.J.push_back(by.of(joint).node());
+      for (Rates& by : by_) e.J.push_back(by.of(joint).node());
       e.J_rate_X.push_back(along_.of(along_.of(joint)).node());
     }
     std::vector<Term> G(n_, number(0));
@@ -37,7 +37,7 @@ class Equations {
     put(G, e.G_X);
     add_inertia(e);
     for (const Node place : *model_.wrench_point)
-      for (Derivative& by : by_) e.J_wrench.push_back(by.of(place).node());
+      for (Rates& by : by_) e.J_wrench.push_back(by.of(place).node());
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t i = 0; i < n_; ++i) e.J_wrench.push_back(model_.turn_axes[i][axis]);
     return e;
@@ -62,7 +62,7 @@ class Equations {
   Moving turn_of(const DescribedArm& arm) {
     const Vector3 at = vector(arm.arm), rod = vector(arm.rod), tangent = cross(vector(arm.axis), at);
     const Term lever = number(1) / dot(rod, tangent);
-    const auto turn_along = [&](Derivative& derivative) {
+    const auto turn_along = [&](Rates& derivative) {
       Term sum = number(0);
       for (std::size_t k = 0; k < 3; ++k) sum = sum + rod[k] * derivative.of(arm.B[k]);
       const Term turn = sum * lever;
@@ -72,7 +72,7 @@ class Equations {
       return turn;
     };
     Moving moving{{}, turn_along(along_)};
-    for (Derivative& by : by_) moving.by.push_back(turn_along(by));
+    for (Rates& by : by_) moving.by.push_back(turn_along(by));
     return moving;
   }
 
@@ -87,7 +87,7 @@ class Equations {
   }
   std::optional<std::size_t> add(Node node) {
     Moving moving{{}, along_.of(node)};
-    for (Derivative& by : by_) moving.by.push_back(by.of(node));
+    for (Rates& by : by_) moving.by.push_back(by.of(node));
     return add(moving);
   }
   void add_product(std::optional<std::size_t> f, std::optional<std::size_t> g, const Term& weight) {
@@ -107,11 +107,11 @@ class Equations {
     for (const DescribedBody::LineTurn& turn : body.line_turns) {
       const Vector3 d = vector(turn.d);
       const Term per_square = number(1) / dot(d, d);
-      const auto omega = [&](Derivative& derivative) {
+      const auto omega = [&](Rates& derivative) {
         return cross(d, Vector3{derivative.of(d[0]), derivative.of(d[1]), derivative.of(d[2])}) * per_square;
       };
       std::vector<Vector3> by;
-      for (Derivative& each : by_) by.push_back(omega(each));
+      for (Rates& each : by_) by.push_back(omega(each));
       const Vector3 rate = omega(along_);
       for (std::size_t k = 0; k < 3; ++k) {
         Moving moving{{}, rate[k]};
@@ -148,8 +148,8 @@ class Equations {
   }
 
   Model& model_;
-  std::vector<Derivative> by_;  ///< by each coordinate
-  Derivative along_;            ///< the velocity
+  std::vector<Rates> by_;  ///< by each coordinate
+  Rates along_;            ///< the velocity
   std::size_t n_;
   std::vector<Moving> turns_;  ///< by arm
   std::map<std::vector<Node>, std::size_t> known_;

@@ -16,16 +16,16 @@ namespace {
 
 const std::vector<std::string> kNames = {"x", "y"};
 
-struct Rates {
+struct Computed {
   double value, first, second;
 };
 
 /// Of a formula while x moves at the rate 0.7 and y at -1.3.
-Rates by_nodes(const std::string& text, double x, double y) {
+Computed by_nodes(const std::string& text, double x, double y) {
   Graph graph;
   const Node inputs[2] = {graph.input(0), graph.input(1)};
   const Node f = read_formula(graph, text, kNames, inputs);
-  Derivative along(graph);
+  Rates along(graph);
   along.move(inputs[0], graph.number(0.7));
   along.move(inputs[1], graph.number(-1.3));
   const Node first = along.of(f).node(), second = along.of(first).node();
@@ -54,7 +54,7 @@ TEST(Derivative, EqualsThatOfTaylorNumbersForEveryOperation) {
   texts.insert(texts.end(), {"-x*y", "x > y ? x*y : y/x", "x^3", "x^2.5", "2.5^x", "abs(x - 2*y)"});
   for (const std::string& text : texts)
     for (const auto& [x, y] : {std::pair{0.8, 1.1}, std::pair{1.3, 0.6}, std::pair{0.5, 0.9}}) {
-      const Rates ours = by_nodes(text, x, y);
+      const Computed ours = by_nodes(text, x, y);
       const Taylor theirs = by_taylor(text, x, y);
       ASSERT_TRUE(std::isfinite(theirs.dd)) << text;
       EXPECT_NEAR(ours.value, theirs.a, 1e-15 * std::fabs(theirs.a)) << text;
@@ -66,7 +66,7 @@ TEST(Derivative, EqualsThatOfTaylorNumbersForEveryOperation) {
 TEST(Derivative, OfWhatDoesNotMoveIsTheNumberZero) {
   Graph graph;
   const Node x = graph.input(0), y = graph.input(1);
-  Derivative by_x(graph);
+  Rates by_x(graph);
   by_x.move(x, graph.number(1));
   EXPECT_TRUE(by_x.of(sqrt(Term(graph, y)) * 3.0).is(0));
   EXPECT_TRUE(by_x.of(Term(graph, x) + Term(graph, y)).is(1));
@@ -75,7 +75,7 @@ TEST(Derivative, OfWhatDoesNotMoveIsTheNumberZero) {
 TEST(Derivative, TakesARateThatItIsToldForANode) {
   Graph graph;
   const Term x(graph, graph.input(0)), c = cos(x);
-  Derivative by_x(graph);
+  Rates by_x(graph);
   by_x.move(x.node(), graph.number(1));
   by_x.move(c.node(), graph.number(5));
   EXPECT_TRUE(by_x.of(c).is(5));
