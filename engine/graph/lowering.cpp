@@ -196,4 +196,12 @@ class Lowering {
 
 std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z) { return Lowering(graph, z).conditions(f); }
 
+std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z) {
+  const auto form = Lowering(graph, z).form(f);
+  if (!form || !form->B.empty()) return {};
+  std::vector<Node> coefficients;
+  for (const Term& c : form->A) coefficients.push_back(c.node());
+  return coefficients;
+}
+
 }  // namespace pkm::graph

@@ -27,4 +27,7 @@ using Clause = std::vector<Quadratic>;
 /// @param z  the group of the coordinate
 std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z);
 
+/// The coefficients of f as a polynomial in z, the lowest first, at most five; none: it is no such polynomial.
+std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z);
+
 }  // namespace pkm::graph

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/mechanisms/described/columns/survey.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
 #include "engine/mechanisms/described/voxels.hpp"
 
@@ -9,7 +10,7 @@ namespace pkm::described {
 namespace {
 
 /// Its abilities are those that the description has what for.
-class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKinematics, Links, DesignTests, Size {
+class DescribedMechanism final : public Mechanism, Voxels, Columns, Velocities, ForwardKinematics, Links, DesignTests, Size {
  public:
   explicit DescribedMechanism(Model model) : e_(std::move(model)) {}
 
@@ -41,6 +42,7 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
   }
 
   const Voxels* voxels() const override { return this; }
+  const Columns* columns() const override { return this; }
   const Velocities* velocities() const override { return this; }
   const ForwardKinematics* forward() const override {
     return e_.model.inputs.joints == e_.model.inputs.coordinates ? this : nullptr;
@@ -54,6 +56,11 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
                                                const Demand& demand) const override {
     return prepare_voxels(*this, e_, plan, voxels, demand);
   }
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+                                          const Demand& demand) const override {
+    return prepare_columns(*this, e_, plan, columns, demand);
+  }
+  bool take_box() const override { return true; }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {
     return influence_at(e_, parameters, pose, number_of_mode(info(), mode));

@@ -1,0 +1,348 @@
+#include "engine/mechanisms/described/columns/section.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/graph/reverse.hpp"
+#include "engine/math/hash.hpp"
+
+namespace pkm::described {
+namespace {
+
+// Kinds of corners, in the order in which one stands for all at its place.
+constexpr std::uint32_t kSide = 1U << 28, kPlain = 2U << 28, kUpright = 3U << 28, kExtreme = 4U << 28,
+                        kCrossing = 5U << 28, kKind = 15U << 28;
+constexpr double kTie = 1e-13;
+
+std::uint32_t crossing(std::size_t k, std::size_t l) { return kCrossing | static_cast<std::uint32_t>(k << 8U | l); }
+Signs bit(std::size_t k) { return Signs{1} << k; }
+
+/// The sign of a quadratic below all of its roots.
+bool positive_below(const std::array<double, 3>& c, int roots) {
+  if (c[2] != 0) return c[2] > 0;
+  return roots > 0 ? c[1] < 0 : c[0] >= 0;
+}
+
+/// c by t and s, from C by v and z.
+Conic in_square(const std::array<double, 6>& C, const std::array<double, 2>& v, const std::array<double, 2>& z) {
+  const auto [vm, vh] = v;
+  const auto [zm, zh] = z;
+  Conic P;
+  P.c = {C[0] + vm * (C[1] + vm * C[3]) + zm * (C[2] + vm * C[4] + zm * C[5]),
+         vh * (C[1] + 2 * vm * C[3] + zm * C[4]),
+         zh * (C[2] + vm * C[4] + 2 * zm * C[5]),
+         vh * vh * C[3],
+         vh * zh * C[4],
+         zh * zh * C[5]};
+  for (const double c : P.c) P.scale += std::fabs(c);
+  return P;
+}
+
+}  // namespace
+
+bool Section::load(std::span<const double> registers, SectionRoom& room) const {
+  const auto middle_and_half = [&](const std::array<std::uint32_t, 2>& ends) {
+    const double from = registers[ends[0]], to = registers[ends[1]];
+    return std::array{0.5 * (from + to), 0.5 * (to - from)};
+  };
+  room.v = middle_and_half(plan_.range[plan_.range.size() - 2]);
+  room.z = middle_and_half(plan_.range.back());
+  if (!(room.v[1] > 0) || !(room.z[1] > 0)) return false;
+  room.active.clear();
+  room.always = 0;
+  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
+    std::array<double, 6> C;
+    for (std::size_t i = 0; i < 6; ++i) C[i] = registers[plan_.surfaces[k].coefficients[i]];
+    const Conic& P = room.conics[k] = in_square(C, room.v, room.z);
+    if (!std::isfinite(P.scale)) {
+      if ((plan_.formula.all & bit(k)) != 0) return false;
+      continue;
+    }
+    const double rest = P.scale - std::fabs(P.c[0]);
+    if (P.c[0] < -rest * (1 + 1e-12)) {  // negative everywhere
+      if ((plan_.formula.all & bit(k)) != 0) return false;
+    } else if (P.c[0] > rest * (1 + 1e-12) || rest == 0) {
+      room.always |= bit(k);
+    } else {
+      room.active.push_back(k);
+    }
+  }
+  return true;
+}
+
+/// Unless the place is known to be infeasible whatever the surfaces `of` say there.
+void Section::add_corner(double t, double s, Signs of, std::uint32_t label, SectionRoom& room) const {
+  if (!(std::fabs(s) <= 1 + 1e-9)) return;
+  Signs maybe = room.always | of;
+  for (const std::size_t m : room.active) {
+    if ((of & bit(m)) != 0) continue;
+    const Conic& P = room.conics[m];
+    if (P.at(t, s) >= -1e-7 * P.scale)
+      maybe |= bit(m);
+    else if ((plan_.formula.all & bit(m)) != 0)
+      return;
+  }
+  for (const Signs one_of : plan_.formula.any)
+    if ((maybe & one_of) == 0) return;
+  room.corners.push_back({t, label});
+}
+
+void Section::find_corners(SectionRoom& room) const {
+  room.corners.clear();
+  std::array<double, 8> at{};
+  std::array<Point, 16> points{};
+  for (std::size_t i = 0; i < room.active.size(); ++i) {
+    const std::size_t k = room.active[i];
+    const Conic& P = room.conics[k];
+    const auto number = static_cast<std::uint32_t>(k);
+    if (!plan_.surfaces[k].has_z || (P.c[2] == 0 && P.c[4] == 0 && P.c[5] == 0)) {
+      const std::size_t found = roots_between(std::array{P.c[0], P.c[1], P.c[3]}, at);
+      for (std::size_t n = 0; n < found; ++n) room.corners.push_back({at[n], kUpright | number});
+      continue;
+    }
+    if (P.is_straight()) {
+      if (P.c[4] != 0) room.corners.push_back({-P.c[2] / P.c[4], kExtreme | number});
+    } else {
+      const std::size_t found = roots_between(P.discriminant(), at);
+      for (std::size_t n = 0; n < found; ++n)
+        add_corner(at[n], -0.5 * (P.c[2] + at[n] * P.c[4]) / P.c[5], bit(k), kExtreme | number, room);
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::size_t l = room.active[j];
+      if (!plan_.surfaces[l].has_z) continue;
+      const std::size_t found = crossings(P, room.conics[l], points);
+      for (std::size_t n = 0; n < found; ++n)
+        add_corner(points[n].t, points[n].s, bit(k) | bit(l), crossing(l, k), room);
+    }
+  }
+}
+
+void Section::find_column(double t, const double* registers, SectionRoom& room) const {
+  Signs signs = room.always;
+  room.ends.clear();
+  for (const std::size_t k : room.active) {
+    const auto c = room.conics[k].along(t);
+    const Roots roots = roots_of(c);
+    if (positive_below(c, roots.count)) signs |= bit(k);
+    for (int r = 0; r < roots.count; ++r)
+      room.ends.emplace_back(roots.s[static_cast<std::size_t>(r)], static_cast<EndLabel>(k << 1U) + (r ? 1U : 0U));
+  }
+  std::sort(room.ends.begin(), room.ends.end());
+  room.column.clear();
+  bool is_in = false;
+  EndLabel lower = 0;
+  for (std::size_t i = 0; i < room.ends.size();) {
+    const double s = room.ends[i].first;
+    const Signs before = signs;
+    std::size_t end = i;
+    for (; end < room.ends.size() && room.ends[end].first <= s + kTie; ++end) signs ^= bit(room.ends[end].second >> 1U);
+    if (plan_.formula.holds(signs, registers) != is_in) {
+      is_in = !is_in;
+      // of several ends at one place, the first surface's that changes in this direction
+      EndLabel label = ~EndLabel{0}, any = ~EndLabel{0};
+      for (std::size_t j = i; j < end; ++j) {
+        const EndLabel each = room.ends[j].second;
+        any = std::min(any, each);
+        if (((signs & ~before & bit(each >> 1U)) != 0) == is_in) label = std::min(label, each);
+      }
+      if (label == ~EndLabel{0}) label = any;
+      if (is_in)
+        lower = label;
+      else
+        room.column.push_back({lower, label});
+    }
+    i = end;
+  }
+}
+
+void Section::run_plain(double t, std::span<double> registers, const SectionRoom& room,
+                        std::vector<double>& values) const {
+  const graph::Program& program = plan_.program;
+  for (const auto& input : program.stages()[stage_of_v()].inputs) registers[input.to] = room.v[0] + room.v[1] * t;
+  program.run<double>(stage_of_v(), registers);
+  values.clear();
+  for (const std::uint32_t at : plan_.plain.back()) values.push_back(registers[at]);
+}
+
+bool Section::plain_holds(double t, std::span<double> registers, const SectionRoom& room) const {
+  const graph::Program& program = plan_.program;
+  for (const auto& input : program.stages()[stage_of_v()].inputs) registers[input.to] = room.v[0] + room.v[1] * t;
+  program.run<double>(stage_of_v(), registers);
+  return std::ranges::all_of(plan_.plain.back(), [&](std::uint32_t at) { return registers[at] >= 0; });
+}
+
+/// Corners where a plain condition along v changes its sign, among the pieces found so far.
+void Section::find_plain_corners(std::span<double> registers, SectionRoom& room) const {
+  constexpr int kSteps = 24;
+  const double low = room.pieces.front().from, high = room.pieces.back().to;
+  const double inset = 1e-9 * (high - low);
+  double t = low + inset;
+  run_plain(t, registers, room, room.before);
+  for (int step = 1; step <= kSteps; ++step) {
+    const double next = step == kSteps ? high - inset : low + (high - low) * step / kSteps;
+    run_plain(next, registers, room, room.now);
+    for (std::size_t i = 0; i < room.now.size(); ++i) {
+      if ((room.before[i] >= 0) == (room.now[i] >= 0)) continue;
+      double a = t, b = next, at_a = room.before[i], at_b = room.now[i];
+      for (int n = 0; n < 100 && b - a > 4e-16; ++n) {  // Illinois, which halves where a side stays
+        double x = a - at_a * (b - a) / (at_b - at_a);
+        if (!(x > a && x < b) || n % 3 == 2) x = 0.5 * (a + b);
+        if (x <= a || x >= b) break;
+        run_plain(x, registers, room, room.other_adjoints);
+        const double f = room.other_adjoints[i];
+        ((f >= 0) == (at_a >= 0) ? a : b) = x;
+        ((f >= 0) == (at_a >= 0) ? at_a : at_b) = f;
+      }
+      room.corners.push_back({b, kPlain | static_cast<std::uint32_t>(i)});
+    }
+    t = next;
+    std::swap(room.before, room.now);
+  }
+}
+
+/// @param plain  whether plain conditions are looked at, too
+void Section::find_pieces(bool plain, std::span<double> registers, SectionRoom& room) const {
+  room.pieces.clear();
+  room.spans.clear();
+  std::sort(room.corners.begin(), room.corners.end(), [](const auto& x, const auto& y) { return x.t < y.t; });
+  double from = -1;
+  std::uint32_t from_label = kSide;
+  const auto add = [&](double to, std::uint32_t label) {
+    const double middle = 0.5 * (from + to);
+    room.column.clear();
+    if (!plain || plain_holds(middle, registers, room)) find_column(middle, registers.data(), room);
+    if (room.column.empty()) return;
+    SectionRoom::Piece* const last = room.pieces.empty() ? nullptr : &room.pieces.back();
+    const auto same = [&](std::size_t i) {
+      const SectionRoom::Span& x = room.spans[last->first + i];
+      return x.lower == room.column[i].lower && x.upper == room.column[i].upper;
+    };
+    bool joins = last && last->to == from && last->count == room.column.size();
+    for (std::size_t i = 0; joins && i < room.column.size(); ++i) joins = same(i);
+    if (joins) {
+      last->to = to;
+      last->to_label = label;
+      return;
+    }
+    room.pieces.push_back({from, to, from_label, label, room.spans.size(), room.column.size()});
+    room.spans.insert(room.spans.end(), room.column.begin(), room.column.end());
+  };
+  for (const auto& [t, label] : room.corners) {
+    if (!(t < 1 - kTie)) break;
+    if (t - from > kTie) {
+      add(t, label);
+      from = t;
+      from_label = label;
+    } else if (label < from_label && from > -1) {  // at one place
+      if (!room.pieces.empty() && room.pieces.back().to == from) room.pieces.back().to_label = label;
+      from_label = label;
+    }
+  }
+  add(1, kSide | 1U);
+}
+
+double Section::measure(std::span<double> registers, SectionRoom& room) const {
+  Structure& structure = room.structure;
+  structure = {0, std::move(structure.corners), 0};
+  structure.corners.clear();
+  room.pieces.clear();
+  room.spans.clear();
+  if (!load(registers, room)) return 0;
+  find_corners(room);
+  find_pieces(false, registers, room);
+  if (!plan_.plain.back().empty() && !room.pieces.empty()) {
+    find_plain_corners(registers, room);
+    find_pieces(true, registers, room);
+  }
+  Fnv1a hash;
+  double sum = 0;
+  double last = -2;
+  for (const auto& piece : room.pieces) {
+    if (piece.from != last) structure.corners.push_back(piece.from_label);
+    structure.corners.push_back(piece.to_label);
+    last = piece.to;
+    hash.add(std::uint64_t{piece.from_label} << 32U | piece.to_label);
+    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
+      const auto [lower, upper] = room.spans[i];
+      hash.add(std::uint64_t{lower} << 32U | upper);
+      const auto area = [&](EndLabel end) {
+        return area_below(room.conics[end >> 1U], {static_cast<int>(end & 1U), piece.from, piece.to});
+      };
+      sum += area(upper) - area(lower);
+    }
+  }
+  if (!room.pieces.empty()) structure.hash = hash.value() | 1U;
+  return sum * room.v[1] * room.z[1];
+}
+
+double Section::length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const {
+  const auto place = [&](EndLabel end) { return place_on(room.conics[end >> 1U], static_cast<int>(end & 1U), t); };
+  double sum = 0;
+  for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
+    sum += place(room.spans[i].upper) - place(room.spans[i].lower);
+  return sum;
+}
+
+void Section::add_slopes(double factor, std::span<double> registers, std::span<double> adjoints,
+                         SectionRoom& room) const {
+  std::array<std::array<double, 6>, kMostSurfaces> slopes{};
+  Signs used = 0;
+  const double measure = factor * room.v[1] * room.z[1];
+  const auto add_arc = [&](EndLabel end, const SectionRoom::Piece& piece, double sign) {
+    const std::size_t k = end >> 1U;
+    used |= bit(k);
+    add_slopes_of_area(room.conics[k], {static_cast<int>(end & 1U), piece.from, piece.to}, sign * measure, slopes[k]);
+  };
+  // A side moves by dt and takes columns of this length along.
+  const auto add_side = [&](double t, std::uint32_t label, double columns) {
+    const std::size_t k = label & ~kKind;
+    if ((label & kKind) == kSide) {
+      adjoints[plan_.range[plan_.range.size() - 2][k]] += factor * room.z[1] * columns;
+    } else if ((label & kKind) == kUpright) {
+      const Conic& P = room.conics[k];
+      const double g = -measure * columns / (P.c[1] + 2 * t * P.c[3]);
+      used |= bit(k);
+      slopes[k][0] += g;
+      slopes[k][1] += g * t;
+      slopes[k][3] += g * t * t;
+    } else if ((label & kKind) == kPlain) {
+      const graph::Program& program = plan_.program;
+      const auto& stage = program.stages()[stage_of_v()];
+      run_plain(t, registers, room, room.now);
+      std::vector<double>& own = room.other_adjoints;
+      own.assign(program.registers(), 0);
+      own[plan_.plain.back()[k]] = 1;
+      run_backwards(program, stage_of_v(), registers, own);
+      double slope = 0;
+      for (const auto& input : stage.inputs) {
+        slope += own[input.to];
+        own[input.to] = 0;
+      }
+      const double g = -factor * room.z[1] * columns / slope;
+      for (std::size_t i = 0; i < own.size(); ++i) adjoints[i] += g * own[i];
+    }
+  };
+  for (const auto& piece : room.pieces) {
+    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
+      add_arc(room.spans[i].upper, piece, 1);
+      add_arc(room.spans[i].lower, piece, -1);
+    }
+    add_side(piece.from, piece.from_label, -length(piece, piece.from, room));
+    add_side(piece.to, piece.to_label, length(piece, piece.to, room));
+  }
+  const auto [vm, vh] = room.v;
+  const auto [zm, zh] = room.z;
+  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
+    if ((used & bit(k)) == 0) continue;
+    const auto& d = slopes[k];
+    const double of_v_z[6] = {d[0],
+                              vm * d[0] + vh * d[1],
+                              zm * d[0] + zh * d[2],
+                              vm * vm * d[0] + 2 * vm * vh * d[1] + vh * vh * d[3],
+                              vm * zm * d[0] + vh * zm * d[1] + vm * zh * d[2] + vh * zh * d[4],
+                              zm * zm * d[0] + 2 * zm * zh * d[2] + zh * zh * d[5]};
+    for (std::size_t i = 0; i < 6; ++i) adjoints[plan_.surfaces[k].coefficients[i]] += of_v_z[i];
+  }
+}
+
+}  // namespace pkm::described

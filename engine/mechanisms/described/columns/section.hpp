@@ -1,0 +1,72 @@
+// The area of a section, exactly: the conics that bound it cross in places that polynomials of degree four have as
+// roots, and between those the ends of columns are arcs whose areas are closed forms.
+#pragma once
+
+#include "engine/mechanisms/described/columns/conic.hpp"
+#include "engine/mechanisms/described/columns/section_plan.hpp"
+
+namespace pkm::described {
+
+/// What a section consists of, as numbers that are the same as long as its area is a smooth function.
+struct Structure {
+  std::uint64_t hash = 0;              ///< 0: nothing is feasible
+  std::vector<std::uint32_t> corners;  ///< labels of places where its pieces begin and end
+  std::uint32_t broken = 0;            ///< of an empty section: 1 + the place of the plain condition that is broken
+};
+
+/// An end of a column: surface and root.
+using EndLabel = std::uint32_t;
+
+/// What a section overwrites, in coordinates t, s in [-1, 1] for v and z.
+struct SectionRoom {
+  struct Corner {
+    double t;
+    std::uint32_t label;
+  };
+  struct Span {
+    EndLabel lower, upper;
+  };
+  struct Piece {
+    double from, to;
+    std::uint32_t from_label, to_label;
+    std::size_t first, count;  ///< of spans
+  };
+  std::array<Conic, kMostSurfaces> conics;
+  std::array<double, 2> v, z;  ///< middle and half width
+  std::vector<std::size_t> active;
+  Signs always = 0;  ///< surfaces that are >= 0 all over the section
+  std::vector<Corner> corners;
+  std::vector<Piece> pieces;
+  std::vector<Span> spans, column;
+  std::vector<std::pair<double, EndLabel>> ends;
+  std::vector<double> before, now, other_adjoints;
+  Structure structure;
+};
+
+class Section {
+ public:
+  explicit Section(SectionPlan plan) : plan_(std::move(plan)) {}
+
+  const SectionPlan& plan() const { return plan_; }
+  /// The area, its structure and its pieces. @param registers  after all stages but that of v
+  double measure(std::span<double> registers, SectionRoom& room) const;
+  /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
+  void add_slopes(double factor, std::span<double> registers, std::span<double> adjoints, SectionRoom& room) const;
+
+ private:
+  bool load(std::span<const double> registers, SectionRoom& room) const;
+  void find_corners(SectionRoom& room) const;
+  void add_corner(double t, double s, Signs of, std::uint32_t label, SectionRoom& room) const;
+  void find_plain_corners(std::span<double> registers, SectionRoom& room) const;
+  void find_pieces(bool plain, std::span<double> registers, SectionRoom& room) const;
+  void find_column(double t, const double* registers, SectionRoom& room) const;
+  /// Values of the plain conditions along v at t.
+  void run_plain(double t, std::span<double> registers, const SectionRoom& room, std::vector<double>& values) const;
+  bool plain_holds(double t, std::span<double> registers, const SectionRoom& room) const;
+  double length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const;
+  std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
+
+  SectionPlan plan_;
+};
+
+}  // namespace pkm::described

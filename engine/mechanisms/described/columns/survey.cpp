@@ -1,0 +1,158 @@
+#include "engine/mechanisms/described/columns/survey.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/mechanisms/described/columns/sections_integral.hpp"
+#include "engine/survey/with_slopes.hpp"
+
+namespace pkm::described {
+namespace {
+
+using Kind = HeldCoordinate::Kind;
+
+/// The orders of coordinates in which sections may have closed forms: each pair of swept ones as (v, z), the others
+/// outside, those that are integrated over outermost.
+std::vector<SectionOrder> orders_of(const Sweep& sweep, const SurveyPlan& plan) {
+  std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
+  for (const int coordinate : sweep.held)
+    if (how_held(plan, coordinate).kind == Kind::integrated) integrated.push_back(static_cast<std::size_t>(coordinate));
+  std::ranges::sort(swept);
+  std::vector<SectionOrder> orders;
+  do {
+    SectionOrder order{.outer = integrated, .v = {}, .z = swept.back()};
+    if (swept.size() > 1) order.v = swept[swept.size() - 2];
+    if (swept.size() > 2) order.outer.push_back(swept.front());
+    orders.push_back(order);
+  } while (std::ranges::next_permutation(swept).found);
+  return orders;
+}
+
+Ranges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& columns) {
+  Ranges box(coordinates);
+  if (columns.box)
+    for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+      box[static_cast<std::size_t>(sweep.swept[axis])] = (*columns.box)[axis];
+  return box;
+}
+
+class DescribedColumns final : public WithSlopes<DescribedColumns> {
+ public:
+  DescribedColumns(const Mechanism& mechanism, const Evaluation& evaluation, const SurveyPlan& plan,
+                   const ColumnOptions& columns, const Demand& demand)
+      : mechanism_(mechanism),
+        e_(evaluation),
+        plan_(plan),
+        demand_(demand),
+        sweep_(sweep_of(mechanism.info(), plan)),
+        mode_(number_of_mode(mechanism.info(), demand.mode)) {
+    const Ranges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
+    std::vector<SectionPlan> plans;
+    std::string why_not;
+    for (const SectionOrder& order : orders_of(sweep_, plan)) {
+      SectionPlan made = plan_sections(evaluation, mode_, order, box);
+      if (made.why_not.empty())
+        plans.push_back(std::move(made));
+      else if (why_not.empty())
+        why_not = made.why_not;
+    }
+    if (plans.empty())
+      throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
+                                  "; take workspace.method = \"voxels\"");
+    integral_.emplace(fastest(std::move(plans)), columns.tolerance);
+  }
+
+ private:
+  friend WithSlopes<DescribedColumns>;
+  struct Room {
+    std::vector<double> inputs, by_input;
+    IntegralRoom integral;
+  };
+
+  /// The plan whose survey of the default design, to three digits, takes the fewest sections.
+  SectionPlan fastest(std::vector<SectionPlan> plans) const {
+    constexpr double kTrial = 1e-3;
+    if (plans.size() == 1 || plans.front().order.outer.empty()) return std::move(plans.front());
+    std::vector<double> design;
+    for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
+    Room room;
+    std::size_t best = 0;
+    double least = 0;
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      const SectionsIntegral trial(plans[i], kTrial);
+      fill_inputs<double>(design, room.inputs);
+      trial.measure(room.inputs, room.integral);
+      const double work = static_cast<double>(room.integral.sections) *
+                          static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size());
+      if (i > 0 && work >= least) continue;
+      best = i;
+      least = work;
+    }
+    return std::move(plans[best]);
+  }
+
+  /// With the held coordinates where they are held.
+  template <class S>
+  void fill_inputs(std::span<const S> parameters, std::vector<S>& inputs) const {
+    const Inputs& at = e_.model.inputs;
+    inputs.resize(at.count());
+    e_.fill_inputs<S>(parameters, plan_.limits, mode_, inputs);
+    for (const int coordinate : sweep_.held) {
+      const auto i = static_cast<std::size_t>(coordinate);
+      const HeldCoordinate held = how_held(plan_, coordinate);
+      if (held.kind == Kind::integrated) continue;
+      S& input = inputs[at.coordinate(i)];
+      const auto middle = held.kind == Kind::middle ? e_.of_design<S>(e_.middle[i], parameters) : std::nullopt;
+      if (held.kind == Kind::middle && !middle) refuse_middle(coordinate);
+      input = middle ? *middle : S(held.kind == Kind::listed ? held.values.front() : held.value);
+    }
+  }
+
+  [[noreturn]] void refuse_middle(int coordinate) const {
+    const MechanismInfo& info = mechanism_.info();
+    throw std::invalid_argument("mechanism " + info.name + " does not say where the middle of " +
+                                info.coordinates[static_cast<std::size_t>(coordinate)].name + " is; give a value");
+  }
+
+  template <class S>
+  void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
+    Room& room = scratch.get<Room>();
+    survey.clear(demand_.fields);
+    if constexpr (std::is_same_v<S, double>) {
+      fill_inputs<double>(parameters, room.inputs);
+    } else {
+      std::vector<S>& inputs = scratch.get<std::vector<S>>();
+      fill_inputs<S>(parameters, inputs);
+      room.inputs.resize(inputs.size());
+      std::ranges::transform(inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
+    }
+    const Integral<double> volume = integral_->measure(room.inputs, room.integral);
+    survey.volume = S(volume.value);
+    survey.error = volume.value > 0 ? volume.error / volume.value : 0;
+    survey.columns = volume.evaluations;
+    if constexpr (!std::is_same_v<S, double>) {
+      room.by_input.assign(room.inputs.size(), 0);
+      integral_->add_slopes(room.by_input, room.integral);
+      const std::vector<S>& inputs = scratch.get<std::vector<S>>();
+      for (std::size_t i = 0; i < inputs.size(); ++i) survey.volume.v = survey.volume.v + inputs[i].v * room.by_input[i];
+    }
+  }
+
+  const Mechanism& mechanism_;
+  const Evaluation& e_;
+  SurveyPlan plan_;
+  Demand demand_;
+  const Sweep& sweep_;
+  std::size_t mode_;
+  std::optional<SectionsIntegral> integral_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Surveyor> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
+                                                const SurveyPlan& plan, const ColumnOptions& columns,
+                                                const Demand& demand) {
+  return std::make_unique<DescribedColumns>(mechanism, evaluation, plan, columns, demand);
+}
+
+}  // namespace pkm::described
