@@ -173,8 +173,10 @@ std::size_t roots_between(std::span<const double> coefficients, std::array<doubl
   double low = -1, at_low = value(coefficients, low);
   for (std::size_t i = 0; i <= turn_count; ++i) {
     const double high = i < turn_count ? turns[i] : 1, at_high = value(coefficients, high);
-    if ((at_low < 0) != (at_high < 0)) keep(root_between(coefficients, low, high, at_low));
-    else if (i < turn_count && std::fabs(at_high) <= 1e-13 * scale) keep(high);
+    if ((at_low < 0) != (at_high < 0))
+      keep(root_between(coefficients, low, high, at_low));
+    else if (i < turn_count && std::fabs(at_high) <= 1e-13 * scale)
+      keep(high);
     low = high;
     at_low = at_high;
   }

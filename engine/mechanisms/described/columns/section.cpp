@@ -1,6 +1,7 @@
 #include "engine/mechanisms/described/columns/section.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "engine/graph/reverse.hpp"
@@ -10,8 +11,8 @@ namespace pkm::described {
 namespace {
 
 // Kinds of corners, in the order in which one stands for all at its place.
-constexpr std::uint32_t kSide = 1U << 28, kPlain = 2U << 28, kUpright = 3U << 28, kExtreme = 4U << 28,
-                        kCrossing = 5U << 28, kKind = 15U << 28;
+constexpr std::uint32_t kSide = 1U << 28, kPlain = 2U << 28, kUpright = 3U << 28, kCrossing = 4U << 28,
+                        kExtreme = 5U << 28, kKind = 15U << 28;
 constexpr double kTie = 1e-13;
 
 std::uint32_t crossing(std::size_t k, std::size_t l) { return kCrossing | static_cast<std::uint32_t>(k << 8U | l); }
@@ -39,6 +40,8 @@ Conic in_square(const std::array<double, 6>& C, const std::array<double, 2>& v, 
 }
 
 }  // namespace
+
+bool is_upright(std::uint32_t corner) { return (corner & kKind) <= kUpright; }
 
 bool Section::load(std::span<const double> registers, SectionRoom& room) const {
   const auto middle_and_half = [&](const std::array<std::uint32_t, 2>& ends) {
@@ -206,39 +209,87 @@ void Section::find_pieces(bool plain, std::span<double> registers, SectionRoom& 
   room.spans.clear();
   std::sort(room.corners.begin(), room.corners.end(), [](const auto& x, const auto& y) { return x.t < y.t; });
   double from = -1;
-  std::uint32_t from_label = kSide;
-  const auto add = [&](double to, std::uint32_t label) {
+  std::size_t from_corner = room.corners.size();
+  const auto add = [&](double to, std::size_t to_corner) {
     const double middle = 0.5 * (from + to);
     room.column.clear();
     if (!plain || plain_holds(middle, registers, room)) find_column(middle, registers.data(), room);
     if (room.column.empty()) return;
     SectionRoom::Piece* const last = room.pieces.empty() ? nullptr : &room.pieces.back();
-    const auto same = [&](std::size_t i) {
-      const SectionRoom::Span& x = room.spans[last->first + i];
-      return x.lower == room.column[i].lower && x.upper == room.column[i].upper;
-    };
-    bool joins = last && last->to == from && last->count == room.column.size();
-    for (std::size_t i = 0; joins && i < room.column.size(); ++i) joins = same(i);
-    if (joins) {
+    if (last && last->to == from && std::ranges::equal(std::span(room.spans).subspan(last->first), room.column)) {
       last->to = to;
-      last->to_label = label;
+      last->to_corner = to_corner;
       return;
     }
-    room.pieces.push_back({from, to, from_label, label, room.spans.size(), room.column.size()});
+    room.pieces.push_back({from, to, from_corner, to_corner, room.spans.size(), room.column.size()});
     room.spans.insert(room.spans.end(), room.column.begin(), room.column.end());
   };
-  for (const auto& [t, label] : room.corners) {
-    if (!(t < 1 - kTie)) break;
-    if (t - from > kTie) {
-      add(t, label);
-      from = t;
-      from_label = label;
-    } else if (label < from_label && from > -1) {  // at one place
-      if (!room.pieces.empty() && room.pieces.back().to == from) room.pieces.back().to_label = label;
-      from_label = label;
-    }
+  for (std::size_t i = 0; i < room.corners.size(); ++i) {
+    const double t = room.corners[i].t;
+    if (t <= -1 + kTie || t - from <= kTie) continue;
+    if (t >= 1 - kTie) break;
+    add(t, i);
+    from = t;
+    from_corner = i;
   }
-  add(1, kSide | 1U);
+  add(1, room.corners.size());
+}
+
+namespace {
+
+/// Of the corners at a place, the one that ends arcs of a surface; a condition along v ends all of them.
+std::uint32_t corner_of(std::size_t surface, std::size_t first, double t, const SectionRoom& room) {
+  if (first == room.corners.size()) return kSide | (t > 0 ? 1U : 0U);
+  std::uint32_t found = 0;
+  for (std::size_t i = first; i < room.corners.size() && room.corners[i].t <= room.corners[first].t + kTie; ++i) {
+    const std::uint32_t label = room.corners[i].label, kind = label & kKind, place = label & ~kKind;
+    const bool its_own =
+        kind == kCrossing ? (place & 255U) == surface || place >> 8U == surface : kind != kExtreme || place == surface;
+    if (its_own && (found == 0 || label < found)) found = label;
+  }
+  return found;
+}
+
+}  // namespace
+
+void Section::find_structure(SectionRoom& room) const {
+  Structure& structure = room.structure;
+  const auto goes_on = [&](const SectionRoom::Piece& piece, EndLabel end, bool above) {
+    return std::any_of(room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first),
+                       room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first + piece.count),
+                       [&](const SectionRoom::Span& span) { return (above ? span.upper : span.lower) == end; });
+  };
+  Signs round = 0, cut = 0;  // surfaces whose arcs go on beyond extremes, and those that have other corners
+  const auto add = [&](std::size_t surface, std::size_t first, double t) {
+    const std::uint32_t label = corner_of(surface, first, t, room);
+    if ((label & kKind) == kExtreme) {
+      round |= bit(surface);
+      return;
+    }
+    cut |= bit(surface);
+    structure.corners.push_back(label);
+    Fnv1a corner;
+    corner.add(surface);
+    corner.add(label);
+    structure.hash += corner.value();
+  };
+  for (std::size_t p = 0; p < room.pieces.size(); ++p) {
+    const auto& piece = room.pieces[p];
+    const auto* const before = p > 0 && room.pieces[p - 1].to == piece.from ? &piece - 1 : nullptr;
+    const auto* const after = p + 1 < room.pieces.size() && room.pieces[p + 1].from == piece.to ? &piece + 1 : nullptr;
+    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
+      for (const bool above : {false, true}) {
+        const EndLabel end = above ? room.spans[i].upper : room.spans[i].lower;
+        if (!before || !goes_on(*before, end, above)) add(end >> 1U, piece.from_corner, piece.from);
+        if (!after || !goes_on(*after, end, above)) add(end >> 1U, piece.to_corner, piece.to);
+      }
+  }
+  for (Signs whole = round & ~cut; whole != 0; whole &= whole - 1) {
+    Fnv1a conic;
+    conic.add(static_cast<std::uint64_t>(std::countr_zero(whole)));
+    structure.hash += conic.value();
+  }
+  if (!room.pieces.empty() && structure.hash == 0) structure.hash = 1;
 }
 
 double Section::measure(std::span<double> registers, SectionRoom& room) const {
@@ -254,24 +305,16 @@ double Section::measure(std::span<double> registers, SectionRoom& room) const {
     find_plain_corners(registers, room);
     find_pieces(true, registers, room);
   }
-  Fnv1a hash;
   double sum = 0;
-  double last = -2;
-  for (const auto& piece : room.pieces) {
-    if (piece.from != last) structure.corners.push_back(piece.from_label);
-    structure.corners.push_back(piece.to_label);
-    last = piece.to;
-    hash.add(std::uint64_t{piece.from_label} << 32U | piece.to_label);
+  for (const auto& piece : room.pieces)
     for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
       const auto [lower, upper] = room.spans[i];
-      hash.add(std::uint64_t{lower} << 32U | upper);
       const auto area = [&](EndLabel end) {
         return area_below(room.conics[end >> 1U], {static_cast<int>(end & 1U), piece.from, piece.to});
       };
       sum += area(upper) - area(lower);
     }
-  }
-  if (!room.pieces.empty()) structure.hash = hash.value() | 1U;
+  find_structure(room);
   return sum * room.v[1] * room.z[1];
 }
 
@@ -327,8 +370,9 @@ void Section::add_slopes(double factor, std::span<double> registers, std::span<d
       add_arc(room.spans[i].upper, piece, 1);
       add_arc(room.spans[i].lower, piece, -1);
     }
-    add_side(piece.from, piece.from_label, -length(piece, piece.from, room));
-    add_side(piece.to, piece.to_label, length(piece, piece.to, room));
+    add_side(piece.from, corner_of(kMostSurfaces, piece.from_corner, piece.from, room),
+             -length(piece, piece.from, room));
+    add_side(piece.to, corner_of(kMostSurfaces, piece.to_corner, piece.to, room), length(piece, piece.to, room));
   }
   const auto [vm, vh] = room.v;
   const auto [zm, zh] = room.z;

@@ -7,12 +7,17 @@
 
 namespace pkm::described {
 
-/// What a section consists of, as numbers that are the same as long as its area is a smooth function.
+/// What a section is bounded by: the corners at which arcs end. Where an arc turns back is none, but for a conic that
+/// is there as a whole. As long as the corners are the same, the area is a smooth function.
 struct Structure {
-  std::uint64_t hash = 0;              ///< 0: nothing is feasible
-  std::vector<std::uint32_t> corners;  ///< labels of places where its pieces begin and end
-  std::uint32_t broken = 0;            ///< of an empty section: 1 + the place of the plain condition that is broken
+  std::uint64_t hash = 0;  ///< in whatever order they are; 0: nothing is feasible
+  std::vector<std::uint32_t>
+      corners;               ///< labels: of a crossing by both arcs, of an upright side by its lower and upper
+  std::uint32_t broken = 0;  ///< of an empty section: 1 + the place of the plain condition that is broken
 };
+
+/// Whether a corner is at an upright side, where it counts once.
+bool is_upright(std::uint32_t corner);
 
 /// An end of a column: surface and root.
 using EndLabel = std::uint32_t;
@@ -25,11 +30,13 @@ struct SectionRoom {
   };
   struct Span {
     EndLabel lower, upper;
+
+    bool operator==(const Span&) const = default;
   };
   struct Piece {
     double from, to;
-    std::uint32_t from_label, to_label;
-    std::size_t first, count;  ///< of spans
+    std::size_t from_corner, to_corner;  ///< the first of those at this place; behind the last: the section's sides
+    std::size_t first, count;            ///< of spans
   };
   std::array<Conic, kMostSurfaces> conics;
   std::array<double, 2> v, z;  ///< middle and half width
@@ -64,6 +71,7 @@ class Section {
   void run_plain(double t, std::span<double> registers, const SectionRoom& room, std::vector<double>& values) const;
   bool plain_holds(double t, std::span<double> registers, const SectionRoom& room) const;
   double length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const;
+  void find_structure(SectionRoom& room) const;
   std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
 
   SectionPlan plan_;

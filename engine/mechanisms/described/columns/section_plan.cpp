@@ -33,7 +33,7 @@ class ConicLowering {
 
  private:
   std::optional<std::vector<NodeClause>> lowered_by(Node node, bool z_first) {
-    const auto lower = lowered(graph_, node, z_first ? z_ : v_);
+    const auto lower = lowered(graph_, node, z_first ? z_ : v_, true);
     if (!lower) return {};
     std::vector<NodeClause> clauses;
     for (const graph::Clause& clause : *lower) {
@@ -127,8 +127,8 @@ class Planner {
     covered_.assign(known_.all.size(), false);
     for (const CoveredRange& crank : known_.cranks) {
       std::array<std::optional<NodeConic>, 5> found;
-      for (std::size_t k = 0; const Node node : {crank.at_min, crank.at_max, crank.after_min, crank.before_max,
-                                                 crank.reach})
+      for (std::size_t k = 0;
+           const Node node : {crank.at_min, crank.at_max, crank.after_min, crank.before_max, crank.reach})
         found[k++] = conics_.conic(node);
       if (!std::ranges::all_of(found, [](const auto& conic) { return conic.has_value(); }) ||
           (graph_[crank.half_turn].groups & ~Inputs::kDesign) != 0 || !graph_[crank.branch].is_number())

@@ -9,16 +9,16 @@
 namespace pkm::described {
 namespace {
 
-constexpr double kNear = 1e-15;      // of the range: how well breaks are known
-constexpr double kSettled = 1e-11;   // of the range: beyond a break, where structures can be told
-constexpr double kNarrow = 1e-12;    // of the range: parts that are not looked at
+constexpr double kNear = 1e-15;       // of the range: how well breaks are known
+constexpr double kSettled = 1e-11;    // of the range: beyond a break, where structures can be told
+constexpr double kNarrow = 1e-12;     // of the range: parts that are not looked at
 constexpr int kSamples[] = {40, 24};  // of the structure along one outer coordinate, along each of more
 constexpr std::size_t kMostParts = 3000;
 
-/// The same number for the same sequence of labels, wherever there are two more of a label: a pair that closes.
+/// Whether there are two more corners of a kind: they meet where the structure changes.
 bool has_pair_more(std::span<const std::uint32_t> more, std::span<const std::uint32_t> fewer) {
   return std::ranges::any_of(more, [&](std::uint32_t label) {
-    return std::ranges::count(more, label) >= std::ranges::count(fewer, label) + 2;
+    return std::ranges::count(more, label) - std::ranges::count(fewer, label) >= (is_upright(label) ? 2 : 4);
   });
 }
 
@@ -109,7 +109,7 @@ Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, Integ
 /// Adds the breaks between two slices, in order.
 void SectionsIntegral::find_breaks(std::size_t level, Slice from, const Slice& to, double whole, Breaks& breaks,
                                    IntegralRoom& room) const {
-  for (int more = 0; more < 24 && from.hash != to.hash; ++more) {
+  for (int more = 0; more < 24 && from.hash != to.hash && room.sections < room.most; ++more) {
     Slice low = from, high = to;
     const double near = kNear * (whole + std::fabs(low.at));
     while (high.at - low.at > near) {
@@ -181,17 +181,17 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
     less += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
-  if (!same && depth < 10) {
-    Breaks breaks{{part.piece.lower, false, part.piece.root_lower, {.broken = part.lower}, part.below,
-                   part.lower == kBox}};
+  if (!same && depth < 10 && room.sections < room.most) {
+    Breaks breaks{
+        {part.piece.lower, false, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox}};
     Slice before = part.below;
     for (const Slice& next : slices) {
       find_breaks(level, before, next, whole, breaks, room);
       before = next;
     }
     find_breaks(level, before, part.above, whole, breaks, room);
-    breaks.push_back({part.piece.upper, part.piece.root_upper, false, part.above, {.broken = part.upper},
-                      part.upper == kBox});
+    breaks.push_back(
+        {part.piece.upper, part.piece.root_upper, false, part.above, {.broken = part.upper}, part.upper == kBox});
     return add_parts(level, breaks, whole, depth + 1, room);
   }
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
@@ -208,7 +208,7 @@ void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& roo
   const double least = level == 0 ? 0 : 0.1 * tolerance_ * room.levels[level - 1].greatest;
   const auto less = [](const SlicePart& x, const SlicePart& y) { return x.error < y.error; };
   std::make_heap(own.parts.begin(), own.parts.end(), less);
-  while (own.parts.size() < kMostParts) {
+  while (own.parts.size() < kMostParts && room.sections < room.most) {
     double value = 0, error = 0;
     for (const SlicePart& part : own.parts) {
       value += part.value;

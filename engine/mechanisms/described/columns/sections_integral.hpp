@@ -5,6 +5,8 @@
 // part: where one has another structure, the part is split there.
 #pragma once
 
+#include <limits>
+
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/section.hpp"
 
@@ -52,6 +54,7 @@ struct IntegralRoom {
   std::vector<double> registers, adjoints, own;
   std::vector<Level> levels;
   long sections = 0;
+  long most = std::numeric_limits<long>::max();  ///< sections, after which the rest counts as error
 };
 
 class SectionsIntegral {
