@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "engine/math/scalar.hpp"
+
 namespace pkm::graph {
 namespace {
 
@@ -142,7 +144,9 @@ class Lowering {
         (graph_[b.node()].operation == &negation() && is_positive(graph_, graph_[b.node()].arguments[0])))
       return both(one({f->A}), one({sum(*AA, negative(*BBQ))}));
     if (is_positive(graph_, b.node())) return one({f->A, sum(*BBQ, negative(*AA))});
-    return {};
+    if (!squares_) return {};
+    const Polynomial R = sum(*AA, negative(*BBQ));  // of unknown sign is b
+    return both(both(one({f->A, f->B}), one({f->A, negative(R)})), one({f->B, R}));
   }
 
   bool is_free(const Term& x) const { return (graph_[x.node()].groups & z_) == 0; }
@@ -202,9 +206,33 @@ class Lowering {
     const Term root = sqrt(Y);
     return either(conditions((-Y).node()), either(conditions((u - root).node()), conditions((-u - root).node())));
   }
+  /// N / w - c, c - N / w, and the same with the arc cosine of N / w, where w is a root and c does not depend on z.
+  Clauses conditions_of_quotient(Node node) {
+    const Entry entry = graph_[node];
+    if (!entry.operation || entry.operation->code != Code::subtract) return {};
+    Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+    const bool is_least = is_free(y);  // that c is the least value
+    if (!is_least && !is_free(x)) return {};
+    const Term c = is_least ? y : x, value = is_least ? x : y;
+    const Entry of = graph_[value.node()];
+    if (!of.operation) return {};
+    if (of.operation == &operation("acos")) {
+      const Term cosine(graph_, of.arguments[0]), pi(graph_, kPi);
+      const Term difference = is_least ? cos(c) - cosine : cosine - cos(c);
+      return is_least ? either(conditions((-c).node()),
+                               both(conditions((pi - c).node()), conditions(difference.node())))
+                      : both(conditions(c.node()),
+                             either(conditions((c - pi).node()), conditions(difference.node())));
+    }
+    if (of.operation->code != Code::divide || graph_[of.arguments[1]].operation != &operation("sqrt")) return {};
+    const Term N(graph_, of.arguments[0]), w(graph_, of.arguments[1]);
+    return conditions((is_least ? N - c * w : c * w - N).node());
+  }
+
   /// Squares of forms, taken apart instead of multiplied out.
   Clauses conditions_of_squares(Node node) {
     if (const auto found = difference(node)) return within(found->u, found->Y);
+    if (auto found = conditions_of_quotient(node)) return found;
     const auto root = rooted(node);
     if (!root) return {};
     const auto inside = difference(root->P);

@@ -39,6 +39,29 @@ Conic in_square(const std::array<double, 6>& C, const std::array<double, 2>& v, 
   return P;
 }
 
+/// P is a multiple of Q: 1 or -1 by its sign, or 0.
+int is_multiple(const Conic& P, const Conic& Q) {
+  constexpr double kSame = 1e-12;
+  const double room = kSame * P.scale * Q.scale;
+  bool same = true, opposite = true;
+  for (std::size_t i = 0; i < 6 && (same || opposite); ++i) {
+    const double p = P.c[i] * Q.scale, q = Q.c[i] * P.scale;
+    same = same && std::fabs(p - q) <= room;
+    opposite = opposite && std::fabs(p + q) <= room;
+  }
+  return same ? 1 : opposite ? -1 : 0;
+}
+
+void add_active(std::size_t k, SectionRoom& room) {
+  for (const std::size_t known : room.active)
+    if (const int sign = is_multiple(room.conics[k], room.conics[known])) {
+      (sign > 0 ? room.meaning[known].same : room.meaning[known].opposite) |= bit(k);
+      return;
+    }
+  room.active.push_back(k);
+  room.meaning[k] = {bit(k), 0};
+}
+
 }  // namespace
 
 bool is_upright(std::uint32_t corner) { return (corner & kKind) <= kUpright; }
@@ -67,7 +90,7 @@ bool Section::load(std::span<const double> registers, SectionRoom& room) const {
     } else if (P.c[0] > rest * (1 + 1e-12) || rest == 0) {
       room.always |= bit(k);
     } else {
-      room.active.push_back(k);
+      add_active(k, room);
     }
   }
   return true;
@@ -76,14 +99,14 @@ bool Section::load(std::span<const double> registers, SectionRoom& room) const {
 /// Unless the place is known to be infeasible whatever the surfaces `of` say there.
 void Section::add_corner(double t, double s, Signs of, std::uint32_t label, SectionRoom& room) const {
   if (!(std::fabs(s) <= 1 + 1e-9)) return;
-  Signs maybe = room.always | of;
+  Signs maybe = room.always;
   for (const std::size_t m : room.active) {
-    if ((of & bit(m)) != 0) continue;
+    const auto [same, opposite] = room.meaning[m];
     const Conic& P = room.conics[m];
-    if (P.at(t, s) >= -1e-7 * P.scale)
-      maybe |= bit(m);
-    else if ((plan_.formula.all & bit(m)) != 0)
-      return;
+    const double there = (of & bit(m)) != 0 ? 0 : P.at(t, s), near = 1e-7 * P.scale;
+    const Signs no = (there < -near ? same : 0) | (there > near ? opposite : 0);
+    if ((plan_.formula.all & no) != 0) return;
+    maybe |= (same | opposite) & ~no;
   }
   for (const Signs one_of : plan_.formula.any)
     if ((maybe & one_of) == 0) return;
@@ -126,7 +149,7 @@ void Section::find_column(double t, const double* registers, SectionRoom& room) 
   for (const std::size_t k : room.active) {
     const auto c = room.conics[k].along(t);
     const Roots roots = roots_of(c);
-    if (positive_below(c, roots.count)) signs |= bit(k);
+    signs |= positive_below(c, roots.count) ? room.meaning[k].same : room.meaning[k].opposite;
     for (int r = 0; r < roots.count; ++r)
       room.ends.emplace_back(roots.s[static_cast<std::size_t>(r)], static_cast<EndLabel>(k << 1U) + (r ? 1U : 0U));
   }
@@ -138,7 +161,10 @@ void Section::find_column(double t, const double* registers, SectionRoom& room) 
     const double s = room.ends[i].first;
     const Signs before = signs;
     std::size_t end = i;
-    for (; end < room.ends.size() && room.ends[end].first <= s + kTie; ++end) signs ^= bit(room.ends[end].second >> 1U);
+    for (; end < room.ends.size() && room.ends[end].first <= s + kTie; ++end) {
+      const auto [same, opposite] = room.meaning[room.ends[end].second >> 1U];
+      signs ^= same | opposite;
+    }
     if (plan_.formula.holds(signs, registers) != is_in) {
       is_in = !is_in;
       // of several ends at one place, the first surface's that changes in this direction
@@ -146,7 +172,7 @@ void Section::find_column(double t, const double* registers, SectionRoom& room) 
       for (std::size_t j = i; j < end; ++j) {
         const EndLabel each = room.ends[j].second;
         any = std::min(any, each);
-        if (((signs & ~before & bit(each >> 1U)) != 0) == is_in) label = std::min(label, each);
+        if (((signs & ~before & room.meaning[each >> 1U].same) != 0) == is_in) label = std::min(label, each);
       }
       if (label == ~EndLabel{0}) label = any;
       if (is_in)

@@ -38,9 +38,14 @@ struct SectionRoom {
     std::size_t from_corner, to_corner;  ///< the first of those at this place; behind the last: the section's sides
     std::size_t first, count;            ///< of spans
   };
+  /// What surfaces stand for: several may be the same, or the same with the other sign.
+  struct Meaning {
+    Signs same, opposite;
+  };
   std::array<Conic, kMostSurfaces> conics;
+  std::array<Meaning, kMostSurfaces> meaning;
   std::array<double, 2> v, z;  ///< middle and half width
-  std::vector<std::size_t> active;
+  std::vector<std::size_t> active;  ///< those that change their sign in the section, each once
   Signs always = 0;  ///< surfaces that are >= 0 all over the section
   std::vector<Corner> corners;
   std::vector<Piece> pieces;

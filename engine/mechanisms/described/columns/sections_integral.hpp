@@ -5,8 +5,6 @@
 // part: where one has another structure, the part is split there.
 #pragma once
 
-#include <limits>
-
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/section.hpp"
 
@@ -54,7 +52,7 @@ struct IntegralRoom {
   std::vector<double> registers, adjoints, own;
   std::vector<Level> levels;
   long sections = 0;
-  long most = std::numeric_limits<long>::max();  ///< sections, after which the rest counts as error
+  long most = 100'000;  ///< sections, after which what is not known counts as error
 };
 
 class SectionsIntegral {

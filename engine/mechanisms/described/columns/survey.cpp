@@ -78,7 +78,7 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
     Room room;
     std::size_t best = 0;
-    double least = 1e9;
+    double least = static_cast<double>(room.integral.most);
     for (std::size_t i = 0; i < plans.size(); ++i) {
       const SectionsIntegral trial(plans[i], kTrial);
       const auto per_section = static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size());
