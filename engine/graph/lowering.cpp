@@ -219,10 +219,9 @@ class Lowering {
     if (of.operation == &operation("acos")) {
       const Term cosine(graph_, of.arguments[0]), pi(graph_, kPi);
       const Term difference = is_least ? cos(c) - cosine : cosine - cos(c);
-      return is_least ? either(conditions((-c).node()),
-                               both(conditions((pi - c).node()), conditions(difference.node())))
-                      : both(conditions(c.node()),
-                             either(conditions((c - pi).node()), conditions(difference.node())));
+      return is_least
+                 ? either(conditions((-c).node()), both(conditions((pi - c).node()), conditions(difference.node())))
+                 : both(conditions(c.node()), either(conditions((c - pi).node()), conditions(difference.node())));
     }
     if (of.operation->code != Code::divide || graph_[of.arguments[1]].operation != &operation("sqrt")) return {};
     const Term N(graph_, of.arguments[0]), w(graph_, of.arguments[1]);

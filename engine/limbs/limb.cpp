@@ -76,6 +76,10 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
                .closure = rod_closure(v - arm(q), rod),
                .C = ends.A + arm(joint),
                .S = ends.A};
+  if (dot(v, axis).is(0)) {
+    const Term longest = crank + rod, shortest = crank - rod;
+    limb.folds = Folds{longest * longest - dot(v, v), dot(v, v) - shortest * shortest};
+  }
   if (!range) return limb;
   const Term pi(q.graph(), kPi);
   const Term from = call(graph::operation("max"), (*range)[0], middle - pi);

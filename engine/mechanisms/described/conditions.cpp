@@ -15,6 +15,10 @@ Conditions conditions_of(const Model& model, std::size_t mode) {
                                crank.reach, crank.branch});
     nodes.insert(nodes.end(), crank.conditions.begin(), crank.conditions.end());
   }
+  for (const CoveredFolds& folds : model.folds) {
+    nodes.insert(nodes.end(), folds.surfaces.begin(), folds.surfaces.end());
+    nodes.insert(nodes.end(), folds.conditions.begin(), folds.conditions.end());
+  }
   for (const auto& ends : model.box)
     if (ends) nodes.insert(nodes.end(), ends->begin(), ends->end());
   Conditions conditions;
@@ -26,6 +30,11 @@ Conditions conditions_of(const Model& model, std::size_t mode) {
     const std::size_t count = crank.conditions.size();
     conditions.cranks.push_back({n[0], n[1], n[2], n[3], n[4], n[5], n[6], {n + 7, n + 7 + count}});
     n += 7 + count;
+  }
+  for (const CoveredFolds& folds : model.folds) {
+    const std::size_t count = folds.conditions.size();
+    conditions.folds.push_back({{n[0], n[1]}, {n + 2, n + 2 + count}, folds.crank_range});
+    n += 2 + count;
   }
   for (const auto& ends : model.box) {
     conditions.box.emplace_back();

@@ -12,6 +12,7 @@ struct Conditions {
   Graph graph;
   std::vector<Node> all;             ///< >= 0 where it holds: domains, margins, and where formulas have a value
   std::vector<CoveredRange> cranks;  ///< what says the same as some of them
+  std::vector<CoveredFolds> folds;   ///< the same
   std::vector<std::optional<std::array<Node, 2>>> box;  ///< by coordinate
 };
 

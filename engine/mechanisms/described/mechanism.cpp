@@ -10,9 +10,17 @@ namespace pkm::described {
 namespace {
 
 /// Its abilities are those that the description has what for.
-class DescribedMechanism final : public Mechanism, Voxels, Columns, Velocities, ForwardKinematics, Links, DesignTests, Size {
+class DescribedMechanism final : public Mechanism,
+                                 Voxels,
+                                 Columns,
+                                 Velocities,
+                                 ForwardKinematics,
+                                 Links,
+                                 DesignTests,
+                                 Size {
  public:
-  explicit DescribedMechanism(Model model) : e_(std::move(model)) {}
+  explicit DescribedMechanism(Model model)
+      : e_(std::move(model)), why_no_columns_(described::why_no_columns(*this, e_)) {}
 
   const MechanismInfo& info() const override { return e_.model.info; }
   PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
@@ -42,7 +50,8 @@ class DescribedMechanism final : public Mechanism, Voxels, Columns, Velocities, 
   }
 
   const Voxels* voxels() const override { return this; }
-  const Columns* columns() const override { return this; }
+  const Columns* columns() const override { return why_no_columns_.empty() ? this : nullptr; }
+  std::string why_no_columns() const override { return why_no_columns_; }
   const Velocities* velocities() const override { return this; }
   const ForwardKinematics* forward() const override {
     return e_.model.inputs.joints == e_.model.inputs.coordinates ? this : nullptr;
@@ -113,6 +122,7 @@ class DescribedMechanism final : public Mechanism, Voxels, Columns, Velocities, 
   Dual4 of(std::span<const Dual4> parameters) const override { return *e_.of_design(e_.size, parameters); }
 
   Evaluation e_;
+  std::string why_no_columns_;
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "engine/mechanisms/described/columns/conic.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "engine/math/quadrature.hpp"
@@ -169,7 +168,6 @@ std::size_t roots_between(std::span<const double> coefficients, std::array<doubl
   for (std::size_t i = 1; i <= degree; ++i) slope[i - 1] = static_cast<double>(i) * coefficients[i];
   std::array<double, 8> turns{};
   const std::size_t turn_count = roots_between(std::span(slope).first(degree), turns);
-  std::sort(turns.begin(), turns.begin() + static_cast<std::ptrdiff_t>(turn_count));
   double low = -1, at_low = value(coefficients, low);
   for (std::size_t i = 0; i <= turn_count; ++i) {
     const double high = i < turn_count ? turns[i] : 1, at_high = value(coefficients, high);

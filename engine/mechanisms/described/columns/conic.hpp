@@ -30,7 +30,8 @@ struct Roots {
 /// Of c[0] + c[1] s + c[2] s^2. A root of a line is number 0; where all coefficients are 0 there are none.
 Roots roots_of(const std::array<double, 3>& c);
 
-/// Roots in [-1, 1] of a polynomial of degree four or less, and places where it nearly has two; the number of them.
+/// Roots in [-1, 1], in order, of a polynomial of degree four or less, and places where it nearly has two; the number
+/// of them.
 std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots);
 
 struct Point {

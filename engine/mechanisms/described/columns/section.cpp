@@ -345,11 +345,14 @@ double Section::measure(std::span<double> registers, SectionRoom& room) const {
 }
 
 double Section::length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const {
-  const auto place = [&](EndLabel end) { return place_on(room.conics[end >> 1U], static_cast<int>(end & 1U), t); };
   double sum = 0;
   for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
-    sum += place(room.spans[i].upper) - place(room.spans[i].lower);
+    sum += end_at(room.spans[i].upper, t, room) - end_at(room.spans[i].lower, t, room);
   return sum;
+}
+
+bool Section::is_round(std::size_t corner, const SectionRoom& room) {
+  return corner < room.corners.size() && (room.corners[corner].label & kKind) == kExtreme;
 }
 
 void Section::add_slopes(double factor, std::span<double> registers, std::span<double> adjoints,

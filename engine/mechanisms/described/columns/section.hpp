@@ -2,6 +2,7 @@
 // roots, and between those the ends of columns are arcs whose areas are closed forms.
 #pragma once
 
+#include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/conic.hpp"
 #include "engine/mechanisms/described/columns/section_plan.hpp"
 
@@ -44,9 +45,9 @@ struct SectionRoom {
   };
   std::array<Conic, kMostSurfaces> conics;
   std::array<Meaning, kMostSurfaces> meaning;
-  std::array<double, 2> v, z;  ///< middle and half width
+  std::array<double, 2> v, z;       ///< middle and half width
   std::vector<std::size_t> active;  ///< those that change their sign in the section, each once
-  Signs always = 0;  ///< surfaces that are >= 0 all over the section
+  Signs always = 0;                 ///< surfaces that are >= 0 all over the section
   std::vector<Corner> corners;
   std::vector<Piece> pieces;
   std::vector<Span> spans, column;
@@ -64,6 +65,25 @@ class Section {
   double measure(std::span<double> registers, SectionRoom& room) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
   void add_slopes(double factor, std::span<double> registers, std::span<double> adjoints, SectionRoom& room) const;
+  /// Calls visit(v, z, weight) with nodes inside the columns, after measure().
+  template <class Visit>
+  void for_each_node(const GaussRule& along_v, const GaussRule& along_z, const SectionRoom& room,
+                     const Visit& visit) const {
+    for (const auto& piece : room.pieces) {
+      const Piece<double> range{piece.from, piece.to, is_round(piece.from_corner, room),
+                                is_round(piece.to_corner, room)};
+      for (std::size_t i = 0; i < along_v.node.size(); ++i) {
+        const auto [t, jacobian] = map_node(range, along_v.node[i]);
+        for (std::size_t k = piece.first; k < piece.first + piece.count; ++k) {
+          const double low = end_at(room.spans[k].lower, t, room), high = end_at(room.spans[k].upper, t, room);
+          const double weight = room.v[1] * room.z[1] * jacobian * along_v.weight[i] * (high - low);
+          for (std::size_t j = 0; j < along_z.node.size(); ++j)
+            visit(room.v[0] + room.v[1] * t, room.z[0] + room.z[1] * (low + (high - low) * along_z.node[j]),
+                  weight * along_z.weight[j]);
+        }
+      }
+    }
+  }
 
  private:
   bool load(std::span<const double> registers, SectionRoom& room) const;
@@ -77,6 +97,11 @@ class Section {
   bool plain_holds(double t, std::span<double> registers, const SectionRoom& room) const;
   double length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const;
   void find_structure(SectionRoom& room) const;
+  /// Whether columns close like a root there.
+  static bool is_round(std::size_t corner, const SectionRoom& room);
+  static double end_at(EndLabel end, double t, const SectionRoom& room) {
+    return place_on(room.conics[end >> 1U], static_cast<int>(end & 1U), t);
+  }
   std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
 
   SectionPlan plan_;

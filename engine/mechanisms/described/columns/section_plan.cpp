@@ -122,23 +122,47 @@ class Planner {
     if (plan_.why_not.empty()) plan_.why_not = what;
   }
 
-  /// Ranges of cranks whose surfaces are conics, in place of what they cover.
+  /// Ranges and folds of cranks whose surfaces are conics, in place of what they cover.
   void take_cranks() {
     covered_.assign(known_.all.size(), false);
-    for (const CoveredRange& crank : known_.cranks) {
-      std::array<std::optional<NodeConic>, 5> found;
-      for (std::size_t k = 0;
-           const Node node : {crank.at_min, crank.at_max, crank.after_min, crank.before_max, crank.reach})
-        found[k++] = conics_.conic(node);
-      if (!std::ranges::all_of(found, [](const auto& conic) { return conic.has_value(); }) ||
-          (graph_[crank.half_turn].groups & ~Inputs::kDesign) != 0 || !graph_[crank.branch].is_number())
-        continue;
-      plan_.formula.cranks.push_back({bit(*found[0]), bit(*found[1]), bit(*found[2]), bit(*found[3]), bit(*found[4]), 0,
-                                      graph_[crank.branch].number < 0});
-      half_turns_.push_back(crank.half_turn);
-      for (std::size_t i = 0; i < known_.all.size(); ++i)
-        covered_[i] = covered_[i] || std::ranges::find(crank.conditions, known_.all[i]) != crank.conditions.end();
+    std::vector<std::optional<Signs>> reaches(known_.cranks.size());
+    for (const CoveredFolds& folds : known_.folds) {
+      const auto outer = bits_of({folds.surfaces[0], folds.surfaces[1]});
+      if (!outer) continue;
+      const Signs all = (*outer)[0] | (*outer)[1];
+      plan_.formula.all |= all;
+      if (folds.crank_range) reaches[*folds.crank_range] = all;
+      cover(folds.conditions);
     }
+    for (std::size_t i = 0; i < known_.cranks.size(); ++i) {
+      const CoveredRange& crank = known_.cranks[i];
+      const auto found = bits_of({crank.at_min, crank.at_max, crank.after_min, crank.before_max});
+      if (!reaches[i])
+        if (const auto reach = bits_of({crank.reach})) reaches[i] = reach->front();
+      if (!found || !reaches[i] || (graph_[crank.half_turn].groups & ~Inputs::kDesign) != 0 ||
+          !graph_[crank.branch].is_number())
+        continue;
+      plan_.formula.cranks.push_back(
+          {(*found)[0], (*found)[1], (*found)[2], (*found)[3], *reaches[i], 0, graph_[crank.branch].number < 0});
+      half_turns_.push_back(crank.half_turn);
+      cover(crank.conditions);
+    }
+  }
+  void cover(const std::vector<Node>& conditions) {
+    for (std::size_t i = 0; i < known_.all.size(); ++i)
+      covered_[i] = covered_[i] || std::ranges::find(conditions, known_.all[i]) != conditions.end();
+  }
+  /// One of each surface; none: they are not all conics.
+  std::optional<std::vector<Signs>> bits_of(std::initializer_list<Node> surfaces) {
+    std::vector<NodeConic> found;
+    for (const Node surface : surfaces) {
+      const auto conic = conics_.conic(surface);
+      if (!conic) return {};
+      found.push_back(*conic);
+    }
+    std::vector<Signs> bits;
+    for (const NodeConic& conic : found) bits.push_back(bit(conic));
+    return bits;
   }
 
   void add_condition(std::size_t number) {

@@ -12,6 +12,7 @@ namespace {
 constexpr double kNear = 1e-15;       // of the range: how well breaks are known
 constexpr double kSettled = 1e-11;    // of the range: beyond a break, where structures can be told
 constexpr double kNarrow = 1e-12;     // of the range: parts that are not looked at
+constexpr double kBlurred = 1e-6;     // of the range: parts whose structures rounding may mix
 constexpr int kSamples[] = {40, 24};  // of the structure along one outer coordinate, along each of more
 constexpr std::size_t kMostParts = 3000;
 
@@ -181,7 +182,7 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
     less += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
-  if (!same && depth < 10 && room.sections < room.most) {
+  if (!same && depth < 10 && width > kBlurred * whole && room.sections < room.most) {
     Breaks breaks{
         {part.piece.lower, false, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox}};
     Slice before = part.below;
@@ -197,7 +198,10 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
     spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
   part.error = sharpened_error(std::fabs(part.value - less), spread);
-  if (!same) part.unresolved += part.value;
+  if (!same) {
+    const auto [least, greatest] = std::ranges::minmax(slices, {}, &Slice::measure);
+    part.unresolved += width * (greatest.measure - least.measure);
+  }
   own.parts.push_back(part);
 }
 

@@ -65,6 +65,12 @@ class SectionsIntegral {
   Integral<double> measure(std::span<const double> inputs, IntegralRoom& room) const;
   /// Adds derivatives of measure(), after it, by the graph's inputs.
   void add_slopes(std::span<double> by_input, IntegralRoom& room) const;
+  /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure().
+  template <class Visit>
+  void for_each_node(const GaussRule& outer, const GaussRule& inner, IntegralRoom& room, const Visit& visit) const {
+    std::vector<double> place;
+    visit_nodes(0, 1, outer, inner, place, room, visit);
+  }
 
  private:
   using Breaks = std::vector<SliceBreak>;
@@ -84,6 +90,25 @@ class SectionsIntegral {
 
   void add_slopes(std::size_t level, double factor, IntegralRoom& room) const;
   void add_side(std::size_t level, const SlicePart& part, bool upper, double factor, IntegralRoom& room) const;
+
+  /// After inside(level).
+  template <class Visit>
+  void visit_nodes(std::size_t level, double weight, const GaussRule& outer, const GaussRule& inner,
+                   std::vector<double>& place, IntegralRoom& room, const Visit& visit) const {
+    if (level == levels()) {
+      section_.for_each_node(outer, inner, room.section,
+                             [&](double v, double z, double own) { visit(place, v, z, weight * own); });
+      return;
+    }
+    for (const SlicePart& part : room.levels[level].parts)
+      for (std::size_t i = 0; i < outer.node.size(); ++i) {
+        const auto [at, jacobian] = map_node(part.piece, outer.node[i]);
+        slice(level, at, room);
+        place.push_back(at);
+        visit_nodes(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
+        place.pop_back();
+      }
+  }
 
   Section section_;
   double tolerance_;

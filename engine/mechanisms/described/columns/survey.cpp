@@ -4,6 +4,9 @@
 #include <stdexcept>
 
 #include "engine/mechanisms/described/columns/sections_integral.hpp"
+#include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/survey/cell_samples.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/with_slopes.hpp"
 
 namespace pkm::described {
@@ -45,7 +48,12 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
         plan_(plan),
         demand_(demand),
         sweep_(sweep_of(mechanism.info(), plan)),
-        mode_(number_of_mode(mechanism.info(), demand.mode)) {
+        mode_(number_of_mode(mechanism.info(), demand.mode)),
+        inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
+        outer_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {
+    if (demand.characteristic_length)
+      throw std::invalid_argument("mechanism " + mechanism.info().name +
+                                  " has its own characteristic length only; leave out characteristic_length");
     const Ranges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
     std::vector<SectionPlan> plans;
     std::string why_not;
@@ -63,8 +71,17 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     integral_.emplace(fastest(std::move(plans)), 0.01 * columns.tolerance);
   }
 
+  const SlopeSurveyor* slopes() const override { return demand_.needs_samples() ? nullptr : this; }
+  std::string why_no_slopes() const override {
+    return "columns of mechanism " + mechanism_.info().name +
+           ", which is a file, have derivatives of the volume, not of what is asked of every pose; take an optimiser "
+           "without gradients";
+  }
+
  private:
   friend WithSlopes<DescribedColumns>;
+  static constexpr int kSampleNodes = 6;
+
   struct Room {
     std::vector<double> inputs, by_input;
     IntegralRoom integral;
@@ -132,6 +149,9 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     survey.volume = S(volume.value);
     survey.error = volume.value > 0 ? volume.error / volume.value : 0;
     survey.columns = volume.evaluations;
+    if constexpr (std::is_same_v<S, double>) {
+      if (demand_.needs_samples()) add_samples(parameters, room, survey);
+    }
     if constexpr (!std::is_same_v<S, double>) {
       room.by_input.assign(room.inputs.size(), 0);
       integral_->add_slopes(room.by_input, room.integral);
@@ -141,16 +161,55 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     }
   }
 
+  void add_samples(std::span<const double> parameters, Room& room, Survey<double>& survey) const {
+    const Inputs& at = e_.model.inputs;
+    const SectionOrder& order = integral_->plan().order;
+    integral_->for_each_node(
+        outer_rule_, inner_rule_, room.integral,
+        [&](const std::vector<double>& outer, double v, double z, double weight) {
+          Pose<double> pose(at.coordinates);
+          std::copy_n(&room.inputs[at.coordinate(0)], pose.size(), pose.begin());
+          for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
+          if (order.v) pose[*order.v] = v;
+          pose[order.z] = z;
+          survey.weight.push_back(weight);
+          if (demand_.poses) survey.pose.push_back(pose);
+          std::vector<double>& inputs = room.by_input;
+          inputs = room.inputs;
+          std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
+          if (demand_.has(kConditioning))
+            add_reported(report_of_sample(e_, parameters, pose, inputs), at.joints, survey);
+          if (!demand_.needs_inertia()) return;
+          const MotionState<double> state{pose, AxisVector<double>(pose.size())};
+          PoseDynamics<double> d;
+          mechanism_.dynamics()->equations(parameters, mechanism_.info().modes[mode_], {&state, 1}, {&d, 1});
+          add_inertia(joint_inertia(d), survey);
+        });
+  }
+
   const Mechanism& mechanism_;
   const Evaluation& e_;
   SurveyPlan plan_;
   Demand demand_;
   const Sweep& sweep_;
   std::size_t mode_;
+  GaussRule inner_rule_, outer_rule_;
   std::optional<SectionsIntegral> integral_;
 };
 
 }  // namespace
+
+std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluation) {
+  const SurveyPlan usual{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
+  const Sweep& sweep = mechanism.info().sweeps.front();
+  const std::size_t coordinates = evaluation.model.inputs.coordinates;
+  std::string why_not;
+  for (const SectionOrder& order : orders_of(sweep, usual)) {
+    why_not = plan_sections(evaluation, 0, order, box_of(sweep, coordinates, {})).why_not;
+    if (why_not.empty()) break;
+  }
+  return why_not;
+}
 
 std::unique_ptr<const Surveyor> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
                                                 const SurveyPlan& plan, const ColumnOptions& columns,
