@@ -265,7 +265,8 @@ TEST_P(MechanismContract, JacobianEqualsDifferencesOfTheJoints) {
 
 TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
   if (!mechanism().columns()) GTEST_SKIP() << "no columns";
-  for (const Sweep& sweep : info().sweeps) {
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    if (!test::has_columns(mechanism(), sweep)) continue;
     SCOPED_TRACE(test::words(info(), sweep));
     const double exact = survey(mechanism(), parameters(), test::columns(info(), sweep)).volume;
     ASSERT_GT(exact, 0);
@@ -279,7 +280,8 @@ TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
 
 TEST_P(MechanismContract, ColumnsAreCutByABoxOrRefuseIt) {
   if (!mechanism().columns()) GTEST_SKIP() << "no columns";
-  for (const Sweep& sweep : info().sweeps) {
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    if (!test::has_columns(mechanism(), sweep)) continue;
     SCOPED_TRACE(test::words(info(), sweep));
     const VoxelMap all = voxel_map(mechanism(), parameters(), test::voxels(info(), sweep, 1));
     Box box;

@@ -25,11 +25,12 @@ bool has_pair_more(std::span<const std::uint32_t> more, std::span<const std::uin
 
 }  // namespace
 
-Integral<double> SectionsIntegral::measure(std::span<const double> inputs, IntegralRoom& room) const {
+Integral<double> SectionsIntegral::measure(std::span<const double> inputs, IntegralRoom& room, long most) const {
   const graph::Program& program = plan().program;
   room.registers.resize(program.registers());
   room.levels.resize(levels() + 1);
   room.sections = 0;
+  room.most = most > 0 ? most : levels() < 2 ? 100'000 : 20'000'000;
   for (IntegralRoom::Level& level : room.levels) level.greatest = 0;
   program.start<double>(room.registers);
   program.run<double>(0, inputs, room.registers);

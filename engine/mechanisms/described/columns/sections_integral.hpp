@@ -52,7 +52,7 @@ struct IntegralRoom {
   std::vector<double> registers, adjoints, own;
   std::vector<Level> levels;
   long sections = 0;
-  long most = 100'000;  ///< sections, after which what is not known counts as error
+  long most = 0;  ///< sections, after which what is not known counts as error
 };
 
 class SectionsIntegral {
@@ -62,7 +62,8 @@ class SectionsIntegral {
 
   const SectionPlan& plan() const { return section_.plan(); }
   /// @param inputs  of the graph, with held coordinates
-  Integral<double> measure(std::span<const double> inputs, IntegralRoom& room) const;
+  /// @param most    sections, after which what is not known counts as error; 0: more than are usually of use
+  Integral<double> measure(std::span<const double> inputs, IntegralRoom& room, long most = 0) const;
   /// Adds derivatives of measure(), after it, by the graph's inputs.
   void add_slopes(std::span<double> by_input, IntegralRoom& room) const;
   /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure().

@@ -95,13 +95,12 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
     Room room;
     std::size_t best = 0;
-    double least = static_cast<double>(room.integral.most);
+    double least = 1e7;
     for (std::size_t i = 0; i < plans.size(); ++i) {
       const SectionsIntegral trial(plans[i], kTrial);
       const auto per_section = static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size());
       fill_inputs<double>(design, room.inputs);
-      room.integral.most = static_cast<long>(least / per_section);
-      trial.measure(room.inputs, room.integral);
+      trial.measure(room.inputs, room.integral, std::max(1L, static_cast<long>(least / per_section)));
       const double work = static_cast<double>(room.integral.sections) * per_section;
       if (i > 0 && work >= least) continue;
       best = i;
