@@ -83,7 +83,7 @@ Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, Integ
   breaks.push_back({low, false, false, {}, before, true});
   for (int i = 0; i <= samples; ++i) {
     // not at equal distances, which symmetric mechanisms would have their breaks at
-    const double share = (i + 0.5 + 0.3 * std::sin(2.4 * i)) / samples;
+    const double step = 0.618 * i, share = (i + 0.2 + 0.6 * (step - std::floor(step))) / samples;
     const Slice next = slice(level, i < samples ? low + whole * share : high - kSettled * whole, room);
     find_breaks(level, before, next, whole, breaks, room);
     before = next;

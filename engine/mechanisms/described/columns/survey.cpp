@@ -82,9 +82,15 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
   friend WithSlopes<DescribedColumns>;
   static constexpr int kSampleNodes = 6;
 
-  struct Room {
+  struct Known {
+    const DescribedColumns* of = nullptr;
     std::vector<double> inputs, by_input;
+    Integral<double> volume;
+  };
+  struct Room {
+    std::vector<double> inputs, of_sample;
     IntegralRoom integral;
+    Known known;
   };
 
   /// The plan whose survey of the default design, to three digits, takes the fewest sections.
@@ -144,20 +150,36 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
       room.inputs.resize(inputs.size());
       std::ranges::transform(inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
     }
-    const Integral<double> volume = integral_->measure(room.inputs, room.integral);
+    if constexpr (std::is_same_v<S, double>) {
+      const Integral<double> volume = integral_->measure(room.inputs, room.integral);
+      take(volume, survey);
+      if (demand_.needs_samples()) add_samples(parameters, room, survey);
+    } else {
+      take(with_slopes(room), survey);
+      const std::vector<S>& inputs = scratch.get<std::vector<S>>();
+      for (std::size_t i = 0; i < inputs.size(); ++i)
+        survey.volume.v = survey.volume.v + inputs[i].v * room.known.by_input[i];
+    }
+  }
+
+  template <class S>
+  static void take(const Integral<double>& volume, Survey<S>& survey) {
     survey.volume = S(volume.value);
     survey.error = volume.value > 0 ? volume.error / volume.value : 0;
     survey.columns = volume.evaluations;
-    if constexpr (std::is_same_v<S, double>) {
-      if (demand_.needs_samples()) add_samples(parameters, room, survey);
-    }
-    if constexpr (!std::is_same_v<S, double>) {
-      room.by_input.assign(room.inputs.size(), 0);
-      integral_->add_slopes(room.by_input, room.integral);
-      const std::vector<S>& inputs = scratch.get<std::vector<S>>();
-      for (std::size_t i = 0; i < inputs.size(); ++i)
-        survey.volume.v = survey.volume.v + inputs[i].v * room.by_input[i];
-    }
+  }
+
+  /// The volume and its derivatives by all inputs; those of the last design are remembered, as parameters come in
+  /// passes of four.
+  Integral<double> with_slopes(Room& room) const {
+    Known& known = room.known;
+    if (known.of == this && known.inputs == room.inputs) return known.volume;
+    known.of = this;
+    known.inputs = room.inputs;
+    known.volume = integral_->measure(room.inputs, room.integral);
+    known.by_input.assign(room.inputs.size(), 0);
+    integral_->add_slopes(known.by_input, room.integral);
+    return known.volume;
   }
 
   void add_samples(std::span<const double> parameters, Room& room, Survey<double>& survey) const {
@@ -173,7 +195,7 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
           pose[order.z] = z;
           survey.weight.push_back(weight);
           if (demand_.poses) survey.pose.push_back(pose);
-          std::vector<double>& inputs = room.by_input;
+          std::vector<double>& inputs = room.of_sample;
           inputs = room.inputs;
           std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
           if (demand_.has(kConditioning))
