@@ -117,9 +117,10 @@ Moments moments(double h, double r, double r2, double curvature, const RootAt& r
 Moments moments_of(const Conic& P, const Arc& arc) {
   const auto q = P.discriminant();
   const double middle = 0.5 * (arc.from + arc.to);
-  const auto root = [&](double w) {
-    const double t = middle + w;
-    return std::sqrt(std::fmax(0.0, q[0] + t * (q[1] + t * q[2])));
+  const double noise = 4e-15 * (std::fabs(q[0]) + std::fabs(q[1]) + std::fabs(q[2]));
+  const auto root = [&](double w) {  // 0 at an end that is a root but for rounding
+    const double t = middle + w, square = q[0] + t * (q[1] + t * q[2]);
+    return square > noise ? std::sqrt(square) : 0;
   };
   const double h = arc.to - arc.from;
   return moments(h, root(-h / 2), root(h / 2), q[2], root);
@@ -137,12 +138,12 @@ Roots roots_of(const std::array<double, 3>& c) {
   if (!(discriminant >= 0)) return {};
   const double q = -0.5 * (b + (b < 0 ? -1 : 1) * std::sqrt(discriminant));
   const double r1 = q / a, r2 = q == 0 ? r1 : c0 / q;
-  return {{std::fmin(r1, r2), std::fmax(r1, r2)}, 2};
+  return {{r1 < r2 ? r1 : r2, r1 < r2 ? r2 : r1}, 2};
 }
 
 std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots) {
   double scale = 0;
-  for (const double c : coefficients) scale = std::fmax(scale, std::fabs(c));
+  for (const double c : coefficients) scale = std::fabs(c) > scale ? std::fabs(c) : scale;
   while (!coefficients.empty() && std::fabs(coefficients.back()) <= kNothing * scale)
     coefficients = coefficients.first(coefficients.size() - 1);
   const std::size_t degree = coefficients.empty() ? 0 : coefficients.size() - 1;
@@ -197,6 +198,7 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     size = B.scale * A.scale;
   }
   const double d1 = std::fabs(d[2]) + std::fabs(d[4]);
+  if (std::fabs(d[0]) > std::fabs(d[1]) + std::fabs(d[3]) + d1 * (1 + 1e-9)) return 0;  // nowhere in the square
   if (d1 <= kNothing * size) {
     if (std::fabs(d[1]) + std::fabs(d[3]) <= kNothing * size) return 0;  // nowhere, or everywhere
     const std::array<double, 3> of_t{d[0], d[1], d[3]};
@@ -230,10 +232,10 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
 double place_on(const Conic& P, int root, double t) {
   const auto [c0, b, a] = P.along(t);
   if (a == 0) return -c0 / b;
-  const double R = std::sqrt(std::fmax(0.0, b * b - 4 * a * c0));
+  const double square = b * b - 4 * a * c0, R = square > 0 ? std::sqrt(square) : 0;
   const double q = -0.5 * (b + (b < 0 ? -R : R));
   const double r1 = q / a, r2 = q == 0 ? r1 : c0 / q;
-  return root == 0 ? std::fmin(r1, r2) : std::fmax(r1, r2);
+  return (root == 0) == (r1 < r2) ? r1 : r2;
 }
 
 double area_below(const Conic& P, const Arc& arc) {
