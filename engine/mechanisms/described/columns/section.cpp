@@ -4,19 +4,13 @@
 #include <bit>
 #include <cmath>
 
-#include "engine/graph/reverse.hpp"
 #include "engine/math/hash.hpp"
+#include "engine/mechanisms/described/columns/corners.hpp"
 
 namespace pkm::described {
 namespace {
 
-// Kinds of corners, in the order in which one stands for all at its place.
-constexpr std::uint32_t kSide = 1U << 28, kPlain = 2U << 28, kUpright = 3U << 28, kCrossing = 4U << 28,
-                        kExtreme = 5U << 28, kKind = 15U << 28;
-constexpr double kTie = 1e-13;
-
 std::uint32_t crossing(std::size_t k, std::size_t l) { return kCrossing | static_cast<std::uint32_t>(k << 8U | l); }
-Signs bit(std::size_t k) { return Signs{1} << k; }
 
 /// The sign of a quadratic below all of its roots.
 bool positive_below(const std::array<double, 3>& c, int roots) {
@@ -24,106 +18,9 @@ bool positive_below(const std::array<double, 3>& c, int roots) {
   return roots > 0 ? c[1] < 0 : c[0] >= 0;
 }
 
-/// c by t and s, from C by v and z.
-Conic in_square(const std::array<double, 6>& C, const std::array<double, 2>& v, const std::array<double, 2>& z) {
-  const auto [vm, vh] = v;
-  const auto [zm, zh] = z;
-  Conic P;
-  P.c = {C[0] + vm * (C[1] + vm * C[3]) + zm * (C[2] + vm * C[4] + zm * C[5]),
-         vh * (C[1] + 2 * vm * C[3] + zm * C[4]),
-         zh * (C[2] + vm * C[4] + 2 * zm * C[5]),
-         vh * vh * C[3],
-         vh * zh * C[4],
-         zh * zh * C[5]};
-  for (const double c : P.c) P.scale += std::fabs(c);
-  return P;
-}
-
-/// Cuts a range to [low, high] and a little beyond, so that what ends there does so inside. False: nothing is left.
-bool cut(std::array<double, 2>& range, double low, double high) {
-  if (!(low <= range[1] && high >= range[0])) return false;
-  const double beyond = 1e-2 * (high - low);
-  if (low - beyond > range[0]) range[0] = low - beyond;
-  if (high + beyond < range[1]) range[1] = high + beyond;
-  return true;
-}
-
-/// Cuts the ranges to where a conic that is an ellipse, or a strip along one of the coordinates, is >= 0. False: it is
-/// so nowhere in them.
-bool narrow_to(const std::array<double, 6>& C, std::array<double, 2>& v, std::array<double, 2>& z) {
-  const auto [c, cv, cz, cvv, cvz, czz] = C;
-  const bool is_round = czz < 0 && cvv < 0 && cvz * cvz < 4 * cvv * czz;
-  if (!is_round && !(cvz == 0 && ((cv == 0 && cvv == 0 && czz < 0) || (cz == 0 && czz == 0 && cvv < 0)))) return true;
-  const auto range_of = [](const std::array<double, 3>& where, std::array<double, 2>& range) {
-    const Roots roots = roots_of(where);
-    return roots.count == 2 && cut(range, roots.s[0], roots.s[1]);
-  };
-  if (czz < 0 && cvv < 0)
-    return range_of({cz * cz - 4 * czz * c, 2 * cz * cvz - 4 * czz * cv, cvz * cvz - 4 * czz * cvv}, v) &&
-           range_of({cv * cv - 4 * cvv * c, 2 * cv * cvz - 4 * cvv * cz, cvz * cvz - 4 * cvv * czz}, z);
-  return czz < 0 ? range_of({c, cz, czz}, z) : range_of({c, cv, cvv}, v);
-}
-
-/// P is a multiple of Q: 1 or -1 by its sign, or 0.
-int is_multiple(const Conic& P, const Conic& Q) {
-  constexpr double kSame = 1e-12;
-  const double room = kSame * P.scale * Q.scale;
-  bool same = true, opposite = true;
-  for (std::size_t i = 0; i < 6 && (same || opposite); ++i) {
-    const double p = P.c[i] * Q.scale, q = Q.c[i] * P.scale;
-    same = same && std::fabs(p - q) <= room;
-    opposite = opposite && std::fabs(p + q) <= room;
-  }
-  return same ? 1 : opposite ? -1 : 0;
-}
-
-void add_active(std::size_t k, SectionRoom& room) {
-  for (const std::size_t known : room.active)
-    if (const int sign = is_multiple(room.conics[k], room.conics[known])) {
-      (sign > 0 ? room.meaning[known].same : room.meaning[known].opposite) |= bit(k);
-      return;
-    }
-  room.active.push_back(k);
-  room.meaning[k] = {bit(k), 0};
-}
-
 }  // namespace
 
 bool is_upright(std::uint32_t corner) { return (corner & kKind) <= kUpright; }
-
-bool Section::load(std::span<const double> registers, SectionRoom& room) const {
-  const auto ends_of = [&](const std::array<std::uint32_t, 2>& ends) {
-    return std::array{registers[ends[0]], registers[ends[1]]};
-  };
-  std::array<double, 2> v = ends_of(plan_.range[plan_.range.size() - 2]), z = ends_of(plan_.range.back());
-  if (!(v[1] > v[0]) || !(z[1] > z[0])) return false;
-  std::array<std::array<double, 6>, kMostSurfaces> C;
-  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
-    for (std::size_t i = 0; i < 6; ++i) C[k][i] = registers[plan_.surfaces[k].coefficients[i]];
-    if ((plan_.formula.all & bit(k)) != 0 && !narrow_to(C[k], v, z)) return false;
-  }
-  room.v = {0.5 * (v[0] + v[1]), 0.5 * (v[1] - v[0])};
-  room.z = {0.5 * (z[0] + z[1]), 0.5 * (z[1] - z[0])};
-  room.active.clear();
-  room.always = 0;
-  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
-    const Conic& P = room.conics[k] = in_square(C[k], room.v, room.z);
-    if (!std::isfinite(P.scale)) {
-      if ((plan_.formula.all & bit(k)) != 0) return false;
-      continue;
-    }
-    const double rest = std::fabs(P.c[1]) + std::fabs(P.c[2]) + std::fabs(P.c[4]) + 1e-12 * P.scale;
-    const auto least = [](double c) { return c < 0 ? c : 0; };
-    if (P.c[0] - least(-P.c[3]) - least(-P.c[5]) + rest < 0) {
-      if ((plan_.formula.all & bit(k)) != 0) return false;
-    } else if (P.c[0] + least(P.c[3]) + least(P.c[5]) - rest > 0 || P.scale == std::fabs(P.c[0])) {
-      room.always |= bit(k);
-    } else {
-      add_active(k, room);
-    }
-  }
-  return true;
-}
 
 /// Unless the place is known to be infeasible whatever the surfaces `of` say there.
 void Section::add_corner(double t, double s, Signs of, std::uint32_t label, SectionRoom& room) const {
@@ -213,19 +110,21 @@ void Section::find_column(double t, const double* registers, SectionRoom& room) 
   }
 }
 
-void Section::run_plain(double t, std::span<double> registers, const SectionRoom& room,
-                        std::vector<double>& values) const {
+void Section::set_v(double t, std::span<double> registers, const SectionRoom& room) const {
   const graph::Program& program = plan_.program;
   for (const auto& input : program.stages()[stage_of_v()].inputs) registers[input.to] = room.v[0] + room.v[1] * t;
   program.run<double>(stage_of_v(), registers);
+}
+
+void Section::run_plain(double t, std::span<double> registers, const SectionRoom& room,
+                        std::vector<double>& values) const {
+  set_v(t, registers, room);
   values.clear();
   for (const std::uint32_t at : plan_.plain.back()) values.push_back(registers[at]);
 }
 
 bool Section::plain_holds(double t, std::span<double> registers, const SectionRoom& room) const {
-  const graph::Program& program = plan_.program;
-  for (const auto& input : program.stages()[stage_of_v()].inputs) registers[input.to] = room.v[0] + room.v[1] * t;
-  program.run<double>(stage_of_v(), registers);
+  set_v(t, registers, room);
   return std::ranges::all_of(plan_.plain.back(), [&](std::uint32_t at) { return registers[at] >= 0; });
 }
 
@@ -290,9 +189,6 @@ void Section::find_pieces(bool plain, std::span<double> registers, SectionRoom& 
   add(1, room.corners.size());
 }
 
-namespace {
-
-/// Of the corners at a place, the one that ends arcs of a surface; a condition along v ends all of them.
 std::uint32_t corner_of(std::size_t surface, std::size_t first, double t, const SectionRoom& room) {
   if (first == room.corners.size()) return kSide | (t > 0 ? 1U : 0U);
   std::uint32_t found = 0;
@@ -304,8 +200,6 @@ std::uint32_t corner_of(std::size_t surface, std::size_t first, double t, const 
   }
   return found;
 }
-
-}  // namespace
 
 void Section::find_structure(SectionRoom& room) const {
   Structure& structure = room.structure;
@@ -382,69 +276,6 @@ double Section::length(const SectionRoom::Piece& piece, double t, const SectionR
 
 bool Section::is_round(std::size_t corner, const SectionRoom& room) {
   return corner < room.corners.size() && (room.corners[corner].label & kKind) == kExtreme;
-}
-
-void Section::add_slopes(double factor, std::span<double> registers, std::span<double> adjoints,
-                         SectionRoom& room) const {
-  std::array<std::array<double, 6>, kMostSurfaces> slopes{};
-  Signs used = 0;
-  const double measure = factor * room.v[1] * room.z[1];
-  const auto add_arc = [&](EndLabel end, const SectionRoom::Piece& piece, double sign) {
-    const std::size_t k = end >> 1U;
-    used |= bit(k);
-    add_slopes_of_area(room.conics[k], {static_cast<int>(end & 1U), piece.from, piece.to}, sign * measure, slopes[k]);
-  };
-  // A side moves by dt and takes columns of this length along.
-  const auto add_side = [&](double t, std::uint32_t label, double columns) {
-    const std::size_t k = label & ~kKind;
-    if ((label & kKind) == kSide) {
-      adjoints[plan_.range[plan_.range.size() - 2][k]] += factor * room.z[1] * columns;
-    } else if ((label & kKind) == kUpright) {
-      const Conic& P = room.conics[k];
-      const double g = -measure * columns / (P.c[1] + 2 * t * P.c[3]);
-      used |= bit(k);
-      slopes[k][0] += g;
-      slopes[k][1] += g * t;
-      slopes[k][3] += g * t * t;
-    } else if ((label & kKind) == kPlain) {
-      const graph::Program& program = plan_.program;
-      const auto& stage = program.stages()[stage_of_v()];
-      run_plain(t, registers, room, room.now);
-      std::vector<double>& own = room.other_adjoints;
-      own.assign(program.registers(), 0);
-      own[plan_.plain.back()[k]] = 1;
-      run_backwards(program, stage_of_v(), registers, own);
-      double slope = 0;
-      for (const auto& input : stage.inputs) {
-        slope += own[input.to];
-        own[input.to] = 0;
-      }
-      const double g = -factor * room.z[1] * columns / slope;
-      for (std::size_t i = 0; i < own.size(); ++i) adjoints[i] += g * own[i];
-    }
-  };
-  for (const auto& piece : room.pieces) {
-    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
-      add_arc(room.spans[i].upper, piece, 1);
-      add_arc(room.spans[i].lower, piece, -1);
-    }
-    add_side(piece.from, corner_of(kMostSurfaces, piece.from_corner, piece.from, room),
-             -length(piece, piece.from, room));
-    add_side(piece.to, corner_of(kMostSurfaces, piece.to_corner, piece.to, room), length(piece, piece.to, room));
-  }
-  const auto [vm, vh] = room.v;
-  const auto [zm, zh] = room.z;
-  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
-    if ((used & bit(k)) == 0) continue;
-    const auto& d = slopes[k];
-    const double of_v_z[6] = {d[0],
-                              vm * d[0] + vh * d[1],
-                              zm * d[0] + zh * d[2],
-                              vm * vm * d[0] + 2 * vm * vh * d[1] + vh * vh * d[3],
-                              vm * zm * d[0] + vh * zm * d[1] + vm * zh * d[2] + vh * zh * d[4],
-                              zm * zm * d[0] + 2 * zm * zh * d[2] + zh * zh * d[5]};
-    for (std::size_t i = 0; i < 6; ++i) adjoints[plan_.surfaces[k].coefficients[i]] += of_v_z[i];
-  }
 }
 
 }  // namespace pkm::described

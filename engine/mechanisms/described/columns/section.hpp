@@ -92,6 +92,8 @@ class Section {
   void find_plain_corners(std::span<double> registers, SectionRoom& room) const;
   void find_pieces(bool plain, std::span<double> registers, SectionRoom& room) const;
   void find_column(double t, const double* registers, SectionRoom& room) const;
+  /// Computes what depends on v, at t.
+  void set_v(double t, std::span<double> registers, const SectionRoom& room) const;
   /// Values of the plain conditions along v at t.
   void run_plain(double t, std::span<double> registers, const SectionRoom& room, std::vector<double>& values) const;
   bool plain_holds(double t, std::span<double> registers, const SectionRoom& room) const;
