@@ -273,8 +273,9 @@ TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
     const auto voxels = [&](std::int64_t cells) {
       return survey(mechanism(), parameters(), test::voxels(info(), sweep, cells)).volume;
     };
-    EXPECT_NEAR(voxels(30) / exact, 1, 0.05);
-    EXPECT_NEAR(voxels(240) / exact, 1, 0.005);
+    const double rounds = sweep.swept.size() == 1 ? 2 : 1;  // a length is whole cells: nothing evens out
+    EXPECT_NEAR(voxels(30) / exact, 1, rounds * 0.05);
+    EXPECT_NEAR(voxels(240) / exact, 1, rounds * 0.005);
   }
 }
 
@@ -300,7 +301,7 @@ TEST_P(MechanismContract, ColumnsAreCutByABoxOrRefuseIt) {
     std::get<VoxelOptions>(voxels.method).box = box;
     const double cut = survey(mechanism(), parameters(), columns).volume;
     EXPECT_LT(cut, 0.9 * whole);
-    EXPECT_NEAR(survey(mechanism(), parameters(), voxels).volume / cut, 1, 0.03);
+    EXPECT_NEAR(survey(mechanism(), parameters(), voxels).volume, cut, 0.03 * cut);  // which may be nothing
   }
 }
 
