@@ -201,5 +201,57 @@ BENCHMARK_CAPTURE(inverse_dynamics, built_in, "built-in 3crr-r-cru")
 BENCHMARK_CAPTURE(inverse_dynamics, crr, "3crr-r-cru")->Name("described/inverse_dynamics/3crr-r-cru");
 BENCHMARK_CAPTURE(inverse_dynamics, delta, "rotary-delta")->Name("described/inverse_dynamics/rotary-delta");
 
+// Exact columns of files to 1e-8 beside the loop that counts the paper's cells, which gives two digits; a gradient by
+// all parameters, in passes of four, beside the value.
+void columns(benchmark::State& state, const std::string& name, bool limited) {
+  const WithoutTeam alone;
+  const Mechanism& mechanism = described(name);
+  SurveyPlan plan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
+  if (limited) plan.limits = plan_of(mechanism, with_limits(), kPaperGrid).limits;
+  const auto surveyor = prepare_survey(mechanism, plan, {});
+  const std::vector<double> design = nominal(mechanism);
+  Scratch scratch;
+  Survey<double> result;
+  Survey<Dual4> slopes;
+  std::vector<Dual4> duals(design.begin(), design.end());
+  const auto original = original_design();
+  const auto g = four_ppa_two_par::geometry(std::span<const double>(original));
+  const peers::Voxels voxels{g.d, g.L0, {32, 34, 60}, 0, 0, kPi / 2, 0, 0, 0};
+  const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
+  const Duel duel = take_turns(
+      state, "plain_loop_s", [&] { benchmark::DoNotOptimize(peers::feasible_cells(voxels, lengths)); }, "survey_s",
+      [&] { surveyor->survey(design, scratch, result); });
+  state.counters["loops"] = duel.second / duel.first;  // the survey's time in those of the loop
+  const Duel gradient = take_turns(
+      state, "value_s", [&] { surveyor->survey(design, scratch, result); }, "gradient_s",
+      [&] {
+        scratch = Scratch();  // forgets the design
+        for (std::size_t first = 0; first < duals.size(); first += 4) {
+          for (std::size_t i = 0; i < duals.size(); ++i) duals[i] = Dual4(design[i]);
+          for (std::size_t i = first; i < std::min(first + 4, duals.size()); ++i)
+            duals[i] = Dual4::variable(design[i], static_cast<int>(i - first));
+          surveyor->slopes()->survey(duals, scratch, slopes);
+        }
+      });
+  state.counters["gradient"] = gradient.second / gradient.first;
+  state.counters["sections"] = static_cast<double>(result.columns);
+  state.counters["error"] = result.error;
+}
+BENCHMARK_CAPTURE(columns, planar, "3-rrr", false)->Name("described/columns/3-rrr")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, telescopes, "3-rpr", false)->Name("described/columns/3-rpr")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, slides, "orthoglide", false)
+    ->Name("described/columns/orthoglide")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, upright, "linear-delta", false)
+    ->Name("described/columns/linear-delta")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, gough, "gough", false)->Name("described/columns/gough")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, free, "4ppa-2par", false)
+    ->Name("described/columns/4ppa-2par")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, limited, "4ppa-2par", true)
+    ->Name("described/columns/4ppa-2par_with_limits")
+    ->Unit(benchmark::kMicrosecond);
+
 }  // namespace
 }  // namespace pkm::benchmarks

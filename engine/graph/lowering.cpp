@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "engine/math/scalar.hpp"
+
 namespace pkm::graph {
 namespace {
 
@@ -64,7 +66,7 @@ bool is_positive(const Graph& graph, Node node) {
 
 class Lowering {
  public:
-  Lowering(Graph& graph, Groups z) : graph_(graph), z_(z) {}
+  Lowering(Graph& graph, Groups z, bool squares = false) : graph_(graph), z_(z), squares_(squares) {}
 
   /// f as a form; none: it is of another kind.
   std::optional<Form> form(Node node) {
@@ -121,6 +123,14 @@ class Lowering {
           return either(conditions((*inner - y).node()), conditions((-*inner - y).node()));
       }
     }
+    if (auto found = conditions_of_form(node)) return found;
+    return squares_ ? conditions_of_squares(node) : std::nullopt;
+  }
+
+ private:
+  using Clauses = std::optional<std::vector<Clause>>;
+
+  Clauses conditions_of_form(Node node) {
     const auto f = form(node);
     if (!f) return {};
     if (f->B.empty()) return one({f->A});
@@ -134,10 +144,103 @@ class Lowering {
         (graph_[b.node()].operation == &negation() && is_positive(graph_, graph_[b.node()].arguments[0])))
       return both(one({f->A}), one({sum(*AA, negative(*BBQ))}));
     if (is_positive(graph_, b.node())) return one({f->A, sum(*BBQ, negative(*AA))});
-    return {};
+    if (!squares_) return {};
+    const Polynomial R = sum(*AA, negative(*BBQ));  // of unknown sign is b
+    return both(both(one({f->A, f->B}), one({f->A, negative(R)})), one({f->B, R}));
   }
 
- private:
+  bool is_free(const Term& x) const { return (graph_[x.node()].groups & z_) == 0; }
+
+  /// Y - u^2 with a Y that does not depend on z.
+  struct Difference {
+    Term Y, u;
+  };
+  std::optional<Difference> difference(Node node) {
+    const Entry entry = graph_[node];
+    if (!entry.operation || entry.operation->code != Code::subtract) return {};
+    const Term Y(graph_, entry.arguments[0]);
+    const Entry square = graph_[entry.arguments[1]];
+    if (!is_free(Y) || !square.operation || square.operation->code != Code::multiply ||
+        square.arguments[0] != square.arguments[1])
+      return {};
+    return Difference{Y, Term(graph_, square.arguments[0])};
+  }
+  /// X + sqrt(P), or X - sqrt(P), with an X that does not depend on z.
+  struct Rooted {
+    Term X;
+    bool plus;
+    Node P;
+  };
+  std::optional<Rooted> rooted(Node node) {
+    const Entry entry = graph_[node];
+    if (!entry.operation) return {};
+    const Code code = entry.operation->code;
+    if (code == Code::sqrt) return Rooted{Term(graph_, 0.0), true, entry.arguments[0]};
+    if (code != Code::add && code != Code::subtract && code != Code::negate) return {};
+    const Term x(graph_, entry.arguments[0]);
+    if (code == Code::negate) {
+      const auto inner = rooted(x.node());
+      return inner ? std::optional(Rooted{-inner->X, !inner->plus, inner->P}) : std::nullopt;
+    }
+    const Term y(graph_, entry.arguments[1]);
+    const bool adds = code == Code::add;
+    if (is_free(y)) {
+      const auto inner = rooted(x.node());
+      return inner ? std::optional(Rooted{adds ? inner->X + y : inner->X - y, inner->plus, inner->P}) : std::nullopt;
+    }
+    const auto inner = is_free(x) ? rooted(y.node()) : std::nullopt;
+    return inner ? std::optional(Rooted{adds ? x + inner->X : x - inner->X, inner->plus == adds, inner->P})
+                 : std::nullopt;
+  }
+
+  /// |u| <= sqrt(Y)
+  Clauses within(const Term& u, const Term& Y) {
+    const Entry entry = graph_[Y.node()];
+    const bool is_square =
+        entry.operation && entry.operation->code == Code::multiply && entry.arguments[0] == entry.arguments[1];
+    const Term root = is_square ? abs(Term(graph_, entry.arguments[0])) : sqrt(Y);
+    return both(conditions((root - u).node()), conditions((root + u).node()));
+  }
+  /// |u| >= sqrt(Y), or Y <= 0
+  Clauses beyond(const Term& u, const Term& Y) {
+    const Term root = sqrt(Y);
+    return either(conditions((-Y).node()), either(conditions((u - root).node()), conditions((-u - root).node())));
+  }
+  /// N / w - c, c - N / w, and the same with the arc cosine of N / w, where w is a root and c does not depend on z.
+  Clauses conditions_of_quotient(Node node) {
+    const Entry entry = graph_[node];
+    if (!entry.operation || entry.operation->code != Code::subtract) return {};
+    Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
+    const bool is_least = is_free(y);  // that c is the least value
+    if (!is_least && !is_free(x)) return {};
+    const Term c = is_least ? y : x, value = is_least ? x : y;
+    const Entry of = graph_[value.node()];
+    if (!of.operation) return {};
+    if (of.operation == &operation("acos")) {
+      const Term cosine(graph_, of.arguments[0]), pi(graph_, kPi);
+      const Term difference = is_least ? cos(c) - cosine : cosine - cos(c);
+      return is_least
+                 ? either(conditions((-c).node()), both(conditions((pi - c).node()), conditions(difference.node())))
+                 : both(conditions(c.node()), either(conditions((c - pi).node()), conditions(difference.node())));
+    }
+    if (of.operation->code != Code::divide || graph_[of.arguments[1]].operation != &operation("sqrt")) return {};
+    const Term N(graph_, of.arguments[0]), w(graph_, of.arguments[1]);
+    return conditions((is_least ? N - c * w : c * w - N).node());
+  }
+
+  /// Squares of forms, taken apart instead of multiplied out.
+  Clauses conditions_of_squares(Node node) {
+    if (const auto found = difference(node)) return within(found->u, found->Y);
+    if (auto found = conditions_of_quotient(node)) return found;
+    const auto root = rooted(node);
+    if (!root) return {};
+    const auto inside = difference(root->P);
+    if (!inside) return {};
+    const Clauses X = conditions(root->X.node());
+    const Term Y = inside->Y - root->X * root->X;
+    return root->plus ? either(X, within(inside->u, Y)) : both(X, beyond(inside->u, Y));
+  }
+
   /// u, where the term is |u|, or |u| / d with d >= 0 (then u / d); and where z is in it.
   std::optional<Term> inside_of_abs(const Term& term) {
     const Entry entry = graph_[term.node()];
@@ -159,8 +262,6 @@ class Lowering {
     if (!BBQ) return {};
     return Form{sum(*AA, *BBQ), sum(*AB, *BA), rooted.radicand, rooted.Q};
   }
-
-  using Clauses = std::optional<std::vector<Clause>>;
 
   /// One clause of these polynomials.
   Clauses one(const std::vector<Polynomial>& polynomials) {
@@ -190,10 +291,21 @@ class Lowering {
 
   Graph& graph_;
   Groups z_;
+  bool squares_;
 };
 
 }  // namespace
 
-std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z) { return Lowering(graph, z).conditions(f); }
+std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z, bool squares) {
+  return Lowering(graph, z, squares).conditions(f);
+}
+
+std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z) {
+  const auto form = Lowering(graph, z).form(f);
+  if (!form || !form->B.empty()) return {};
+  std::vector<Node> coefficients;
+  for (const Term& c : form->A) coefficients.push_back(c.node());
+  return coefficients;
+}
 
 }  // namespace pkm::graph

@@ -24,7 +24,12 @@ struct Quadratic {
 using Clause = std::vector<Quadratic>;
 
 /// Clauses that hold together where f >= 0; none: f is not of this kind.
-/// @param z  the group of the coordinate
-std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z);
+/// @param z        the group of the coordinate
+/// @param squares  whether Y - u^2 and what holds its root are taken apart, too, where u is a form with a root: that
+///                 takes more clauses
+std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z, bool squares = false);
+
+/// The coefficients of f as a polynomial in z, the lowest first, at most five; none: it is no such polynomial.
+std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z);
 
 }  // namespace pkm::graph

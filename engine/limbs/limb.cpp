@@ -81,6 +81,10 @@ Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, c
                .C = ends.A + arm(joint),
                .S = ends.A,
                .arm = Arm{to_C, axis, v - to_C}};
+  if (dot(v, axis).is(0)) {
+    const Term longest = crank + rod, shortest = crank - rod;
+    limb.folds = Folds{longest * longest - dot(v, v), dot(v, v) - shortest * shortest};
+  }
   if (!range) return limb;
   const Term pi(q.graph(), kPi);
   const Term from = call(graph::operation("max"), (*range)[0], middle - pi);

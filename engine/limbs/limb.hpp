@@ -40,6 +40,10 @@ struct Arm {
   Vector3 axis, rod;  ///< axis: unit vector
 };
 
+/// What a crank and a rod in one plane reach, |crank - rod| <= |v| <= crank + rod, as surfaces that are >= 0: of degree
+/// two, where h - k is a root and its square of degree four.
+using Folds = std::array<Term, 2>;
+
 struct Limb {
   Term joint;                         ///< undefined where a condition is < 0
   std::vector<Condition> conditions;  ///< for it to assemble
@@ -49,6 +53,7 @@ struct Limb {
   Vector3 S;  ///< the slide; of cranks and telescopes A
   std::optional<CrankRange> crank_range{};
   std::optional<Arm> arm{};
+  std::optional<Folds> folds{};  ///< what all conditions of a crank in a plane are together
 };
 
 /// The ends of a limb.

@@ -84,6 +84,7 @@ class Mechanism {
   // Abilities; null: the mechanism has it not.
   virtual const Voxels* voxels() const { return nullptr; }  ///< faster than testing every cell
   virtual const Columns* columns() const { return nullptr; }
+  virtual std::string why_no_columns() const { return ""; }  ///< "": there is nothing to say about it
   virtual const Size* size() const { return nullptr; }
   virtual const DesignTests* design_tests() const { return nullptr; }
   virtual const PoseMargins* pose_margins() const { return nullptr; }

@@ -110,11 +110,12 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
 
 void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   std::vector<std::vector<std::string>> can, cannot;
-  const auto tell = [&](bool has, const char* what, const char* how, const char* why) {
+  const auto tell = [&](bool has, const char* what, const char* how, const std::string& why) {
     (has ? can : cannot).push_back({what, has ? how : why});
   };
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
-  tell(mechanism.columns(), "exact workspace by columns", "", "a described mechanism has voxels only");
+  tell(mechanism.columns(), "exact workspace by columns",
+       "workspace.method = \"columns\", with derivatives of the volume", mechanism.why_no_columns());
   tell(!mechanism.info().characteristic_length.empty(), "conditioning", "",
        "[platform] characteristic_length is missing, and the freedoms are of both kinds");
   tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");

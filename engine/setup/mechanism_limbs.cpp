@@ -276,6 +276,12 @@ class LimbReader {
         covered.conditions.push_back(model.margins[i].node);
       model.crank_ranges.push_back(covered);
     }
+    if (limb.folds) {
+      described::CoveredFolds covered{{(*limb.folds)[0].node(), (*limb.folds)[1].node()}, {}, {}};
+      for (const auto& condition : limb.conditions) covered.conditions.push_back(condition.margin.node());
+      if (limb.crank_range) covered.crank_range = model.crank_ranges.size() - 1;
+      model.folds.push_back(covered);
+    }
     add_passive_joint("joint_base", name, limb.C, at.B);
     add_passive_joint("joint_platform", name, at.B, limb.C);
     draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts(limb, at)});

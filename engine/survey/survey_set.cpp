@@ -65,7 +65,9 @@ std::unique_ptr<const Surveyor> prepare_one(const Mechanism& mechanism, const Su
   if (const ColumnOptions* const columns = plan.columns()) {
     if (!mechanism.columns() || foreign)
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no column surveys" +
-                                  (foreign ? " of " + std::string(foreign->meaning) : "") +
+                                  (foreign                              ? " of " + std::string(foreign->meaning)
+                                   : mechanism.why_no_columns().empty() ? ""
+                                                                        : ": " + mechanism.why_no_columns()) +
                                   "; take workspace.method = \"voxels\"");
     if (columns->box && !mechanism.columns()->take_box())
       throw std::invalid_argument("columns of mechanism " + mechanism.info().name +

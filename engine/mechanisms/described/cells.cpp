@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "engine/math/lanes.hpp"
+#include "engine/mechanisms/described/conditions.hpp"
 
 namespace pkm::described {
 namespace {
@@ -12,14 +13,6 @@ namespace {
 using graph::kRow, graph::Program, graph::RowStage;
 
 constexpr std::size_t kOuter = 1, kMiddle = 2, kInner = 3;  // stages; 0: the design and what is held
-
-std::vector<Node> conditions_of(const Model& model) {
-  std::vector<Node> nodes;
-  for (const auto* const list : {&model.domains, &model.margins})
-    for (const Result& result : *list) nodes.push_back(result.node);
-  nodes.insert(nodes.end(), model.defined.begin(), model.defined.end());
-  return nodes;
-}
 
 /// Centres of cells [first, first + count), and of some beyond, up to whole lanes.
 std::size_t fill_centres(const VoxelGrid& grid, std::size_t axis, std::size_t first, std::size_t count, double* to) {
@@ -101,23 +94,10 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
                    std::size_t mode)
     : order_(std::move(order)) {
   const Model& model = evaluation.model;
-  std::vector<std::optional<double>> signs(model.inputs.sign(0));
-  for (const double sign : model.signs[mode]) signs.emplace_back(sign);
-  std::vector<Node> conditions = conditions_of(model);
-  const std::size_t own = conditions.size();
-  for (const CoveredRange& crank : model.crank_ranges) {
-    conditions.insert(conditions.end(), {crank.at_min, crank.at_max, crank.after_min, crank.before_max, crank.half_turn,
-                                         crank.reach, crank.branch});
-    conditions.insert(conditions.end(), crank.conditions.begin(), crank.conditions.end());
-  }
-  graph::Graph graph = with_numbers(model.graph, signs, conditions);
-  std::vector<CoveredRange> ranges;
-  for (std::size_t at = own; const CoveredRange& crank : model.crank_ranges) {
-    const Node* const n = &conditions[at];
-    ranges.push_back({n[0], n[1], n[2], n[3], n[4], n[5], n[6], {n + 7, n + 7 + crank.conditions.size()}});
-    at += 7 + crank.conditions.size();
-  }
-  conditions.resize(own);
+  Conditions known = conditions_of(model, mode);
+  graph::Graph& graph = known.graph;
+  std::vector<Node>& conditions = known.all;
+  std::vector<CoveredRange>& ranges = known.cranks;
 
   std::array<Groups, 4> groups{~Groups{0}, 0, 0, 0};
   for (std::size_t i = 0; i < order_.size(); ++i) {

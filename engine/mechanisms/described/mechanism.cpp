@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanisms/described/columns/survey.hpp"
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/equations.hpp"
 #include "engine/mechanisms/described/forward.hpp"
@@ -16,6 +17,7 @@ namespace {
 class DescribedMechanism final : public Mechanism,
                                  public std::enable_shared_from_this<DescribedMechanism>,
                                  Voxels,
+                                 Columns,
                                  Velocities,
                                  ForwardKinematics,
                                  Links,
@@ -23,7 +25,8 @@ class DescribedMechanism final : public Mechanism,
                                  Size,
                                  DynamicsOf<DescribedMechanism> {
  public:
-  explicit DescribedMechanism(Model model) : e_(std::move(model)) {}
+  explicit DescribedMechanism(Model model)
+      : e_(std::move(model)), why_no_columns_(described::why_no_columns(*this, e_)) {}
 
   const MechanismInfo& info() const override { return e_.model.info; }
   PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
@@ -53,6 +56,8 @@ class DescribedMechanism final : public Mechanism,
   }
 
   const Voxels* voxels() const override { return this; }
+  const Columns* columns() const override { return why_no_columns_.empty() ? this : nullptr; }
+  std::string why_no_columns() const override { return why_no_columns_; }
   const Velocities* velocities() const override { return this; }
   const ForwardKinematics* forward() const override {
     return e_.model.inputs.joints == e_.model.inputs.coordinates ? this : nullptr;
@@ -84,6 +89,11 @@ class DescribedMechanism final : public Mechanism,
     return prepare_voxels(*this, e_, plan, voxels, demand);
   }
   bool take_rotors() const override { return true; }
+  std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+                                          const Demand& demand) const override {
+    return prepare_columns(*this, e_, plan, columns, demand);
+  }
+  bool take_box() const override { return true; }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {
     return influence_at(e_, parameters, pose, number_of_mode(info(), mode));
@@ -141,6 +151,7 @@ class DescribedMechanism final : public Mechanism,
   Dual4 of(std::span<const Dual4> parameters) const override { return *e_.of_design(e_.size, parameters); }
 
   Evaluation e_;
+  std::string why_no_columns_;
 };
 
 }  // namespace

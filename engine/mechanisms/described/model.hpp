@@ -50,6 +50,13 @@ struct CoveredRange {
   std::vector<Node> conditions;
 };
 
+/// limbs::Folds, and the conditions that they stand for in a survey.
+struct CoveredFolds {
+  std::array<Node, 2> surfaces;
+  std::vector<Node> conditions;
+  std::optional<std::size_t> crank_range;  ///< of the same limb
+};
+
 /// What the design's size is, for workspace-ratio.
 struct DescribedSize {
   Node node;
@@ -111,6 +118,7 @@ struct Model {
   std::vector<Result> angles;   ///< of passive joints
   std::vector<Node> defined;    ///< >= 0 where formulas have a value: 0 times them
   std::vector<CoveredRange> crank_ranges;
+  std::vector<CoveredFolds> folds;
   std::vector<DescribedLink> links;
   std::vector<DesignMarginInfo> tests;
   std::vector<Node> test_nodes;

@@ -269,21 +269,24 @@ TEST_P(MechanismContract, JacobianEqualsDifferencesOfTheJoints) {
 
 TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
   if (!mechanism().columns()) GTEST_SKIP() << "no columns";
-  for (const Sweep& sweep : info().sweeps) {
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    if (!test::has_columns(mechanism(), sweep)) continue;
     SCOPED_TRACE(test::words(info(), sweep));
     const double exact = survey(mechanism(), parameters(), test::columns(info(), sweep)).volume;
     ASSERT_GT(exact, 0);
     const auto voxels = [&](std::int64_t cells) {
       return survey(mechanism(), parameters(), test::voxels(info(), sweep, cells)).volume;
     };
-    EXPECT_NEAR(voxels(30) / exact, 1, 0.05);
-    EXPECT_NEAR(voxels(240) / exact, 1, 0.005);
+    const double rounds = sweep.swept.size() == 1 ? 2 : 1;  // a length is whole cells: nothing evens out
+    EXPECT_NEAR(voxels(30) / exact, 1, rounds * 0.05);
+    EXPECT_NEAR(voxels(240) / exact, 1, rounds * 0.005);
   }
 }
 
 TEST_P(MechanismContract, ColumnsAreCutByABoxOrRefuseIt) {
   if (!mechanism().columns()) GTEST_SKIP() << "no columns";
-  for (const Sweep& sweep : info().sweeps) {
+  for (const Sweep& sweep : test::sweeps(mechanism())) {
+    if (!test::has_columns(mechanism(), sweep)) continue;
     SCOPED_TRACE(test::words(info(), sweep));
     const VoxelMap all = voxel_map(mechanism(), parameters(), test::voxels(info(), sweep, 1));
     Box box;
@@ -302,7 +305,7 @@ TEST_P(MechanismContract, ColumnsAreCutByABoxOrRefuseIt) {
     std::get<VoxelOptions>(voxels.method).box = box;
     const double cut = survey(mechanism(), parameters(), columns).volume;
     EXPECT_LT(cut, 0.9 * whole);
-    EXPECT_NEAR(survey(mechanism(), parameters(), voxels).volume / cut, 1, 0.03);
+    EXPECT_NEAR(survey(mechanism(), parameters(), voxels).volume, cut, 0.03 * cut);  // which may be nothing
   }
 }
 

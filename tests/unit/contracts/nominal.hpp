@@ -85,10 +85,22 @@ inline SurveyPlan columns(const MechanismInfo& info, const ColumnOptions& option
   return columns(info, info.sweeps.front(), options);
 }
 
+/// Whether columns can sweep so: those of files need surfaces of degree two.
+inline bool has_columns(const Mechanism& mechanism, const Sweep& sweep) {
+  if (!mechanism.columns()) return false;
+  if (!is_of_file(mechanism.info())) return true;
+  try {
+    prepare_survey(mechanism, columns(mechanism.info(), sweep), {});
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
 /// By voxels, and by columns where the mechanism has them.
 inline std::vector<SurveyPlan> plans(const Mechanism& mechanism, const Sweep& sweep, std::int64_t cells) {
   std::vector<SurveyPlan> all = {voxels(mechanism.info(), sweep, cells)};
-  if (mechanism.columns()) all.push_back(columns(mechanism.info(), sweep));
+  if (has_columns(mechanism, sweep)) all.push_back(columns(mechanism.info(), sweep));
   return all;
 }
 /// The more exact one of them.

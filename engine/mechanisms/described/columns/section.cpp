@@ -1,0 +1,281 @@
+#include "engine/mechanisms/described/columns/section.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/math/hash.hpp"
+#include "engine/mechanisms/described/columns/corners.hpp"
+
+namespace pkm::described {
+namespace {
+
+std::uint32_t crossing(std::size_t k, std::size_t l) { return kCrossing | static_cast<std::uint32_t>(k << 8U | l); }
+
+/// The sign of a quadratic below all of its roots.
+bool positive_below(const std::array<double, 3>& c, int roots) {
+  if (c[2] != 0) return c[2] > 0;
+  return roots > 0 ? c[1] < 0 : c[0] >= 0;
+}
+
+}  // namespace
+
+bool is_upright(std::uint32_t corner) { return (corner & kKind) <= kUpright; }
+
+/// Unless the place is known to be infeasible whatever the surfaces `of` say there.
+void Section::add_corner(double t, double s, Signs of, std::uint32_t label, SectionRoom& room) const {
+  if (!(std::fabs(s) <= 1 + 1e-9)) return;
+  Signs maybe = room.always;
+  for (const std::size_t m : room.active) {
+    const auto [same, opposite] = room.meaning[m];
+    const Conic& P = room.conics[m];
+    const double there = (of & bit(m)) != 0 ? 0 : P.at(t, s), near = 1e-7 * P.scale;
+    const Signs no = (there < -near ? same : 0) | (there > near ? opposite : 0);
+    if ((plan_.formula.all & no) != 0) return;
+    maybe |= (same | opposite) & ~no;
+  }
+  for (const Signs one_of : plan_.formula.any)
+    if ((maybe & one_of) == 0) return;
+  room.corners.push_back({t, label});
+}
+
+void Section::find_corners(SectionRoom& room) const {
+  room.corners.clear();
+  std::array<double, 8> at{};
+  std::array<Point, 16> points{};
+  for (std::size_t i = 0; i < room.active.size(); ++i) {
+    const std::size_t k = room.active[i];
+    const Conic& P = room.conics[k];
+    const auto number = static_cast<std::uint32_t>(k);
+    if (!plan_.surfaces[k].has_z || (P.c[2] == 0 && P.c[4] == 0 && P.c[5] == 0)) {
+      const std::size_t found = roots_between(std::array{P.c[0], P.c[1], P.c[3]}, at);
+      for (std::size_t n = 0; n < found; ++n) room.corners.push_back({at[n], kUpright | number});
+      continue;
+    }
+    if (P.is_straight()) {
+      if (P.c[4] != 0) room.corners.push_back({-P.c[2] / P.c[4], kExtreme | number});
+    } else {
+      const std::size_t found = roots_between(P.discriminant(), at);
+      for (std::size_t n = 0; n < found; ++n)
+        add_corner(at[n], -0.5 * (P.c[2] + at[n] * P.c[4]) / P.c[5], bit(k), kExtreme | number, room);
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::size_t l = room.active[j];
+      if (!plan_.surfaces[l].has_z) continue;
+      const std::size_t found = crossings(P, room.conics[l], points);
+      for (std::size_t n = 0; n < found; ++n)
+        add_corner(points[n].t, points[n].s, bit(k) | bit(l), crossing(l, k), room);
+    }
+  }
+}
+
+void Section::find_column(double t, const double* registers, SectionRoom& room) const {
+  Signs signs = room.always;
+  room.ends.clear();
+  for (const std::size_t k : room.active) {
+    const auto c = room.conics[k].along(t);
+    const Roots roots = roots_of(c);
+    signs |= positive_below(c, roots.count) ? room.meaning[k].same : room.meaning[k].opposite;
+    for (int r = 0; r < roots.count; ++r)
+      room.ends.emplace_back(roots.s[static_cast<std::size_t>(r)], static_cast<EndLabel>(k << 1U) + (r ? 1U : 0U));
+  }
+  std::sort(room.ends.begin(), room.ends.end());
+  room.column.clear();
+  bool is_in = false;
+  EndLabel lower = 0;
+  for (std::size_t i = 0; i < room.ends.size();) {
+    const double s = room.ends[i].first;
+    const Signs before = signs;
+    std::size_t end = i;
+    for (; end < room.ends.size() && room.ends[end].first <= s + kTie; ++end) {
+      const auto [same, opposite] = room.meaning[room.ends[end].second >> 1U];
+      signs ^= same | opposite;
+    }
+    if (plan_.formula.holds(signs, registers) != is_in) {
+      is_in = !is_in;
+      // of several ends at one place, the first surface's that changes in this direction
+      EndLabel label = ~EndLabel{0}, any = ~EndLabel{0};
+      for (std::size_t j = i; j < end; ++j) {
+        const EndLabel each = room.ends[j].second;
+        any = std::min(any, each);
+        if (((signs & ~before & room.meaning[each >> 1U].same) != 0) == is_in) label = std::min(label, each);
+      }
+      if (label == ~EndLabel{0}) label = any;
+      if (is_in)
+        lower = label;
+      else
+        room.column.push_back({lower, label});
+    }
+    i = end;
+  }
+}
+
+void Section::set_v(double t, std::span<double> registers, const SectionRoom& room) const {
+  const graph::Program& program = plan_.program;
+  for (const auto& input : program.stages()[stage_of_v()].inputs) registers[input.to] = room.v[0] + room.v[1] * t;
+  program.run<double>(stage_of_v(), registers);
+}
+
+void Section::run_plain(double t, std::span<double> registers, const SectionRoom& room,
+                        std::vector<double>& values) const {
+  set_v(t, registers, room);
+  values.clear();
+  for (const std::uint32_t at : plan_.plain.back()) values.push_back(registers[at]);
+}
+
+bool Section::plain_holds(double t, std::span<double> registers, const SectionRoom& room) const {
+  set_v(t, registers, room);
+  return std::ranges::all_of(plan_.plain.back(), [&](std::uint32_t at) { return registers[at] >= 0; });
+}
+
+/// Corners where a plain condition along v changes its sign, among the pieces found so far.
+void Section::find_plain_corners(std::span<double> registers, SectionRoom& room) const {
+  constexpr int kSteps = 24;
+  const double low = room.pieces.front().from, high = room.pieces.back().to;
+  const double inset = 1e-9 * (high - low);
+  double t = low + inset;
+  run_plain(t, registers, room, room.before);
+  for (int step = 1; step <= kSteps; ++step) {
+    const double next = step == kSteps ? high - inset : low + (high - low) * step / kSteps;
+    run_plain(next, registers, room, room.now);
+    for (std::size_t i = 0; i < room.now.size(); ++i) {
+      if ((room.before[i] >= 0) == (room.now[i] >= 0)) continue;
+      double a = t, b = next, at_a = room.before[i], at_b = room.now[i];
+      for (int n = 0; n < 100 && b - a > 4e-16; ++n) {  // Illinois, which halves where a side stays
+        double x = a - at_a * (b - a) / (at_b - at_a);
+        if (!(x > a && x < b) || n % 3 == 2) x = 0.5 * (a + b);
+        if (x <= a || x >= b) break;
+        run_plain(x, registers, room, room.other_adjoints);
+        const double f = room.other_adjoints[i];
+        ((f >= 0) == (at_a >= 0) ? a : b) = x;
+        ((f >= 0) == (at_a >= 0) ? at_a : at_b) = f;
+      }
+      room.corners.push_back({b, kPlain | static_cast<std::uint32_t>(i)});
+    }
+    t = next;
+    std::swap(room.before, room.now);
+  }
+}
+
+/// @param plain  whether plain conditions are looked at, too
+void Section::find_pieces(bool plain, std::span<double> registers, SectionRoom& room) const {
+  room.pieces.clear();
+  room.spans.clear();
+  std::sort(room.corners.begin(), room.corners.end(), [](const auto& x, const auto& y) { return x.t < y.t; });
+  double from = -1;
+  std::size_t from_corner = room.corners.size();
+  const auto add = [&](double to, std::size_t to_corner) {
+    const double middle = 0.5 * (from + to);
+    room.column.clear();
+    if (!plain || plain_holds(middle, registers, room)) find_column(middle, registers.data(), room);
+    if (room.column.empty()) return;
+    SectionRoom::Piece* const last = room.pieces.empty() ? nullptr : &room.pieces.back();
+    if (last && last->to == from && std::ranges::equal(std::span(room.spans).subspan(last->first), room.column)) {
+      last->to = to;
+      last->to_corner = to_corner;
+      return;
+    }
+    room.pieces.push_back({from, to, from_corner, to_corner, room.spans.size(), room.column.size()});
+    room.spans.insert(room.spans.end(), room.column.begin(), room.column.end());
+  };
+  for (std::size_t i = 0; i < room.corners.size(); ++i) {
+    const double t = room.corners[i].t;
+    if (t <= -1 + kTie || t - from <= kTie) continue;
+    if (t >= 1 - kTie) break;
+    add(t, i);
+    from = t;
+    from_corner = i;
+  }
+  add(1, room.corners.size());
+}
+
+std::uint32_t corner_of(std::size_t surface, std::size_t first, double t, const SectionRoom& room) {
+  if (first == room.corners.size()) return kSide | (t > 0 ? 1U : 0U);
+  std::uint32_t found = 0;
+  for (std::size_t i = first; i < room.corners.size() && room.corners[i].t <= room.corners[first].t + kTie; ++i) {
+    const std::uint32_t label = room.corners[i].label, kind = label & kKind, place = label & ~kKind;
+    const bool its_own =
+        kind == kCrossing ? (place & 255U) == surface || place >> 8U == surface : kind != kExtreme || place == surface;
+    if (its_own && (found == 0 || label < found)) found = label;
+  }
+  return found;
+}
+
+void Section::find_structure(SectionRoom& room) const {
+  Structure& structure = room.structure;
+  const auto goes_on = [&](const SectionRoom::Piece& piece, EndLabel end, bool above) {
+    return std::any_of(room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first),
+                       room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first + piece.count),
+                       [&](const SectionRoom::Span& span) { return (above ? span.upper : span.lower) == end; });
+  };
+  Signs round = 0, cut = 0;  // surfaces whose arcs go on beyond extremes, and those that have other corners
+  const auto add = [&](std::size_t surface, std::size_t first, double t) {
+    const std::uint32_t label = corner_of(surface, first, t, room);
+    if ((label & kKind) == kExtreme) {
+      round |= bit(surface);
+      return;
+    }
+    cut |= bit(surface);
+    structure.corners.push_back(label);
+    Fnv1a corner;
+    corner.add(surface);
+    corner.add(label);
+    structure.hash += corner.value();
+  };
+  for (std::size_t p = 0; p < room.pieces.size(); ++p) {
+    const auto& piece = room.pieces[p];
+    const auto* const before = p > 0 && room.pieces[p - 1].to == piece.from ? &piece - 1 : nullptr;
+    const auto* const after = p + 1 < room.pieces.size() && room.pieces[p + 1].from == piece.to ? &piece + 1 : nullptr;
+    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
+      for (const bool above : {false, true}) {
+        const EndLabel end = above ? room.spans[i].upper : room.spans[i].lower;
+        if (!before || !goes_on(*before, end, above)) add(end >> 1U, piece.from_corner, piece.from);
+        if (!after || !goes_on(*after, end, above)) add(end >> 1U, piece.to_corner, piece.to);
+      }
+  }
+  for (Signs whole = round & ~cut; whole != 0; whole &= whole - 1) {
+    Fnv1a conic;
+    conic.add(static_cast<std::uint64_t>(std::countr_zero(whole)));
+    structure.hash += conic.value();
+  }
+  if (!room.pieces.empty() && structure.hash == 0) structure.hash = 1;
+}
+
+double Section::measure(std::span<double> registers, SectionRoom& room) const {
+  Structure& structure = room.structure;
+  structure = {0, std::move(structure.corners), 0};
+  structure.corners.clear();
+  room.pieces.clear();
+  room.spans.clear();
+  if (!load(registers, room)) return 0;
+  find_corners(room);
+  find_pieces(false, registers, room);
+  if (!plan_.plain.back().empty() && !room.pieces.empty()) {
+    find_plain_corners(registers, room);
+    find_pieces(true, registers, room);
+  }
+  double sum = 0;
+  for (const auto& piece : room.pieces)
+    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
+      const auto [lower, upper] = room.spans[i];
+      const auto area = [&](EndLabel end) {
+        return area_below(room.conics[end >> 1U], {static_cast<int>(end & 1U), piece.from, piece.to});
+      };
+      sum += area(upper) - area(lower);
+    }
+  find_structure(room);
+  return sum * room.v[1] * room.z[1];
+}
+
+double Section::length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const {
+  double sum = 0;
+  for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
+    sum += end_at(room.spans[i].upper, t, room) - end_at(room.spans[i].lower, t, room);
+  return sum;
+}
+
+bool Section::is_round(std::size_t corner, const SectionRoom& room) {
+  return corner < room.corners.size() && (room.corners[corner].label & kKind) == kExtreme;
+}
+
+}  // namespace pkm::described

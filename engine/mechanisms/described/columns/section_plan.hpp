@@ -1,0 +1,41 @@
+// What holds in sections of a described workspace: planes (v, z) at fixed outer coordinates, as conics in v and z whose
+// coefficients a program computes.
+#pragma once
+
+#include <string>
+
+#include "engine/graph/program.hpp"
+#include "engine/mechanisms/described/columns/formula.hpp"
+#include "engine/mechanisms/described/evaluation.hpp"
+
+namespace pkm::described {
+
+/// A conic of the section by its registers; what is the same in every section and place is a number.
+struct Surface {
+  std::array<std::uint32_t, 6> coefficients;  ///< of 1, v, z, v^2, v z, z^2
+  bool has_v, has_z;
+};
+
+/// Which coordinates are what.
+struct SectionOrder {
+  std::vector<std::size_t> outer;  ///< coordinates, the outermost first
+  std::optional<std::size_t> v;
+  std::size_t z = 0;
+};
+
+using Ranges = std::vector<std::optional<std::array<double, 2>>>;
+
+struct SectionPlan {
+  SectionOrder order;
+  graph::Program program;  ///< stages: the design, each outer coordinate, v
+  std::vector<Surface> surfaces;
+  Formula formula;
+  std::vector<std::vector<std::uint32_t>> plain;    ///< by stage: registers, >= 0 where it holds
+  std::vector<std::array<std::uint32_t, 2>> range;  ///< registers: of each outer coordinate, of v and z
+  std::string why_not;                              ///< not "": these sections have no closed form
+};
+
+/// @param box  by coordinate; where it says nothing, the model's own is taken
+SectionPlan plan_sections(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, const Ranges& box);
+
+}  // namespace pkm::described

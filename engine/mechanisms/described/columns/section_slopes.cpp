@@ -1,0 +1,72 @@
+// How a section's area changes with its surfaces: by their arcs, and by upright sides that move.
+#include <cmath>
+
+#include "engine/graph/reverse.hpp"
+#include "engine/mechanisms/described/columns/corners.hpp"
+
+namespace pkm::described {
+
+void Section::add_slopes(double factor, std::span<double> registers, std::span<double> adjoints,
+                         SectionRoom& room) const {
+  std::array<std::array<double, 6>, kMostSurfaces> slopes{};
+  Signs used = 0;
+  const double measure = factor * room.v[1] * room.z[1];
+  const auto add_arc = [&](EndLabel end, const SectionRoom::Piece& piece, double sign) {
+    const std::size_t k = end >> 1U;
+    used |= bit(k);
+    add_slopes_of_area(room.conics[k], {static_cast<int>(end & 1U), piece.from, piece.to}, sign * measure, slopes[k]);
+  };
+  // A side moves by dt and takes columns of this length along.
+  const auto add_side = [&](double t, std::uint32_t label, double columns) {
+    const std::size_t k = label & ~kKind;
+    if ((label & kKind) == kSide) {
+      adjoints[plan_.range[plan_.range.size() - 2][k]] += factor * room.z[1] * columns;
+    } else if ((label & kKind) == kUpright) {
+      const Conic& P = room.conics[k];
+      const double g = -measure * columns / (P.c[1] + 2 * t * P.c[3]);
+      used |= bit(k);
+      slopes[k][0] += g;
+      slopes[k][1] += g * t;
+      slopes[k][3] += g * t * t;
+    } else if ((label & kKind) == kPlain) {
+      const graph::Program& program = plan_.program;
+      const auto& stage = program.stages()[stage_of_v()];
+      set_v(t, registers, room);
+      std::vector<double>& own = room.other_adjoints;
+      own.assign(program.registers(), 0);
+      own[plan_.plain.back()[k]] = 1;
+      run_backwards(program, stage_of_v(), registers, own);
+      double slope = 0;
+      for (const auto& input : stage.inputs) {
+        slope += own[input.to];
+        own[input.to] = 0;
+      }
+      const double g = -factor * room.z[1] * columns / slope;
+      for (std::size_t i = 0; i < own.size(); ++i) adjoints[i] += g * own[i];
+    }
+  };
+  for (const auto& piece : room.pieces) {
+    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
+      add_arc(room.spans[i].upper, piece, 1);
+      add_arc(room.spans[i].lower, piece, -1);
+    }
+    add_side(piece.from, corner_of(kMostSurfaces, piece.from_corner, piece.from, room),
+             -length(piece, piece.from, room));
+    add_side(piece.to, corner_of(kMostSurfaces, piece.to_corner, piece.to, room), length(piece, piece.to, room));
+  }
+  const auto [vm, vh] = room.v;
+  const auto [zm, zh] = room.z;
+  for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
+    if ((used & bit(k)) == 0) continue;
+    const auto& d = slopes[k];
+    const double of_v_z[6] = {d[0],
+                              vm * d[0] + vh * d[1],
+                              zm * d[0] + zh * d[2],
+                              vm * vm * d[0] + 2 * vm * vh * d[1] + vh * vh * d[3],
+                              vm * zm * d[0] + vh * zm * d[1] + vm * zh * d[2] + vh * zh * d[4],
+                              zm * zm * d[0] + 2 * zm * zh * d[2] + zh * zh * d[5]};
+    for (std::size_t i = 0; i < 6; ++i) adjoints[plan_.surfaces[k].coefficients[i]] += of_v_z[i];
+  }
+}
+
+}  // namespace pkm::described

@@ -1,0 +1,290 @@
+#include "engine/mechanisms/described/columns/sections_integral.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/graph/reverse.hpp"
+#include "engine/math/hash.hpp"
+
+namespace pkm::described {
+namespace {
+
+constexpr double kNear = 1e-15;       // of the range: how well breaks are known
+constexpr double kSettled = 1e-11;    // of the range: beyond a break, where structures can be told
+constexpr double kNarrow = 1e-12;     // of the range: parts that are not looked at
+constexpr double kBlurred = 1e-6;     // of the range: parts whose structures rounding may mix
+constexpr int kSamples[] = {40, 24};  // of the structure along one outer coordinate, along each of more
+constexpr std::size_t kMostParts = 3000;
+
+/// Whether there are two more corners of a kind: they meet where the structure changes.
+bool has_pair_more(std::span<const std::uint32_t> more, std::span<const std::uint32_t> fewer) {
+  return std::ranges::any_of(more, [&](std::uint32_t label) {
+    return std::ranges::count(more, label) - std::ranges::count(fewer, label) >= (is_upright(label) ? 2 : 4);
+  });
+}
+
+}  // namespace
+
+Integral<double> SectionsIntegral::measure(std::span<const double> inputs, IntegralRoom& room, long most) const {
+  const graph::Program& program = plan().program;
+  room.registers.resize(program.registers());
+  room.levels.resize(levels() + 1);
+  room.sections = 0;
+  room.most = most > 0 ? most : levels() < 2 ? 100'000 : 20'000'000;
+  for (IntegralRoom::Level& level : room.levels) level.greatest = 0;
+  program.start<double>(room.registers);
+  program.run<double>(0, inputs, room.registers);
+  const Slice all = inside(0, room.levels.back().structure, room);
+  return {all.measure, all.error, room.sections};
+}
+
+void SectionsIntegral::set(std::size_t level, double at, IntegralRoom& room) const {
+  for (const auto& input : plan().program.stages()[level + 1].inputs) room.registers[input.to] = at;
+  plan().program.run<double>(level + 1, std::span<double>(room.registers));
+}
+
+Slice SectionsIntegral::inside(std::size_t level, Structure& structure, IntegralRoom& room) const {
+  const auto& plain = plan().plain[level];
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    if (!(room.registers[plain[i]] >= 0)) {
+      structure.hash = 0;
+      structure.corners.clear();
+      return {.broken = static_cast<std::uint32_t>(i + 1)};
+    }
+  if (level < levels()) return integrate(level, structure, room);
+  ++room.sections;
+  Slice found{.measure = section_.measure(room.registers, room.section)};
+  structure.hash = room.section.structure.hash;
+  structure.corners = room.section.structure.corners;
+  found.hash = structure.hash;
+  return found;
+}
+
+Slice SectionsIntegral::slice(std::size_t level, double at, IntegralRoom& room) const {
+  set(level, at, room);
+  Slice found = inside(level + 1, room.levels[level].structure, room);
+  found.at = at;
+  room.levels[level].greatest = std::max(room.levels[level].greatest, found.measure);
+  return found;
+}
+
+Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, IntegralRoom& room) const {
+  structure.hash = 0;
+  structure.corners.clear();
+  IntegralRoom::Level& own = room.levels[level];
+  own.parts.clear();
+  own.unresolved = 0;
+  const auto [from, to] = plan().range[level];
+  const double low = room.registers[from], high = room.registers[to], whole = high - low;
+  if (!(whole > 0)) return {};
+  const int samples = kSamples[levels() > 1 ? 1 : 0];
+  Breaks breaks;
+  Slice before = slice(level, low + kSettled * whole, room);
+  breaks.push_back({low, false, false, {}, before, true});
+  for (int i = 0; i <= samples; ++i) {
+    // not at equal distances, which symmetric mechanisms would have their breaks at
+    const double step = 0.618 * i, share = (i + 0.2 + 0.6 * (step - std::floor(step))) / samples;
+    const Slice next = slice(level, i < samples ? low + whole * share : high - kSettled * whole, room);
+    find_breaks(level, before, next, whole, breaks, room);
+    before = next;
+  }
+  breaks.push_back({high, false, false, before, {}, true});
+  add_parts(level, breaks, whole, 0, room);
+  refine(level, whole, room);
+
+  std::sort(own.parts.begin(), own.parts.end(),
+            [](const SlicePart& x, const SlicePart& y) { return x.piece.lower < y.piece.lower; });
+  Slice sum;
+  sum.error = own.unresolved;
+  Fnv1a hash;
+  std::uint64_t last = 0;
+  for (const SlicePart& part : own.parts) {
+    sum.measure += part.value;
+    sum.error += part.error + part.unresolved;
+    if (part.below.hash != last) hash.add(part.below.hash);
+    last = part.below.hash;
+  }
+  if (!own.parts.empty()) structure.hash = sum.hash = hash.value() | 1U;
+  return sum;
+}
+
+/// Adds the breaks between two slices, in order.
+void SectionsIntegral::find_breaks(std::size_t level, Slice from, const Slice& to, double whole, Breaks& breaks,
+                                   IntegralRoom& room) const {
+  for (int more = 0; more < 24 && from.hash != to.hash && room.sections < room.most; ++more) {
+    Slice low = from, high = to;
+    const double near = kNear * (whole + std::fabs(low.at));
+    while (high.at - low.at > near) {
+      const double middle = 0.5 * (low.at + high.at);
+      if (middle <= low.at || middle >= high.at) break;
+      const Slice next = slice(level, middle, room);
+      (next.hash == low.hash ? low : high) = next;
+    }
+    const double beyond = high.at + kSettled * whole;
+    const Slice after = beyond < to.at ? slice(level, beyond, room) : to;
+    SliceBreak found{high.at, true, true, low, after};
+    find_kind(level, found, std::max(from.at, low.at - kSettled * whole), after.at, room);
+    breaks.push_back(found);
+    from = after;
+  }
+}
+
+/// On which sides the measure behaves like a root: where two corners of one kind meet.
+void SectionsIntegral::find_kind(std::size_t level, SliceBreak& at, double before, double after,
+                                 IntegralRoom& room) const {
+  if (level + 1 < levels()) return;
+  slice(level, before, room);
+  std::vector<std::uint32_t>& corners = room.levels[level].corners;
+  corners = room.levels[level].structure.corners;
+  slice(level, after, room);
+  const std::vector<std::uint32_t>& others = room.levels[level].structure.corners;
+  at.root_below = has_pair_more(corners, others);
+  at.root_above = has_pair_more(others, corners);
+}
+
+void SectionsIntegral::add_parts(std::size_t level, const Breaks& breaks, double whole, int depth,
+                                 IntegralRoom& room) const {
+  const auto closing = [](const SliceBreak& at, const Slice& outside) {
+    return at.is_box ? kBox : outside.hash == 0 ? outside.broken : kChange;
+  };
+  for (std::size_t i = 1; i < breaks.size(); ++i) {
+    const SliceBreak &lower = breaks[i - 1], &upper = breaks[i];
+    if (lower.above.hash == 0 && upper.below.hash == 0) continue;
+    add_part(level,
+             {.piece = {lower.at, upper.at, lower.root_above, upper.root_below},
+              .below = lower.above,
+              .above = upper.below,
+              .lower = closing(lower, lower.below),
+              .upper = closing(upper, upper.above)},
+             whole, depth, room);
+  }
+}
+
+/// Integrates over a part; where its nodes have several structures, over the parts between their breaks.
+void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole, int depth, IntegralRoom& room) const {
+  IntegralRoom::Level& own = room.levels[level];
+  const double width = part.piece.upper - part.piece.lower;
+  if (width < kNarrow * whole) {
+    own.unresolved += width * std::max(part.below.measure, part.above.measure);
+    return;
+  }
+  const NestedRule& rule = kronrod_rule();
+  const NestedRule::Level& weights = rule.level.front();
+  std::array<Slice, NestedRule::kNodes> slices;
+  double less = 0, spread = 0;
+  bool same = part.below.hash == part.above.hash;
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+    const auto [at, jacobian] = map_node(part.piece, rule.node[i]);
+    slices[i] = slice(level, at, room);
+    part.at[i] = at;
+    part.weight[i] = jacobian * weights.weight[i];
+    part.value += part.weight[i] * slices[i].measure;
+    part.unresolved += part.weight[i] * slices[i].error;
+    less += jacobian * weights.fewer[i] * slices[i].measure;
+    same = same && slices[i].hash == part.below.hash;
+  }
+  if (!same && depth < 10 && width > kBlurred * whole && room.sections < room.most) {
+    Breaks breaks{
+        {part.piece.lower, false, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox}};
+    Slice before = part.below;
+    for (const Slice& next : slices) {
+      find_breaks(level, before, next, whole, breaks, room);
+      before = next;
+    }
+    find_breaks(level, before, part.above, whole, breaks, room);
+    breaks.push_back(
+        {part.piece.upper, part.piece.root_upper, false, part.above, {.broken = part.upper}, part.upper == kBox});
+    return add_parts(level, breaks, whole, depth + 1, room);
+  }
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
+    spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
+  part.error = sharpened_error(std::fabs(part.value - less), spread);
+  if (!same) {
+    const auto [least, greatest] = std::ranges::minmax(slices, {}, &Slice::measure);
+    part.unresolved += width * (greatest.measure - least.measure);
+  }
+  own.parts.push_back(part);
+}
+
+/// Halves the part with the greatest error until the sum is small enough.
+void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& room) const {
+  IntegralRoom::Level& own = room.levels[level];
+  // An inner integral need not be better than what the greatest one allows.
+  const double least = level == 0 ? 0 : 0.1 * tolerance_ * room.levels[level - 1].greatest;
+  const auto less = [](const SlicePart& x, const SlicePart& y) { return x.error < y.error; };
+  std::make_heap(own.parts.begin(), own.parts.end(), less);
+  while (own.parts.size() < kMostParts && room.sections < room.most) {
+    double value = 0, error = 0;
+    for (const SlicePart& part : own.parts) {
+      value += part.value;
+      error += part.error;
+    }
+    if (!(error > std::max({least, (level == 0 ? 1 : 0.1) * tolerance_ * value, 1e-15 * value}))) return;
+    std::pop_heap(own.parts.begin(), own.parts.end(), less);
+    const SlicePart part = own.parts.back();
+    own.parts.pop_back();
+    const std::size_t known = own.parts.size();
+    const auto [first, second] = halves(part.piece);
+    const Slice middle = slice(level, first.upper, room);
+    add_part(level, {.piece = first, .below = part.below, .above = middle, .lower = part.lower, .upper = kChange},
+             whole, 0, room);
+    add_part(level, {.piece = second, .below = middle, .above = part.above, .lower = kChange, .upper = part.upper},
+             whole, 0, room);
+    for (std::size_t i = known + 1; i <= own.parts.size(); ++i)
+      std::push_heap(own.parts.begin(), own.parts.begin() + static_cast<std::ptrdiff_t>(i), less);
+  }
+}
+
+void SectionsIntegral::add_slopes(std::span<double> by_input, IntegralRoom& room) const {
+  room.adjoints.assign(plan().program.registers(), 0);
+  add_slopes(0, 1, room);
+  run_backwards(plan().program, 0, room.registers, room.adjoints);
+  for (const auto& input : plan().program.stages()[0].inputs) by_input[input.position] += room.adjoints[input.to];
+}
+
+/// After inside(level), with a factor.
+void SectionsIntegral::add_slopes(std::size_t level, double factor, IntegralRoom& room) const {
+  if (level == levels()) {
+    section_.add_slopes(factor, room.registers, room.adjoints, room.section);
+    return;
+  }
+  const auto& stage = plan().program.stages()[level + 1];
+  for (const SlicePart& part : room.levels[level].parts) {
+    for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+      slice(level, part.at[i], room);
+      add_slopes(level + 1, factor * part.weight[i], room);
+      run_backwards(plan().program, level + 1, room.registers, room.adjoints);
+      for (const auto& input : stage.inputs) room.adjoints[input.to] = 0;
+    }
+    add_side(level, part, false, factor, room);
+    add_side(level, part, true, factor, room);
+  }
+}
+
+/// An end that moves with the design takes its slice along.
+void SectionsIntegral::add_side(std::size_t level, const SlicePart& part, bool upper, double factor,
+                                IntegralRoom& room) const {
+  const Closing closing = upper ? part.upper : part.lower;
+  if (closing == kChange) return;
+  const double at = upper ? part.piece.upper : part.piece.lower, sign = upper ? factor : -factor;
+  const double inwards = (upper ? -1e-7 : 1e-7) * (part.piece.upper - part.piece.lower);
+  const double near = slice(level, at + inwards, room).measure, far = slice(level, at + 2 * inwards, room).measure;
+  const double measure = 2 * near - far;
+  if (closing == kBox) {
+    room.adjoints[plan().range[level][upper ? 1 : 0]] += sign * measure;
+    return;
+  }
+  set(level, at, room);
+  room.own.assign(room.adjoints.size(), 0);
+  room.own[plan().plain[level + 1][closing - 1]] = 1;
+  run_backwards(plan().program, level + 1, room.registers, room.own);
+  double slope = 0;
+  for (const auto& input : plan().program.stages()[level + 1].inputs) {
+    slope += room.own[input.to];
+    room.own[input.to] = 0;
+  }
+  if (slope == 0) return;
+  for (std::size_t i = 0; i < room.own.size(); ++i) room.adjoints[i] -= sign * measure / slope * room.own[i];
+}
+
+}  // namespace pkm::described

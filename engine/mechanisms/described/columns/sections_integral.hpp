@@ -1,0 +1,118 @@
+// The measure of a workspace: its sections' areas integrated over the outer coordinates.
+//
+// Along an outer coordinate the measure is smooth as long as the sections' structure stays the same. The structure is
+// sampled, each change that is seen is followed to the last bits, and every node of the quadrature is compared with its
+// part: where one has another structure, the part is split there.
+#pragma once
+
+#include "engine/math/quadrature.hpp"
+#include "engine/mechanisms/described/columns/section.hpp"
+
+namespace pkm::described {
+
+/// Of a value of an outer coordinate.
+struct Slice {
+  double at = 0, measure = 0, error = 0;
+  std::uint64_t hash = 0;    ///< of its structure; 0: empty
+  std::uint32_t broken = 0;  ///< Structure::broken
+};
+
+/// What closes a part of an outer coordinate: a change of structure, the box, or a plain condition: 1 + its place.
+using Closing = std::uint32_t;
+inline constexpr Closing kChange = 0, kBox = ~Closing{0};
+
+/// Where the structure changes. @param below, above  just beside it
+struct SliceBreak {
+  double at;
+  bool root_below, root_above;
+  Slice below, above;
+  bool is_box = false;
+};
+
+/// A part of an outer coordinate in which the structure stays the same.
+struct SlicePart {
+  Piece<double> piece;
+  Slice below, above;  ///< just inside its ends
+  Closing lower = kChange, upper = kChange;
+  std::array<double, NestedRule::kNodes> at{}, weight{};
+  double value = 0, error = 0;
+  double unresolved = 0;  ///< error that smaller parts do not mend
+};
+
+/// What an integral overwrites.
+struct IntegralRoom {
+  struct Level {
+    std::vector<SlicePart> parts;
+    Structure structure;
+    std::vector<std::uint32_t> corners;
+    double greatest = 0;    ///< slice so far
+    double unresolved = 0;  ///< of the parts that were given up
+  };
+  SectionRoom section;
+  std::vector<double> registers, adjoints, own;
+  std::vector<Level> levels;
+  long sections = 0;
+  long most = 0;  ///< sections, after which what is not known counts as error
+};
+
+class SectionsIntegral {
+ public:
+  /// @param tolerance  relative
+  SectionsIntegral(SectionPlan plan, double tolerance) : section_(std::move(plan)), tolerance_(tolerance) {}
+
+  const SectionPlan& plan() const { return section_.plan(); }
+  /// @param inputs  of the graph, with held coordinates
+  /// @param most    sections, after which what is not known counts as error; 0: more than are usually of use
+  Integral<double> measure(std::span<const double> inputs, IntegralRoom& room, long most = 0) const;
+  /// Adds derivatives of measure(), after it, by the graph's inputs.
+  void add_slopes(std::span<double> by_input, IntegralRoom& room) const;
+  /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure().
+  template <class Visit>
+  void for_each_node(const GaussRule& outer, const GaussRule& inner, IntegralRoom& room, const Visit& visit) const {
+    std::vector<double> place;
+    visit_nodes(0, 1, outer, inner, place, room, visit);
+  }
+
+ private:
+  using Breaks = std::vector<SliceBreak>;
+
+  std::size_t levels() const { return section_.plan().order.outer.size(); }
+  void set(std::size_t level, double at, IntegralRoom& room) const;
+  /// With the coordinates before `level` set.
+  Slice inside(std::size_t level, Structure& structure, IntegralRoom& room) const;
+  Slice slice(std::size_t level, double at, IntegralRoom& room) const;
+  Slice integrate(std::size_t level, Structure& structure, IntegralRoom& room) const;
+  void find_breaks(std::size_t level, Slice from, const Slice& to, double whole, Breaks& breaks,
+                   IntegralRoom& room) const;
+  void find_kind(std::size_t level, SliceBreak& at, double before, double after, IntegralRoom& room) const;
+  void add_parts(std::size_t level, const Breaks& breaks, double whole, int depth, IntegralRoom& room) const;
+  void add_part(std::size_t level, SlicePart part, double whole, int depth, IntegralRoom& room) const;
+  void refine(std::size_t level, double whole, IntegralRoom& room) const;
+
+  void add_slopes(std::size_t level, double factor, IntegralRoom& room) const;
+  void add_side(std::size_t level, const SlicePart& part, bool upper, double factor, IntegralRoom& room) const;
+
+  /// After inside(level).
+  template <class Visit>
+  void visit_nodes(std::size_t level, double weight, const GaussRule& outer, const GaussRule& inner,
+                   std::vector<double>& place, IntegralRoom& room, const Visit& visit) const {
+    if (level == levels()) {
+      section_.for_each_node(outer, inner, room.section,
+                             [&](double v, double z, double own) { visit(place, v, z, weight * own); });
+      return;
+    }
+    for (const SlicePart& part : room.levels[level].parts)
+      for (std::size_t i = 0; i < outer.node.size(); ++i) {
+        const auto [at, jacobian] = map_node(part.piece, outer.node[i]);
+        slice(level, at, room);
+        place.push_back(at);
+        visit_nodes(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
+        place.pop_back();
+      }
+  }
+
+  Section section_;
+  double tolerance_;
+};
+
+}  // namespace pkm::described

@@ -1,0 +1,245 @@
+#include "engine/mechanisms/described/columns/survey.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/mechanisms/described/columns/sections_integral.hpp"
+#include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/survey/cell_samples.hpp"
+#include "engine/survey/pose_quantities.hpp"
+#include "engine/survey/with_slopes.hpp"
+
+namespace pkm::described {
+namespace {
+
+using Kind = HeldCoordinate::Kind;
+
+/// The orders of coordinates in which sections may have closed forms: each pair of swept ones as (v, z), the others
+/// outside, those that are integrated over outermost.
+std::vector<SectionOrder> orders_of(const Sweep& sweep, const SurveyPlan& plan) {
+  std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
+  for (const int coordinate : sweep.held)
+    if (how_held(plan, coordinate).kind == Kind::integrated) integrated.push_back(static_cast<std::size_t>(coordinate));
+  std::ranges::sort(swept);
+  std::vector<SectionOrder> orders;
+  do {
+    SectionOrder order{.outer = integrated, .v = {}, .z = swept.back()};
+    if (swept.size() > 1) order.v = swept[swept.size() - 2];
+    if (swept.size() > 2) order.outer.push_back(swept.front());
+    orders.push_back(order);
+  } while (std::ranges::next_permutation(swept).found);
+  return orders;
+}
+
+Ranges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& columns) {
+  Ranges box(coordinates);
+  if (columns.box)
+    for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+      box[static_cast<std::size_t>(sweep.swept[axis])] = (*columns.box)[axis];
+  return box;
+}
+
+class DescribedColumns final : public WithSlopes<DescribedColumns> {
+ public:
+  DescribedColumns(const Mechanism& mechanism, const Evaluation& evaluation, const SurveyPlan& plan,
+                   const ColumnOptions& columns, const Demand& demand)
+      : mechanism_(mechanism),
+        e_(evaluation),
+        plan_(plan),
+        demand_(demand),
+        sweep_(sweep_of(mechanism.info(), plan)),
+        mode_(number_of_mode(mechanism.info(), demand.mode)),
+        inner_rule_(gauss_legendre(columns.nodes[0] > 0 ? columns.nodes[0] : kSampleNodes)),
+        outer_rule_(gauss_legendre(columns.nodes[1] > 0 ? columns.nodes[1] : kSampleNodes)) {
+    if (demand.characteristic_length)
+      throw std::invalid_argument("mechanism " + mechanism.info().name +
+                                  " has its own characteristic length only; leave out characteristic_length");
+    const Ranges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
+    std::vector<SectionPlan> plans;
+    std::string why_not;
+    for (const SectionOrder& order : orders_of(sweep_, plan)) {
+      SectionPlan made = plan_sections(evaluation, mode_, order, box);
+      if (made.why_not.empty())
+        plans.push_back(std::move(made));
+      else if (why_not.empty())
+        why_not = made.why_not;
+    }
+    if (plans.empty())
+      throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
+                                  "; take workspace.method = \"voxels\"");
+    // Derivatives lose digits where the measure has a kink that no structure tells: two more are cheap.
+    integral_.emplace(fastest(std::move(plans)), 0.01 * columns.tolerance);
+  }
+
+  const SlopeSurveyor* slopes() const override { return demand_.needs_samples() ? nullptr : this; }
+  std::string why_no_slopes() const override {
+    return "columns of mechanism " + mechanism_.info().name +
+           ", which is a file, have derivatives of the volume, not of what is asked of every pose; take an optimiser "
+           "without gradients";
+  }
+
+ private:
+  friend WithSlopes<DescribedColumns>;
+  static constexpr int kSampleNodes = 6;
+
+  struct Known {
+    const DescribedColumns* of = nullptr;
+    std::vector<Dual4> inputs;
+    std::vector<double> by_input;
+    Integral<double> volume;
+  };
+  struct Room {
+    std::vector<double> inputs, of_sample;
+    IntegralRoom integral;
+    Known known;
+  };
+
+  /// The plan whose survey of the default design, to three digits, takes the fewest sections.
+  SectionPlan fastest(std::vector<SectionPlan> plans) const {
+    constexpr double kTrial = 1e-3;
+    if (plans.size() == 1 || plans.front().order.outer.empty()) return std::move(plans.front());
+    std::vector<double> design;
+    for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
+    Room room;
+    std::size_t best = 0;
+    double least = 1e7;
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      const SectionsIntegral trial(plans[i], kTrial);
+      const auto per_section = static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size());
+      fill_inputs<double>(design, room.inputs);
+      trial.measure(room.inputs, room.integral, std::max(1L, static_cast<long>(least / per_section)));
+      const double work = static_cast<double>(room.integral.sections) * per_section;
+      if (i > 0 && work >= least) continue;
+      best = i;
+      least = work;
+    }
+    return std::move(plans[best]);
+  }
+
+  /// With the held coordinates where they are held.
+  template <class S>
+  void fill_inputs(std::span<const S> parameters, std::vector<S>& inputs) const {
+    const Inputs& at = e_.model.inputs;
+    inputs.resize(at.count());
+    e_.fill_inputs<S>(parameters, plan_.limits, mode_, inputs);
+    for (const int coordinate : sweep_.held) {
+      const auto i = static_cast<std::size_t>(coordinate);
+      const HeldCoordinate held = how_held(plan_, coordinate);
+      if (held.kind == Kind::integrated) continue;
+      S& input = inputs[at.coordinate(i)];
+      const auto middle = held.kind == Kind::middle ? e_.of_design<S>(e_.middle[i], parameters) : std::nullopt;
+      if (held.kind == Kind::middle && !middle) refuse_middle(coordinate);
+      input = middle ? *middle : S(held.kind == Kind::listed ? held.values.front() : held.value);
+    }
+  }
+
+  [[noreturn]] void refuse_middle(int coordinate) const {
+    const MechanismInfo& info = mechanism_.info();
+    throw std::invalid_argument("mechanism " + info.name + " does not say where the middle of " +
+                                info.coordinates[static_cast<std::size_t>(coordinate)].name + " is; give a value");
+  }
+
+  template <class S>
+  void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
+    Room& room = scratch.get<Room>();
+    survey.clear(demand_.fields);
+    if constexpr (std::is_same_v<S, double>) {
+      fill_inputs<double>(parameters, room.inputs);
+    } else {
+      std::vector<S>& inputs = scratch.get<std::vector<S>>();
+      fill_inputs<S>(parameters, inputs);
+      room.inputs.resize(inputs.size());
+      std::ranges::transform(inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
+    }
+    if constexpr (std::is_same_v<S, double>) {
+      const Integral<double> volume = integral_->measure(room.inputs, room.integral);
+      take(volume, survey);
+      if (demand_.needs_samples()) add_samples(parameters, room, survey);
+    } else {
+      const std::vector<S>& inputs = scratch.get<std::vector<S>>();
+      take(with_slopes(inputs, room), survey);
+      for (std::size_t i = 0; i < inputs.size(); ++i)
+        survey.volume.v = survey.volume.v + inputs[i].v * room.known.by_input[i];
+    }
+  }
+
+  template <class S>
+  static void take(const Integral<double>& volume, Survey<S>& survey) {
+    survey.volume = S(volume.value);
+    survey.error = volume.value > 0 ? volume.error / volume.value : 0;
+    survey.columns = volume.evaluations;
+  }
+
+  /// The volume and its derivatives by all inputs. Parameters come in passes of four: what the first found serves the
+  /// others, which have the same values and ask for other derivatives.
+  Integral<double> with_slopes(const std::vector<Dual4>& inputs, Room& room) const {
+    Known& known = room.known;
+    const auto same_slopes = [](const Dual4& x, const Dual4& y) { return std::ranges::equal(x.v.d, y.v.d); };
+    if (known.of == this && std::ranges::equal(known.inputs, inputs, {}, &Dual4::a, &Dual4::a) &&
+        !std::ranges::equal(known.inputs, inputs, same_slopes))
+      return known.volume;
+    known.of = this;
+    known.inputs = inputs;
+    known.volume = integral_->measure(room.inputs, room.integral);
+    known.by_input.assign(room.inputs.size(), 0);
+    integral_->add_slopes(known.by_input, room.integral);
+    return known.volume;
+  }
+
+  void add_samples(std::span<const double> parameters, Room& room, Survey<double>& survey) const {
+    const Inputs& at = e_.model.inputs;
+    const SectionOrder& order = integral_->plan().order;
+    integral_->for_each_node(
+        outer_rule_, inner_rule_, room.integral,
+        [&](const std::vector<double>& outer, double v, double z, double weight) {
+          Pose<double> pose(at.coordinates);
+          std::copy_n(&room.inputs[at.coordinate(0)], pose.size(), pose.begin());
+          for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
+          if (order.v) pose[*order.v] = v;
+          pose[order.z] = z;
+          survey.weight.push_back(weight);
+          if (demand_.poses) survey.pose.push_back(pose);
+          std::vector<double>& inputs = room.of_sample;
+          inputs = room.inputs;
+          std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
+          if (demand_.has(kConditioning))
+            add_reported(report_of_sample(e_, parameters, pose, inputs), at.joints, survey);
+          if (!demand_.needs_inertia()) return;
+          const MotionState<double> state{pose, AxisVector<double>(pose.size())};
+          PoseDynamics<double> d;
+          mechanism_.dynamics()->equations(parameters, mechanism_.info().modes[mode_], {&state, 1}, {&d, 1});
+          add_inertia(joint_inertia(d), survey);
+        });
+  }
+
+  const Mechanism& mechanism_;
+  const Evaluation& e_;
+  SurveyPlan plan_;
+  Demand demand_;
+  const Sweep& sweep_;
+  std::size_t mode_;
+  GaussRule inner_rule_, outer_rule_;
+  std::optional<SectionsIntegral> integral_;
+};
+
+}  // namespace
+
+std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluation) {
+  const SurveyPlan usual{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
+  const Sweep& sweep = mechanism.info().sweeps.front();
+  const std::size_t coordinates = evaluation.model.inputs.coordinates;
+  std::string why_not;
+  for (const SectionOrder& order : orders_of(sweep, usual)) {
+    why_not = plan_sections(evaluation, 0, order, box_of(sweep, coordinates, {})).why_not;
+    if (why_not.empty()) break;
+  }
+  return why_not;
+}
+
+std::unique_ptr<const Surveyor> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
+                                                const SurveyPlan& plan, const ColumnOptions& columns,
+                                                const Demand& demand) {
+  return std::make_unique<DescribedColumns>(mechanism, evaluation, plan, columns, demand);
+}
+
+}  // namespace pkm::described
