@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "engine/mechanisms/described/columns/sections_integral.hpp"
+#include "engine/mechanisms/described/dynamics.hpp"
+#include "engine/mechanisms/described/inertia_rows.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
 #include "engine/survey/cell_samples.hpp"
 #include "engine/survey/pose_quantities.hpp"
@@ -69,6 +71,7 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
                                   "; take workspace.method = \"voxels\"");
     // Derivatives lose digits where the measure has a kink that no structure tells: two more are cheap.
     integral_.emplace(fastest(std::move(plans)), 0.01 * columns.tolerance);
+    if (demand.needs_inertia()) inertia_.emplace(evaluation, moving(), mode_, demand.rotors);
   }
 
   const SlopeSurveyor* slopes() const override { return demand_.needs_samples() ? nullptr : this; }
@@ -91,8 +94,18 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
   struct Room {
     std::vector<double> inputs, of_sample;
     IntegralRoom integral;
+    InertiaRoom inertia;
     Known known;
   };
+
+  /// The coordinates that differ from sample to sample.
+  std::vector<int> moving() const {
+    const SectionOrder& order = integral_->plan().order;
+    std::vector<int> all(order.outer.begin(), order.outer.end());
+    if (order.v) all.push_back(static_cast<int>(*order.v));
+    all.push_back(static_cast<int>(order.z));
+    return all;
+  }
 
   /// The plan whose survey of the default design, to three digits, takes the fewest sections.
   SectionPlan fastest(std::vector<SectionPlan> plans) const {
@@ -189,6 +202,10 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
   void add_samples(std::span<const double> parameters, Room& room, Survey<double>& survey) const {
     const Inputs& at = e_.model.inputs;
     const SectionOrder& order = integral_->plan().order;
+    if (inertia_) {
+      check_masses(e_, parameters);
+      inertia_->start(room.inputs, room.inertia);
+    }
     integral_->for_each_node(
         outer_rule_, inner_rule_, room.integral,
         [&](const std::vector<double>& outer, double v, double z, double weight) {
@@ -204,12 +221,9 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
           std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
           if (demand_.has(kConditioning))
             add_reported(report_of_sample(e_, parameters, pose, inputs), at.joints, survey);
-          if (!demand_.needs_inertia()) return;
-          const MotionState<double> state{pose, AxisVector<double>(pose.size())};
-          PoseDynamics<double> d;
-          mechanism_.dynamics()->equations(parameters, mechanism_.info().modes[mode_], {&state, 1}, {&d, 1});
-          add_inertia(joint_inertia(d), survey);
+          if (inertia_) inertia_->add(pose, room.inertia, survey);
         });
+    if (inertia_) inertia_->finish(room.inertia, survey);
   }
 
   const Mechanism& mechanism_;
@@ -220,6 +234,7 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
   std::optional<SectionsIntegral> integral_;
+  std::optional<InertiaRows> inertia_;  ///< where fields of inertia are demanded
 };
 
 }  // namespace
