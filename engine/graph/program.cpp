@@ -101,7 +101,8 @@ void Program::run(std::size_t stage, std::span<Interval> registers) const {
         break;
       default: {
         Interval arguments[kMostArguments];
-        for (std::size_t i = 0; i < step.count; ++i) arguments[i] = registers[step.from[i]];
+        for (std::size_t i = 0; i < kMostArguments; ++i)
+          if (i < step.count) arguments[i] = registers[step.from[i]];
         to = std::get<Rule<Interval>>(step.operation->rules)(arguments, step.count);
       }
     }
