@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/mechanisms/described/bounds.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
 #include "engine/mechanisms/described/voxels.hpp"
 
@@ -9,7 +10,14 @@ namespace pkm::described {
 namespace {
 
 /// Its abilities are those that the description has what for.
-class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKinematics, Links, DesignTests, Size {
+class DescribedMechanism final : public Mechanism,
+                                 Voxels,
+                                 CertainBounds,
+                                 Velocities,
+                                 ForwardKinematics,
+                                 Links,
+                                 DesignTests,
+                                 Size {
  public:
   explicit DescribedMechanism(Model model) : e_(std::move(model)) {}
 
@@ -41,6 +49,7 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
   }
 
   const Voxels* voxels() const override { return this; }
+  const CertainBounds* bounds() const override { return this; }
   const Velocities* velocities() const override { return this; }
   const ForwardKinematics* forward() const override {
     return e_.model.inputs.joints == e_.model.inputs.coordinates ? this : nullptr;
@@ -53,6 +62,14 @@ class DescribedMechanism final : public Mechanism, Voxels, Velocities, ForwardKi
   std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                const Demand& demand) const override {
     return prepare_voxels(*this, e_, plan, voxels, demand);
+  }
+  VolumeBounds volume(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                      const BoundsOptions& options) const override {
+    return bound_volume(*this, e_, parameters, plan, number_of_mode(info(), mode), options);
+  }
+  BoxCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                     std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
+    return certify_box(e_, parameters, plan, number_of_mode(info(), mode), ranges, options);
   }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {
