@@ -77,7 +77,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
     }
     Order order{Conditions(conditions.graph, conditions.all, positions, inputs), ranges, coordinates};
     BoundsOptions few = options;
-    few.most_boxes = std::min<std::size_t>(options.most_boxes, 256);
+    few.most_boxes = std::min<std::size_t>(options.most_boxes, 1024);
     const VolumeBounds tried = bounds::volume_bounds(order.conditions, order.ranges, few);
     if (best && tried.upper - tried.lower >= least) continue;
     least = tried.upper - tried.lower;

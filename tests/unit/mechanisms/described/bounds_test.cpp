@@ -69,6 +69,19 @@ TEST(CertainBounds, HoldVolumesThatTwoOtherRoutesProve) {
   expect_holds(bounds_of(*read(three_cylinders(1, 0.9, 0.8, 0.05, 0.1, -0.07)), 1e-2), 3.06083756014132, 1e-2);
 }
 
+/// Reference values made by two other programs, of 3-RPR over (x, y, phi) and Gough at fixed orientations.
+TEST(CertainBounds, HoldReferenceVolumesOfFiles) {
+  expect_holds(bounds_of(*test::described("3-rpr"), 3e-2), 0.228794315997323, 3e-2);
+  const Mechanism& gough = *test::described("gough");
+  const auto at = [&](const nlohmann::json& design, double tilt, double yaw) {
+    SurveyPlan plan = plain_plan(gough.info());
+    plan.held = {{3, HeldCoordinate::Kind::value, tilt}, {5, HeldCoordinate::Kind::value, yaw}};
+    return gough.bounds()->volume(test::design_with(gough.info(), design), plan, "", {.gap = 5e-2});
+  };
+  expect_holds(at(nlohmann::json::object(), 0.15, 0.1), 0.272714271224695, 5e-2);
+  expect_holds(at({{"r", 0.5}, {"l_min", 1.15}, {"l_max", 1.75}}, 0.07, -0.2), 0.250842061521403, 5e-2);
+}
+
 TEST(CertainBounds, OfABallAndOfWhatIsEmpty) {
   const std::string box = "x = [-1, 1], y = [-1, 1], z = [-1, 1]",
                     radius = "r = { default = 0.5, min = 0, max = 9, unit = \"m\", meaning = \"radius\" }";
