@@ -14,6 +14,7 @@ pkm_test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libfcl-dev                                  # distances of capsules, computed by others
   libsimbody-dev                              # driving forces, computed by others
+  libmpfi-dev                                 # intervals, computed by others
   python3 python3-numpy python3-h5py          # reads study files independently of us
   python3-vtk9                                # reads exported workspaces as ParaView does
   chromium                                    # looks at the pages of pkmopt report

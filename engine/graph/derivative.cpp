@@ -1,8 +1,5 @@
 #include "engine/graph/derivative.hpp"
 
-#include <cmath>
-#include <stdexcept>
-
 namespace pkm::graph {
 namespace {
 
@@ -72,10 +69,12 @@ Term Rates::of_operation(Node node) {
   if (name == "tanh") return (one - f * f) * dx;
   if (name == "exp") return f * dx;
   if (name == "log") return dx / x;
-  if (name == "log10") return dx / (x * std::log(10.0));
+  if (name == "log10") return dx / (x * call(operation("log"), Term(graph_, 10.0)));
   if (name == "^") {
     const Term y = argument(1);
-    const Term of_base = dx.is(0) ? zero : y * call(operation("^"), x, y - one) * dx;
+    const double less = graph_[y.node()].number - 1;  // 2 - 1 is a number also in graphs that fold none
+    const bool exact = graph_[y.node()].is_number() && less + 1 == graph_[y.node()].number;
+    const Term of_base = dx.is(0) ? zero : y * call(operation("^"), x, exact ? Term(graph_, less) : y - one) * dx;
     return moves(1).is(0) ? of_base : of_base + f * call(operation("log"), x) * moves(1);
   }
   return zero;  // steps: comparisons, && and ||, sign

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/error.hpp"
 #include "engine/math/hash.hpp"
@@ -94,26 +95,68 @@ std::vector<Node> Graph::reachable(std::span<const Node> roots) const {
   return all;
 }
 
-Graph with_numbers(const Graph& graph, std::span<const std::optional<double>> numbers, std::vector<Node>& roots) {
+namespace {
+
+/// What `roots` are made of as a graph of its own, its numbers and inputs made by `leaf`; the roots become its nodes.
+template <class Leaf>
+Graph rebuilt(const Graph& graph, const std::vector<Node>& order, std::vector<Node>& roots, const Leaf& leaf) {
   Graph made;
   std::vector<Node> now(graph.size());
-  for (const Node node : graph.reachable(roots)) {
+  for (const Node node : order) {
     const Entry& entry = graph[node];
-    Node& to = now[static_cast<std::size_t>(node)];
-    if (entry.operation) {
-      std::array<Node, kMostArguments> arguments{};
-      for (std::size_t i = 0; i < entry.count; ++i) arguments[i] = now[static_cast<std::size_t>(entry.arguments[i])];
-      to = made.apply(*entry.operation, std::span(arguments).first(entry.count));
-    } else if (entry.is_number()) {
-      to = made.number(entry.number);
-    } else {
-      const auto input = static_cast<std::size_t>(entry.input);
-      const auto number = input < numbers.size() ? numbers[input] : std::nullopt;
-      to = number ? made.number(*number) : made.input(input, entry.groups);
-    }
+    std::array<Node, kMostArguments> arguments{};
+    for (std::size_t i = 0; i < entry.count; ++i) arguments[i] = now[static_cast<std::size_t>(entry.arguments[i])];
+    now[static_cast<std::size_t>(node)] = entry.operation
+                                              ? made.apply(*entry.operation, std::span(arguments).first(entry.count))
+                                              : leaf(made, entry, std::as_const(now));
   }
   for (Node& root : roots) root = now[static_cast<std::size_t>(root)];
   return made;
+}
+
+/// What stands for an input; none: itself.
+template <class T>
+std::optional<T> replacement(const Entry& entry, std::span<const std::optional<T>> by_input) {
+  const auto input = static_cast<std::size_t>(entry.input);
+  return entry.input >= 0 && input < by_input.size() ? by_input[input] : std::nullopt;
+}
+Node same(Graph& made, const Entry& entry) {
+  return entry.is_number() ? made.number(entry.number)
+                           : made.input(static_cast<std::size_t>(entry.input), entry.groups);
+}
+
+}  // namespace
+
+Graph with_numbers(const Graph& graph, std::span<const std::optional<double>> numbers, std::vector<Node>& roots) {
+  return rebuilt(graph, graph.reachable(roots), roots, [&](Graph& made, const Entry& entry, const auto&) {
+    const auto number = replacement(entry, numbers);
+    return number ? made.number(*number) : same(made, entry);
+  });
+}
+
+Graph without_numbers(const Graph& graph, std::size_t first, const std::function<Groups(std::size_t)>& group,
+                      std::vector<double>& numbers, std::vector<Node>& roots) {
+  return rebuilt(graph, graph.reachable(roots), roots, [&](Graph& made, const Entry& entry, const auto&) {
+    auto input = static_cast<std::size_t>(entry.input);
+    if (entry.is_number()) {
+      input = first + numbers.size();
+      numbers.push_back(entry.number);
+    }
+    return made.input(input, group(input));
+  });
+}
+
+Graph with_nodes(const Graph& graph, std::span<const std::optional<Node>> nodes, std::vector<Node>& roots) {
+  std::vector<Node> wanted;
+  for (const auto& node : nodes)
+    if (node) wanted.push_back(*node);
+  std::vector<Node> order = graph.reachable(wanted);  // before those that are made of them
+  const std::vector<Node> others = graph.reachable(roots);
+  order.insert(order.end(), others.begin(), others.end());
+  return rebuilt(graph, order, roots, [&](Graph& made, const Entry& entry, const std::vector<Node>& now) {
+    const auto node = replacement(entry, nodes);
+    return node ? now[static_cast<std::size_t>(*node)] : same(made, entry);
+  });
 }
 
 Term call(const Operation& function, const Term& x) {
@@ -124,7 +167,10 @@ Term call(const Operation& function, const Term& x, const Term& y) {
 }
 
 Term operator+(const Term& x, const Term& y) { return x.is(0) ? y : y.is(0) ? x : call(operation("+"), x, y); }
-Term operator-(const Term& x, const Term& y) { return y.is(0) ? x : x.is(0) ? -y : call(operation("-"), x, y); }
+Term operator-(const Term& x, const Term& y) {
+  if (x.node() == y.node()) return {x.graph(), 0.0};
+  return y.is(0) ? x : x.is(0) ? -y : call(operation("-"), x, y);
+}
 Term operator*(const Term& x, const Term& y) {
   if (x.is(0) || y.is(0)) return {x.graph(), 0.0};
   return x.is(1) ? y : y.is(1) ? x : x.is(-1) ? -y : y.is(-1) ? -x : call(operation("*"), x, y);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -66,8 +67,17 @@ class Graph {
 /// @param numbers  by position of the input; behind its end, none is a number
 Graph with_numbers(const Graph& graph, std::span<const std::optional<double>> numbers, std::vector<Node>& roots);
 
+/// The same with inputs in place of numbers, so that nothing is folded, and so rounded, that is made of the nodes.
+/// @param first    position of the first of these inputs
+/// @param group    of every input, by its position
+/// @param numbers  what the inputs stand for, in their order; appended
+Graph without_numbers(const Graph& graph, std::size_t first, const std::function<Groups(std::size_t)>& group,
+                      std::vector<double>& numbers, std::vector<Node>& roots);
+/// The same with nodes of the graph, which contain none of those inputs, in place of some inputs.
+Graph with_nodes(const Graph& graph, std::span<const std::optional<Node>> nodes, std::vector<Node>& roots);
+
 /// Nodes as numbers, for physics that is written as C++: Term a = g(..), b = ..; a * b + sqrt(a). Unlike formulas of a
-/// user these drop what is certain: x + 0, x * 1 and x * 0.
+/// user these drop what is certain: x + 0, x - x, x * 1 and x * 0.
 class Term {
  public:
   Term(Graph& graph, Node node) : graph_(&graph), node_(node) {}

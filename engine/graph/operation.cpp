@@ -103,10 +103,17 @@ S extreme(std::span<const S> x) {
   return best;
 }
 
+template <class F>
+Interval fold(std::span<const Interval> x, const F& f) {
+  Interval result = x[0];
+  for (const Interval& each : x.subspan(1)) result = f(result, each);
+  return result;
+}
+
 /// F as a rule. What depends on constants alone is constant, even where the operation has no slope (sqrt at 0).
 template <std::size_t arguments, class F, class S>
 S rule(const S* x, std::size_t count) {
-  if constexpr (!std::is_same_v<S, double> && arguments <= 2)
+  if constexpr (Derivative<S> && arguments <= 2)
     if (count <= 2 && is_constant(x[0]) && is_constant(x[count - 1])) {
       const double values[2] = {value_of(x[0]), value_of(x[count - 1])};
       return S(rule<arguments, F>(values, count));
@@ -117,55 +124,77 @@ S rule(const S* x, std::size_t count) {
   if constexpr (arguments == 3) return F()(x[0], x[1], x[2]);
 }
 
-template <std::size_t arguments, class F>
-Operation make(std::string name, F, int rank = 0, Code code = Code::other) {
+/// @param f       for numbers and those with derivatives
+/// @param bounds  for intervals
+template <std::size_t arguments, class F, class Bounds>
+Operation make(std::string name, F, Bounds, int rank = 0, Code code = Code::other) {
   return {std::move(name),
           arguments,
-          {rule<arguments, F, double>, rule<arguments, F, Dual4>, rule<arguments, F, Taylor>},
+          {rule<arguments, F, double>, rule<arguments, F, Dual4>, rule<arguments, F, Taylor>,
+           rule<arguments, Bounds, Interval>},
           rank,
           code};
 }
+/// One statement for all of them.
+template <std::size_t arguments, class F>
+Operation make(std::string name, F f, int rank = 0, Code code = Code::other) {
+  return make<arguments>(std::move(name), f, f, rank, code);
+}
 
 /// A question about two values: 1 or 0; NaN when something undefined was asked for.
-template <class F>
-Operation question(std::string name, F, int rank) {
+template <class F, class Bounds>
+Operation question(std::string name, F, Bounds bounds, int rank) {
   const auto truth = [](const auto& x, const auto& y) {
     const double a = value_of(x), b = value_of(y);
     return a == a && b == b ? (F()(a, b) ? 1.0 : 0.0) : kNaN;
   };
-  return make<2>(std::move(name), truth, rank);
+  return make<2>(std::move(name), truth, bounds, rank);
 }
+
+using I = const Interval&;
 
 }  // namespace
 
 const std::vector<Operation>& functions() {
   static const std::vector<Operation> list = {
-      make<1>("sin", [](const auto& x) { return sine_and_cosine(x).sin; }),
-      make<1>("cos", [](const auto& x) { return sine_and_cosine(x).cos; }),
-      make<1>("tan", [](const auto& x) { return tangent(x); }),
+      make<1>(
+          "sin", [](const auto& x) { return sine_and_cosine(x).sin; }, [](I x) { return sin(x); }),
+      make<1>(
+          "cos", [](const auto& x) { return sine_and_cosine(x).cos; }, [](I x) { return cos(x); }),
+      make<1>(
+          "tan", [](const auto& x) { return tangent(x); }, [](I x) { return tan(x); }),
       make<1>("asin", [](const auto& x) { return asin(x); }),
       make<1>("acos", [](const auto& x) { return acos(x); }),
-      make<1>("atan", []<class S>(const S& x) { return atan2(x, S(1.0)); }),
+      make<1>(
+          "atan", []<class S>(const S& x) { return atan2(x, S(1.0)); }, [](I x) { return atan(x); }),
       make<2>("atan2", [](const auto& y, const auto& x) { return atan2(y, x); }),
-      make<1>("sinh", [](const auto& x) { return hyperbolic_sine(x); }),
-      make<1>("cosh", [](const auto& x) { return hyperbolic_cosine(x); }),
-      make<1>("tanh", [](const auto& x) { return hyperbolic_tangent(x); }),
+      make<1>(
+          "sinh", [](const auto& x) { return hyperbolic_sine(x); }, [](I x) { return sinh(x); }),
+      make<1>(
+          "cosh", [](const auto& x) { return hyperbolic_cosine(x); }, [](I x) { return cosh(x); }),
+      make<1>(
+          "tanh", [](const auto& x) { return hyperbolic_tangent(x); }, [](I x) { return tanh(x); }),
       make<1>("exp", [](const auto& x) { return exp(x); }),
       make<1>("log", [](const auto& x) { return log(x); }),
-      make<1>("log10", [](const auto& x) { return log(x) / 2.302585092994045684; }),
+      make<1>(
+          "log10", [](const auto& x) { return log(x) / 2.302585092994045684; }, [](I x) { return log10(x); }),
       make<1>(
           "sqrt", [](const auto& x) { return sqrt(x); }, 0, Code::sqrt),
       make<1>(
           "abs", [](const auto& x) { return magnitude(x); }, 0, Code::abs),
-      make<1>("sign",
-              [](const auto& x) {
-                const double a = value_of(x);
-                return a > 0 ? 1.0 : a < 0 ? -1.0 : a;
-              }),
+      make<1>(
+          "sign",
+          [](const auto& x) {
+            const double a = value_of(x);
+            return a > 0 ? 1.0 : a < 0 ? -1.0 : a;
+          },
+          [](I x) { return sign(x); }),
       make<0>(
-          "min", [](const auto& x) { return extreme<std::less<>>(x); }, 0, Code::min),
+          "min", [](const auto& x) { return extreme<std::less<>>(x); },
+          [](std::span<const Interval> x) { return fold(x, [](I a, I b) { return min(a, b); }); }, 0, Code::min),
       make<0>(
-          "max", [](const auto& x) { return extreme<std::greater<>>(x); }, 0, Code::max),
+          "max", [](const auto& x) { return extreme<std::greater<>>(x); },
+          [](std::span<const Interval> x) { return fold(x, [](I a, I b) { return max(a, b); }); }, 0, Code::max),
   };
   return list;
 }
@@ -173,21 +202,29 @@ const std::vector<Operation>& functions() {
 const std::vector<Operation>& operators() {
   static const std::vector<Operation> list = {
       question(
-          "||", [](double a, double b) { return a != 0 || b != 0; }, 1),
+          "||", [](double a, double b) { return a != 0 || b != 0; }, [](I x, I y) { return max(truth(x), truth(y)); },
+          1),
       question(
-          "&&", [](double a, double b) { return a != 0 && b != 0; }, 2),
-      question("<", std::less<>(), 4),
-      question("<=", std::less_equal<>(), 4),
-      question(">", std::greater<>(), 4),
-      question(">=", std::greater_equal<>(), 4),
-      question("==", std::equal_to<>(), 4),
-      question("!=", std::not_equal_to<>(), 4),
+          "&&", [](double a, double b) { return a != 0 && b != 0; }, [](I x, I y) { return min(truth(x), truth(y)); },
+          2),
+      question(
+          "<", std::less<>(), [](I x, I y) { return less(x, y); }, 4),
+      question(
+          "<=", std::less_equal<>(), [](I x, I y) { return less_or_equal(x, y); }, 4),
+      question(
+          ">", std::greater<>(), [](I x, I y) { return less(y, x); }, 4),
+      question(
+          ">=", std::greater_equal<>(), [](I x, I y) { return less_or_equal(y, x); }, 4),
+      question(
+          "==", std::equal_to<>(), [](I x, I y) { return equal(x, y); }, 4),
+      question(
+          "!=", std::not_equal_to<>(), [](I x, I y) { return Interval(1.0) - equal(x, y); }, 4),
       make<2>("+", std::plus<>(), 5, Code::add),
       make<2>("-", std::minus<>(), 5, Code::subtract),
       make<2>("*", std::multiplies<>(), 6, Code::multiply),
       make<2>("/", std::divides<>(), 6, Code::divide),
       make<2>(
-          "^", [](const auto& x, const auto& y) { return power(x, y); }, 7),
+          "^", [](const auto& x, const auto& y) { return power(x, y); }, [](I x, I y) { return pow(x, y); }, 7),
   };
   return list;
 }
@@ -198,10 +235,13 @@ const Operation& negation() {
 }
 
 const Operation& choice() {
-  static const Operation choice = make<3>("?", []<class S>(const S& condition, const S& x, const S& y) {
-    const double value = value_of(condition);
-    return value != value ? S(kNaN) : value != 0 ? x : y;
-  });
+  static const Operation choice = make<3>(
+      "?",
+      []<class S>(const S& condition, const S& x, const S& y) {
+        const double value = value_of(condition);
+        return value != value ? S(kNaN) : value != 0 ? x : y;
+      },
+      [](I condition, I x, I y) { return choose(condition, x, y); });
   return choice;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/math/dual.hpp"
+#include "engine/math/interval.hpp"
 #include "engine/math/taylor.hpp"
 
 namespace pkm::graph {
@@ -23,7 +24,7 @@ inline constexpr std::size_t kMostArguments = 3;  ///< of an operation in a grap
 struct Operation {
   std::string name;           ///< as it is written
   std::size_t arguments = 1;  ///< 0: two or more, of which a graph takes the first two, the result and the next, ...
-  std::tuple<Rule<double>, Rule<Dual4>, Rule<Taylor>> rules;
+  std::tuple<Rule<double>, Rule<Dual4>, Rule<Taylor>, Rule<Interval>> rules;
   int rank = 0;  ///< of operators and signs: the greater binds first
   Code code = Code::other;
 

@@ -43,7 +43,7 @@ class Program {
   void start(std::span<S> registers) const {
     for (const auto& [to, value] : numbers_) registers[to] = S(value);
   }
-  /// Computes a stage after those before it. S is double, Dual4 or Taylor.
+  /// Computes a stage after those before it. S is double, Dual4, Taylor or Interval.
   /// @param inputs  one number per input of the graph; those that the stage does not bring are not looked at
   template <class S>
   void run(std::size_t stage, std::span<const S> inputs, std::span<S> registers) const {

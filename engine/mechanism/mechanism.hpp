@@ -10,6 +10,7 @@
 #include "engine/core/parameter.hpp"
 #include "engine/core/refusal.hpp"
 #include "engine/dynamics/drive_train.hpp"
+#include "engine/mechanism/abilities/bounds.hpp"
 #include "engine/mechanism/abilities/columns.hpp"
 #include "engine/mechanism/abilities/design.hpp"
 #include "engine/mechanism/abilities/dynamics.hpp"
@@ -95,6 +96,7 @@ class Mechanism {
   virtual const JointReactions* reactions() const { return nullptr; }
   virtual const AuxiliaryChain* chain() const { return nullptr; }
   virtual const DriveTrains* drive_trains() const { return nullptr; }
+  virtual const CertainBounds* bounds() const { return nullptr; }
 };
 
 /// Why a mechanism has no coupling indices, no inertia at its joints and no forces of its drives: it has no masses, or

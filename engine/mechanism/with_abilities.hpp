@@ -12,6 +12,7 @@ class MechanismWith : public Mechanism, public Abilities... {
  public:
   const Voxels* voxels() const final { return as<Voxels>(); }
   const Columns* columns() const final { return as<Columns>(); }
+  const CertainBounds* bounds() const final { return as<CertainBounds>(); }
   const Size* size() const final { return as<Size>(); }
   const DesignTests* design_tests() const final { return as<DesignTests>(); }
   const PoseMargins* pose_margins() const final { return as<PoseMargins>(); }

@@ -7,7 +7,7 @@ cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
 root=$(cd ../.. && pwd) program=$root/build/ci/bin/pkmopt disk=$root/build/ci/tests/campaigns/libpkm_unreliable_disk.so
 [[ -f $root/build/ci/build.ninja ]] || (cd "$root" && cmake --preset ci --log-level=WARNING) || exit
 (cd "$root" && cmake --build --preset ci --parallel "$(nproc)" --target pkmopt_app pkm_unreliable_disk \
-  pkm_ranks_tests pkm_rank_program) || exit
+  pkm_ranks_tests pkm_rank_program pkm_mpfi_tests pkm_tests) || exit
 found=0
 step() {
   echo "== $*"
@@ -15,6 +15,8 @@ step() {
 }
 step ./kills.py "$program" "$disk" --kills 1000
 step env PKM_RANK_KILLS=10 "$root/build/ci/tests/ranks/pkm_ranks_tests" --gtest_filter='*Killed*'
+step env PKM_INTERVAL_OPERATIONS=1000000 "$root/build/ci/tests/mpfi/pkm_mpfi_tests"
+step env PKM_BOUNDED_DESIGNS=1000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*BoundsOfPaper*'
 step ./disk.py "$program" "$disk"
 step ./soak.py "$program" --evaluations 10000000 --runs 200
 step ./fuzz.sh --runs "${1:-1000000}"

@@ -82,6 +82,8 @@ std::string refuse_own(const std::string& path, const std::string& header) {
     if (!here.empty() && !there.empty() && here != there) return "the rooms of " + to + " do not include each other";
     return climbs ? "nothing includes " + to : "";
   }
+  if (from == "experiments/checker")
+    return to == "engine/graph" || to == "engine/math" ? "" : "it shares the reader of formulas and the intervals only";
   // The reader of descriptions makes the mechanisms that they describe, and knows no other.
   const bool made = path.starts_with("engine/setup/mechanism_") && room_of(header) == "described";
   if (to == "engine/mechanisms") return made ? "" : "a mechanism is known by engine/mechanism alone";

@@ -116,6 +116,8 @@ template void Evaluation::thresholds(std::span<const Dual4>, const LimitSpec&, s
 template void Evaluation::fill_inputs(std::span<const double>, const LimitSpec&, std::size_t, std::span<double>) const;
 template void Evaluation::fill_inputs(std::span<const Dual4>, const LimitSpec&, std::size_t, std::span<Dual4>) const;
 template void Evaluation::fill_inputs(std::span<const Taylor>, const LimitSpec&, std::size_t, std::span<Taylor>) const;
+template void Evaluation::fill_inputs(std::span<const Interval>, const LimitSpec&, std::size_t,
+                                      std::span<Interval>) const;
 template std::optional<double> Evaluation::of_design(const Program&, std::span<const double>) const;
 template std::optional<Dual4> Evaluation::of_design(const Program&, std::span<const Dual4>) const;
 template std::optional<Taylor> Evaluation::of_design(const Program&, std::span<const Taylor>) const;

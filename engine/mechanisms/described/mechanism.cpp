@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/mechanism/both_scalars.hpp"
+#include "engine/mechanisms/described/bounds.hpp"
 #include "engine/mechanisms/described/columns/survey.hpp"
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/equations.hpp"
@@ -18,6 +19,7 @@ class DescribedMechanism final : public Mechanism,
                                  public std::enable_shared_from_this<DescribedMechanism>,
                                  Voxels,
                                  Columns,
+                                 CertainBounds,
                                  Velocities,
                                  ForwardKinematics,
                                  Links,
@@ -58,6 +60,7 @@ class DescribedMechanism final : public Mechanism,
   const Voxels* voxels() const override { return this; }
   const Columns* columns() const override { return why_no_columns_.empty() ? this : nullptr; }
   std::string why_no_columns() const override { return why_no_columns_; }
+  const CertainBounds* bounds() const override { return this; }
   const Velocities* velocities() const override { return this; }
   const ForwardKinematics* forward() const override {
     return e_.model.inputs.joints == e_.model.inputs.coordinates ? this : nullptr;
@@ -94,6 +97,14 @@ class DescribedMechanism final : public Mechanism,
     return prepare_columns(*this, e_, plan, columns, demand);
   }
   bool take_box() const override { return true; }
+  VolumeBounds volume(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                      const BoundsOptions& options) const override {
+    return bound_volume(*this, e_, parameters, plan, number_of_mode(info(), mode), options);
+  }
+  BoxCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                     std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
+    return certify_box(e_, parameters, plan, number_of_mode(info(), mode), ranges, options);
+  }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {
     return influence_at(e_, parameters, pose, number_of_mode(info(), mode));

@@ -10,7 +10,7 @@ namespace {
 /// The limb that leans more has the lesser h. Both h grow with z, and so does their difference, towards 0: the length
 /// has one kink at most, and reaches 0 once.
 double integral_of_stroke(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
-                          const Interval& part) {
+                          const Part& part) {
   static const GaussRule rule = gauss_legendre(12);
   const Geometry<double>& g = f.g;
   const double shift = g.a * t.sin_theta;
@@ -44,7 +44,7 @@ double integral_of_stroke(const Frame<double>& f, const Section<double>& t, cons
 double measure(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
                const ClearanceTest& test, bool over_y, ClearanceScratch& scratch) {
   double sum = 0;
-  for (const Interval& part : test.clear_parts(f, t, column, scratch))
+  for (const Part& part : test.clear_parts(f, t, column, scratch))
     sum += over_y ? integral_of_stroke(f, t, column, part) : part.upper - part.lower;
   return sum;
 }

@@ -114,9 +114,9 @@ Placement<double> ClearanceTest::place(const Frame<double>& f, const Section<dou
   return p;
 }
 
-const std::vector<Interval>& ClearanceTest::clear_ranges(const Frame<double>& f, const Section<double>& t,
-                                                         const Half<double>& h, std::size_t leaning, double low,
-                                                         double high, ClearanceScratch& scratch) const {
+const std::vector<Part>& ClearanceTest::clear_ranges(const Frame<double>& f, const Section<double>& t,
+                                                     const Half<double>& h, std::size_t leaning, double low,
+                                                     double high, ClearanceScratch& scratch) const {
   scratch.clear.clear();
   if (hanging_.empty()) {
     if (low < high) scratch.clear.push_back({low, high});
@@ -133,8 +133,8 @@ const std::vector<Interval>& ClearanceTest::clear_ranges(const Frame<double>& f,
   return scratch.clear;
 }
 
-const std::vector<Interval>& ClearanceTest::clear_parts(const Frame<double>& f, const Section<double>& t,
-                                                        const Column<double>& column, ClearanceScratch& scratch) const {
+const std::vector<Part>& ClearanceTest::clear_parts(const Frame<double>& f, const Section<double>& t,
+                                                    const Column<double>& column, ClearanceScratch& scratch) const {
   scratch.clear.clear();
   if (moving_.empty()) {
     if (column.length > 0) scratch.clear.push_back({0, column.length});

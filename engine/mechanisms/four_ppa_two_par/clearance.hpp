@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "engine/math/intervals.hpp"
+#include "engine/math/non_negative_parts.hpp"
 #include "engine/mechanisms/four_ppa_two_par/links.hpp"
 #include "engine/mechanisms/four_ppa_two_par/section.hpp"
 
@@ -15,7 +15,7 @@ namespace pkm::four_ppa_two_par {
 
 /// Storage that tests reuse.
 struct ClearanceScratch {
-  std::vector<Interval> clear;
+  std::vector<Part> clear;
   NonNegativeParts finder;
 };
 
@@ -40,14 +40,13 @@ class ClearanceTest {
 
   /// Where in [low, high] what hangs is clear, along the delta of a half section.
   /// @return  in scratch.clear
-  const std::vector<Interval>& clear_ranges(const Frame<double>& f, const Section<double>& t, const Half<double>& h,
-                                            std::size_t leaning, double low, double high,
-                                            ClearanceScratch& scratch) const;
+  const std::vector<Part>& clear_ranges(const Frame<double>& f, const Section<double>& t, const Half<double>& h,
+                                        std::size_t leaning, double low, double high, ClearanceScratch& scratch) const;
 
   /// The parts of one column inside such a range on which links are clear, as heights over its lower end [m].
   /// @return  in scratch.clear
-  const std::vector<Interval>& clear_parts(const Frame<double>& f, const Section<double>& t,
-                                           const Column<double>& column, ClearanceScratch& scratch) const;
+  const std::vector<Part>& clear_parts(const Frame<double>& f, const Section<double>& t, const Column<double>& column,
+                                       ClearanceScratch& scratch) const;
 
  private:
   double excess(const Placement<double>& p, const std::vector<GroupPair>& pairs) const;

@@ -130,7 +130,7 @@ void feasible_ranges(const Frame<S>& f, const Section<S>& t, const Half<S>& h, s
     if (!(value_of(high) > value_of(low))) continue;
     if constexpr (std::is_same_v<S, double>) {
       if (test) {
-        for (const Interval& range : test->clear_ranges(f, t, h, leaning, low, high, scratch.clearance))
+        for (const Part& range : test->clear_ranges(f, t, h, leaning, low, high, scratch.clearance))
           scratch.ranges.push_back({range.lower, range.upper});
         continue;
       }
@@ -146,7 +146,7 @@ void feasible_parts(const Frame<S>& f, const Section<S>& t, const Column<S>& col
   scratch.parts.clear();
   if constexpr (std::is_same_v<S, double>) {
     if (test) {
-      for (const Interval& part : test->clear_parts(f, t, column, scratch.clearance))
+      for (const Part& part : test->clear_parts(f, t, column, scratch.clearance))
         scratch.parts.push_back({part.lower, part.upper, true, true});
       return;
     }

@@ -1,6 +1,6 @@
 #include "engine/mechanisms/four_ppa_two_par/pieces.hpp"
 
-#include "engine/math/intervals.hpp"
+#include "engine/math/non_negative_parts.hpp"
 
 namespace pkm::four_ppa_two_par {
 namespace {

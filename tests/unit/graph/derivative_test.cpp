@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,39 @@ TEST(Derivative, TakesARateThatItIsToldForANode) {
   by_x.move(x.node(), graph.number(1));
   by_x.move(c.node(), graph.number(5));
   EXPECT_TRUE(by_x.of(c).is(5));
+}
+
+TEST(Derivative, ByOneInputLiesInItsInterval) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit(0.1, 0.9);
+  for (const std::string text :
+       {"x + y - 3*x", "x*y/(x + 2)", "x/y", "-x^3 + y^-2", "sqrt(x + y)*abs(x - y)", "sin(x)*cos(y) + tan(x*y)",
+        "asin(x) + acos(y*x) + atan(x/y)", "atan2(x, y) - atan2(y, -x)", "sinh(x) + cosh(x*y) - tanh(y)",
+        "exp(x*y) + log(x + y)", "min(x, y) + max(x*y, y)", "x < y ? x^2 : y*x", "x^y + y^2.5 + 2^x", "sign(x)*x*y", "log10(x*y + 3)"}) {
+    Graph graph;
+    const std::vector<Node> inputs = {graph.input(0), graph.input(1)};
+    const Node f = read_formula(graph, text, kNames, inputs);
+    for (std::size_t by = 0; by < 2; ++by) {
+      const Node d = derivative(graph, f, inputs[by]);
+      const std::vector<Node> outputs = {f, d};
+      const Program program(graph, outputs);
+      for (int i = 0; i < 50; ++i) {
+        std::vector<Taylor> at = {unit(random), unit(random)};
+        at[by].d = 1;
+        std::vector<Taylor> taylor;
+        program.run_all<Taylor>(at, taylor);
+        const double expected = taylor[program.outputs()[0]].d;
+        EXPECT_NEAR(taylor[program.outputs()[1]].a, expected, 1e-12 * (1 + std::fabs(expected))) << text;
+
+        const std::vector<Interval> box = {{at[0].a - 0.01, at[0].a + 0.01}, {at[1].a - 0.01, at[1].a + 0.01}};
+        std::vector<Interval> registers;
+        program.run_all<Interval>(box, registers);
+        const Interval slopes = registers[program.outputs()[1]];
+        EXPECT_LE(slopes.lower, expected + 1e-12 * std::fabs(expected)) << text;
+        EXPECT_GE(slopes.upper, expected - 1e-12 * std::fabs(expected)) << text;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "engine/math/intervals.hpp"
+#include "engine/math/non_negative_parts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace {
 
 using Function = std::function<double(double)>;
 
-std::vector<Interval> parts_of(const Function& f, double steep, double lower, double upper, int* calls = nullptr) {
-  std::vector<Interval> parts = {{-1, -1}};  // to be overwritten
+std::vector<Part> parts_of(const Function& f, double steep, double lower, double upper, int* calls = nullptr) {
+  std::vector<Part> parts = {{-1, -1}};  // to be overwritten
   NonNegativeParts finder;
   const auto counted = [&](double x) {
     if (calls) ++*calls;
@@ -25,7 +25,7 @@ std::vector<Interval> parts_of(const Function& f, double steep, double lower, do
   return parts;
 }
 
-void expect_parts(const std::vector<Interval>& found, const std::vector<Interval>& expected, double tolerance) {
+void expect_parts(const std::vector<Part>& found, const std::vector<Part>& expected, double tolerance) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_NEAR(found[i].lower, expected[i].lower, tolerance) << i;

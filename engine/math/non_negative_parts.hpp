@@ -8,7 +8,7 @@
 
 namespace pkm {
 
-struct Interval {
+struct Part {
   double lower = 0, upper = 0;
 };
 
@@ -72,7 +72,7 @@ class NonNegativeParts {
   /// @param steep  steep(p, q): a bound of |df/dx| on [p, q], for the function meant; may be infinite
   /// @param parts  overwritten, in order
   template <class F, class Steepness>
-  void find(const F& f, const Steepness& steep, double lower, double upper, std::vector<Interval>& parts) {
+  void find(const F& f, const Steepness& steep, double lower, double upper, std::vector<Part>& parts) {
     parts.clear();
     if (!(lower < upper)) return;
     const double range = upper - lower;
@@ -103,7 +103,7 @@ class NonNegativeParts {
     bool positive() const { return value >= 0; }
   };
 
-  static void add(double from, double to, std::vector<Interval>& parts) {
+  static void add(double from, double to, std::vector<Part>& parts) {
     if (!parts.empty() && parts.back().upper == from)
       parts.back().upper = to;
     else if (from < to)

@@ -1,0 +1,61 @@
+// The ability to say what is certain of a workspace: bounds that rounding cannot make wrong.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/mechanism/plan.hpp"
+#include "engine/model/pose.hpp"
+
+namespace pkm {
+
+struct BoundsOptions {
+  double gap = 1e-2;                 ///< wanted: greatest less least volume, relative to their mean
+  std::size_t most_boxes = 4000000;  ///< where bounds end in any case
+  std::ostream* proof = nullptr;     ///< where the proof is written; null: nowhere
+  std::function<bool()> stop = {};   ///< asked now and then: whether what is known so far will do
+};
+
+struct VolumeBounds {
+  double lower = 0, upper = 0;
+  int innermost = 0;         ///< the coordinate along which columns are
+  std::size_t boxes = 0;     ///< that the bounds are made of
+  std::size_t examined = 0;  ///< on the way to them
+  bool stopped = false;
+
+  double gap() const { return upper > 0 ? 2 * (upper - lower) / (upper + lower) : 0; }
+};
+
+/// Whether something holds at every pose of a box.
+struct BoxVerdict {
+  enum class Kind { holds, fails, undecided };
+  Kind kind = Kind::holds;
+  std::string what = {};                   ///< does not hold, or is undecided
+  std::optional<Pose<double>> where = {};  ///< a pose where it fails, or near which it is undecided
+};
+
+struct BoxCertificate {
+  BoxVerdict feasible;
+  std::optional<BoxVerdict> regular;  ///< no singularity where it is feasible; none: its Jacobian is not square
+  std::size_t boxes = 0;              ///< looked at
+  bool stopped = false;
+};
+
+class CertainBounds {
+ public:
+  virtual ~CertainBounds() = default;
+  /// Of the workspace within the plan's box, else within the ranges that hold it, as the numbers stand. Throws
+  /// std::invalid_argument with a sentence when the mechanism cannot serve the plan.
+  virtual VolumeBounds volume(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                              const BoundsOptions& options) const = 0;
+  /// Of a box of poses, under the plan's limits.
+  /// @param ranges  by coordinate; one of no width holds it
+  virtual BoxCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                             std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
+};
+
+}  // namespace pkm

@@ -1,0 +1,167 @@
+#include "engine/mechanisms/described/bounds.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "engine/graph/derivative.hpp"
+#include "engine/mechanisms/described/pose_conditions.hpp"
+#include "engine/survey/bounds/pose_box.hpp"
+#include "engine/survey/bounds/proof.hpp"
+
+namespace pkm::described {
+namespace {
+
+using bounds::Conditions, bounds::Ranges;
+
+/// The graph's inputs for a design, with the held coordinates where they are held.
+std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
+                                const SurveyPlan& plan, std::size_t mode) {
+  const std::vector<Interval> design(parameters.begin(), parameters.end());
+  std::vector<Interval> inputs(e.model.inputs.count());
+  e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
+  for (const int coordinate : sweep_of(mechanism.info(), plan).held) {
+    if (how_held(plan, coordinate).kind == HeldCoordinate::Kind::integrated)
+      throw std::invalid_argument("bounds are of one value of " +
+                                  mechanism.info().coordinates[static_cast<std::size_t>(coordinate)].name +
+                                  ", which the survey integrates over: hold it at a value");
+    inputs[e.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
+        held_value(mechanism, parameters, plan, coordinate);
+  }
+  return inputs;
+}
+
+/// Ranges of the swept coordinates, in their order.
+Ranges ranges_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
+                 const SurveyPlan& plan) {
+  if (plan.box()) return *plan.box();
+  Ranges ranges{};
+  const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const auto range = e.range(parameters, static_cast<std::size_t>(swept[i]));
+    if (!range)
+      throw std::invalid_argument("mechanism " + mechanism.info().name + " has no [survey] box for " +
+                                  mechanism.info().coordinates[static_cast<std::size_t>(swept[i])].name +
+                                  "; give a box");
+    ranges[i] = *range;
+  }
+  return ranges;
+}
+
+}  // namespace
+
+VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
+                          const SurveyPlan& plan, std::size_t mode, const BoundsOptions& options) {
+  const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
+  const Ranges given = ranges_of(mechanism, e, parameters, plan);
+  for (std::size_t i = 0; i < swept.size(); ++i)
+    if (!(given[i][0] < given[i][1])) return {.innermost = swept[i]};
+  const std::vector<Interval> inputs = inputs_of(mechanism, e, parameters, plan, mode);
+  const PoseConditions conditions = pose_conditions(e.model, inputs);
+
+  // each coordinate is tried as the innermost one
+  struct Order {
+    Conditions conditions;
+    Ranges ranges;
+    std::vector<std::size_t> coordinates;  ///< by axis
+  };
+  std::optional<Order> best;
+  double least = 0;
+  for (std::size_t last = swept.size(); last-- > 0;) {
+    std::vector<std::size_t> coordinates, positions;
+    Ranges ranges{};
+    for (std::size_t i = 0; i < swept.size(); ++i) {
+      const std::size_t axis = i == swept.size() - 1 ? last : i + (i >= last);
+      coordinates.push_back(static_cast<std::size_t>(swept[axis]));
+      positions.push_back(e.model.inputs.coordinate(coordinates.back()));
+      ranges[i] = given[axis];
+    }
+    Order order{Conditions(conditions.graph, conditions.all, positions, inputs), ranges, coordinates};
+    BoundsOptions few = options;
+    few.most_boxes = std::min<std::size_t>(options.most_boxes, 1024);
+    const VolumeBounds tried = bounds::volume_bounds(order.conditions, order.ranges, few);
+    if (best && tried.upper - tried.lower >= least) continue;
+    least = tried.upper - tried.lower;
+    best.emplace(std::move(order));
+  }
+  bounds::ProofTree tree;
+  VolumeBounds found = bounds::volume_bounds(best->conditions, best->ranges, options, options.proof ? &tree : nullptr);
+  found.innermost = static_cast<int>(best->coordinates.back());
+  if (!options.proof) return found;
+
+  const MechanismInfo& info = mechanism.info();
+  bounds::Statement statement{.graph = conditions.graph,
+                              .conditions = best->conditions,
+                              .axes = {},
+                              .positions = {},
+                              .ranges = best->ranges,
+                              .inputs = inputs,
+                              .input_names = std::vector<std::string>(inputs.size()),
+                              .title = info.name + ", " + info.title};
+  for (const std::size_t coordinate : best->coordinates) {
+    statement.axes.push_back(info.coordinates[coordinate].name);
+    statement.positions.push_back(e.model.inputs.coordinate(coordinate));
+  }
+  for (std::size_t i = 0; i < info.parameters.size(); ++i) statement.input_names[i] = info.parameters[i].name;
+  for (std::size_t i = 0; i < info.limits.size(); ++i)
+    statement.input_names[e.model.inputs.limit(i)] = "limit " + info.limits[i].name;
+  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
+    statement.input_names[e.model.inputs.coordinate(i)] = info.coordinates[i].name;
+  bounds::write_proof(statement, found, tree, *options.proof);
+  return found;
+}
+
+namespace {
+
+/// The closures' derivatives by the coordinates and by the joints, at the joints that a pose has.
+std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std::vector<Interval>& inputs) {
+  const Inputs& at = model.inputs;
+  std::vector<Node> roots = model.closures;
+  roots.insert(roots.end(), model.joints.begin(), model.joints.end());
+  std::vector<double> numbers;
+  graph = graph::without_numbers(
+      model.graph, inputs.size(), [](std::size_t) { return Groups{1}; }, numbers, roots);
+  inputs.insert(inputs.end(), numbers.begin(), numbers.end());
+  const std::span<const Node> closures = std::span(roots).first(model.closures.size());
+  std::vector<bounds::NamedMatrix> matrices = {{"the parallel singularity (det G = 0)", at.joints, {}},
+                                               {"the serial singularity (det Jq = 0)", at.joints, {}}};
+  std::vector<Node> entries;
+  for (bounds::NamedMatrix& matrix : matrices)
+    for (const Node closure : closures)
+      for (std::size_t j = 0; j < at.joints; ++j) {
+        const bool by_pose = &matrix == &matrices.front();
+        const Node variable = graph.input(by_pose ? at.coordinate(j) : at.joint(j));
+        matrix.entries.push_back(graph::derivative(graph, closure, variable));
+        entries.push_back(matrix.entries.back());
+      }
+  // joints as formulas of the pose
+  std::vector<std::optional<Node>> joints(at.count());
+  for (std::size_t i = 0; i < at.joints; ++i) joints[at.joint(i)] = roots[closures.size() + i];
+  graph = graph::with_nodes(graph, joints, entries);
+  auto entry = entries.begin();
+  for (bounds::NamedMatrix& matrix : matrices)
+    for (Node& node : matrix.entries) node = *entry++;
+  return matrices;
+}
+
+}  // namespace
+
+BoxCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const SurveyPlan& plan,
+                           std::size_t mode, std::span<const std::array<double, 2>> ranges,
+                           const BoundsOptions& options) {
+  const std::vector<Interval> design(parameters.begin(), parameters.end());
+  std::vector<Interval> inputs(e.model.inputs.count());
+  e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
+  std::vector<std::size_t> axes;
+  for (std::size_t i = 0; i < ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
+  const PoseConditions all = pose_conditions(e.model, inputs);
+  const Conditions conditions(all.graph, all.all, axes, inputs);
+  Graph graph;
+  std::optional<bounds::Matrices> matrices;
+  if (e.model.inputs.joints == e.model.inputs.coordinates) {
+    const auto named = jacobians(e.model, graph, inputs);
+    matrices.emplace(graph, named, axes, inputs);
+  }
+  return bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
+}
+
+}  // namespace pkm::described

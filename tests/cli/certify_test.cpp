@@ -1,0 +1,168 @@
+// `pkmopt certify`, and the program that checks its proofs: it accepts what was written, and nothing that was changed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const std::string kMechanisms = PKM_EXPERIMENTS "/mechanisms/";
+
+class Certify : public ::testing::Test {
+ protected:
+  ProgramResult run(const std::vector<std::string>& arguments) const { return pkmopt(arguments, folder_.path()); }
+  ProgramResult check(const std::string& file) const { return run_program({PKM_CHECKER, file}, folder_.path()); }
+  std::string proof_of(const std::string& mechanism, const std::string& gap) const {
+    const auto written =
+        run({"certify", kMechanisms + mechanism + ".toml", "--gap", gap, "--proof", "a.proof", "--force"});
+    EXPECT_EQ(written.exit_code, 0) << written.err;
+    std::ostringstream text;
+    text << std::ifstream(folder_.path() + "/a.proof").rdbuf();
+    return text.str();
+  }
+
+  StudyFolder folder_;
+};
+
+TEST_F(Certify, BoundsVolumes) {
+  const auto found = run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0.1", "--json"});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  const auto json = found.json();
+  EXPECT_LT(json["volume"]["lower"], 0.017428);
+  EXPECT_GT(json["volume"]["upper"], 0.017415);
+  EXPECT_LE(json["gap"], 0.1);
+  const auto shorter = run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0.1", "--set", "L=300mm", "--json"});
+  EXPECT_NE(shorter.json()["volume"], json["volume"]);
+  const auto few = run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0.01", "--boxes", "50"});
+  EXPECT_EQ(few.exit_code, 1);
+  EXPECT_THAT(few.out, HasSubstr("at least"));
+  EXPECT_THAT(few.err, HasSubstr("needs more than 50 boxes"));
+}
+
+TEST_F(Certify, RefusesInOneSentence) {
+  EXPECT_THAT(run({"certify", "quadrupteron"}).err, HasSubstr("certify needs formulas"));
+  EXPECT_THAT(run({"certify", kMechanisms + "orthoglide.toml", "--gap", "0"}).err, HasSubstr("between 0 and 2"));
+  EXPECT_THAT(run({"certify", kMechanisms + "orthoglide.toml", "--box", "x=0:1"}).err, HasSubstr("--box"));
+}
+
+TEST_F(Certify, DecidesBoxesOfPoses) {
+  const std::string file = kMechanisms + "orthoglide.toml";
+  const auto inside = run({"certify", file, "--box", "x=-50mm:30mm,y=-50mm:30mm,z=-50mm:30mm", "--json"});
+  EXPECT_EQ(inside.exit_code, 0) << inside.err;
+  EXPECT_EQ(inside.json()["feasible"]["verdict"], "yes");
+  EXPECT_EQ(inside.json()["regular"]["verdict"], "yes");
+  const auto across = run({"certify", file, "--box", "x=-0.1:0.12,y=-0.1:0.12,z=-0.1:0.12"});
+  EXPECT_EQ(across.exit_code, 1);
+  EXPECT_THAT(across.out, HasSubstr("does not hold at x = "));
+}
+
+TEST_F(Certify, ProofsAreAccepted) {
+  for (const std::string mechanism : {"orthoglide", "4ppa-2par", "five-bar", "rotary-delta", "gough"}) {
+    proof_of(mechanism, mechanism == "rotary-delta" ? "0.8" : "0.3");
+    const auto checked = check("a.proof");
+    EXPECT_EQ(checked.exit_code, 0) << mechanism << ' ' << checked.err;
+    EXPECT_THAT(checked.out, StartsWith("accepted: "));
+  }
+}
+
+/// Replaces the first occurrence behind another text.
+std::string with(std::string text, const std::string& behind, const std::string& from, const std::string& to) {
+  const auto at = text.find(from, text.find(behind));
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST_F(Certify, TamperedProofsAreRefused) {
+  const std::string proof = proof_of("orthoglide", "0.15");
+  const std::string lower = proof.substr(proof.find("volume ") + 7, 5);
+  const std::size_t boxes = proof.find("boxes\n") + 6, last = proof.find("end\n");
+  // the first box that has a step of each kind
+  const auto digit_behind = [&](char step) {
+    std::string changed = proof;
+    const std::size_t at = changed.find(step, boxes);
+    EXPECT_LT(at, last) << step;
+    return std::pair(changed, at);
+  };
+  const auto step_changed = [&](char step, char to) {
+    auto [changed, at] = digit_behind(step);
+    changed[at] = to;
+    return changed;
+  };
+  /// The root's range from its lower end, or from none.
+  const auto narrowed_root = [&] {
+    auto [changed, at] = digit_behind('t');
+    const auto first = changed.find(' ', at) + 1, second = changed.find(' ', first) + 1,
+               third = changed.find(' ', second);
+    return changed.replace(second, third - second, changed.substr(first, second - first - 1));
+  };
+  const std::vector<std::pair<std::string, std::string>> tampered = {
+      {"a greater least volume", with(proof, "volume", lower, "0.0179")},
+      {"a smaller greatest volume",
+       [&] {
+         const auto first = proof.find(' ', proof.find("volume") + 7) + 1;
+         return std::string(proof).replace(first, proof.find('\n', first) - first, "0.0168");
+       }()},
+      {"another parameter", with(proof, "given", "0.31 0.31 L", "0.3 0.3 L")},
+      {"a parameter that is uncertain", with(proof, "given", "0.31 0.31 L", "0.3 0.32 L")},
+      {"another limit", with(proof, "given", "0.126 0.126", "0.16 0.16")},
+      {"another formula", with(proof, "let n3", "n1 + n2", "n1 - n2")},
+      {"a formula of nothing", with(proof, "let n3", "n1 + n2", "n1 + n99")},
+      {"a formula that is none", with(proof, "let n3", "n1 + n2", "n1 n2")},
+      {"a name twice", with(proof, "let n2", "n2", "n1")},
+      {"a wider axis", with(proof, "axis", "-0.31", "-0.5")},
+      {"an axis turned round", with(proof, "axis", "-0.31 0.31", "0.31 -0.31")},
+      {"one axis less", with(proof, "axis z", "axis z -0.31 0.31\n", "")},
+      {"another condition", with(proof, "condition", "condition n7 ", "condition n1 ")},
+      {"a condition less",
+       [&] {
+         const auto at = proof.rfind("condition ");
+         return std::string(proof).erase(at, proof.find('\n', at) + 1 - at);
+       }()},
+      {"inside instead of outside", step_changed('x', 'h')},
+      {"outside instead of inside", step_changed('h', 'x')},
+      {"a root without a place", narrowed_root()},
+      {"a root that is none", step_changed('s', 'r')},
+      {"a step that is none", step_changed('n', 'q')},
+      {"a box less",
+       [&] {
+         const auto at = proof.find(".\n", boxes), from = proof.rfind('\n', at) + 1;
+         return std::string(proof).erase(from, at + 2 - from);
+       }()},
+      {"a box twice",
+       [&] {
+         const auto at = proof.find(".\n", boxes), from = proof.rfind('\n', at) + 1;
+         return std::string(proof).insert(from, proof.substr(from, at + 2 - from));
+       }()},
+      {"a box that is not halved",
+       [&] {
+         const auto at = proof.find("/0\n", boxes);
+         return std::string(proof).replace(at, 2, ".");
+       }()},
+      {"halved along what is no outer axis", with(proof, "boxes", "/0\n", "/2\n")},
+      {"halved along the other axis", with(proof, "boxes", "/0\n", "/1\n")},
+      {"cut off", proof.substr(0, (boxes + last) / 2)},
+      {"without an end", proof.substr(0, last)},
+      {"more than its end", proof + "\n"},
+      {"another version", with(proof, "pkmopt", "proof 1", "proof 2")},
+      {"nothing", ""},
+  };
+  EXPECT_GE(tampered.size(), 20U);
+  for (const auto& [what, text] : tampered) {
+    EXPECT_NE(text, proof) << what;
+    folder_.write("tampered.proof", text);
+    const auto checked = check("tampered.proof");
+    EXPECT_EQ(checked.exit_code, 1) << what << ": " << checked.out;
+    EXPECT_THAT(checked.err, StartsWith("refused: ")) << what;
+  }
+}
+
+}  // namespace
+}  // namespace pkm::testing

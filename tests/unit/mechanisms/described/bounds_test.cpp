@@ -1,0 +1,216 @@
+// What intervals say of described mechanisms, beside volumes proven otherwise. PKM_BOUNDED_DESIGNS: how many random
+// designs of each mechanism of the papers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <random>
+
+#include "engine/core/catalogue.hpp"
+#include "engine/core/team.hpp"
+#include "engine/mechanisms/all.hpp"
+#include "engine/survey/survey_set.hpp"
+#include "tests/unit/mechanisms/described/files.hpp"
+
+namespace pkm {
+namespace {
+
+using Kind = BoxVerdict::Kind;
+
+SurveyPlan plain_plan(const MechanismInfo& info) {
+  SurveyPlan plan;
+  plan.limits = no_limits(info);
+  return plan;
+}
+std::vector<double> defaults(const MechanismInfo& info) { return test::design_with(info, nlohmann::json::object()); }
+
+std::shared_ptr<const Mechanism> read(const std::string& text) { return read_mechanism_toml(text, "test.toml"); }
+
+VolumeBounds bounds_of(const Mechanism& mechanism, double gap) {
+  return mechanism.bounds()->volume(defaults(mechanism.info()), plain_plan(mechanism.info()), "", {.gap = gap});
+}
+
+/// A mechanism of margins alone, over x, y and z.
+std::string by_margins(const std::string& parameters, const std::string& box, const std::vector<std::string>& margins) {
+  std::string text = "[mechanism]\nname = \"margins\"\n[parameters]\n" + parameters +
+                     "\n[platform]\ncoordinates = { x = \"along x\", y = \"along y\", z = \"along z\" }\n[survey]\n"
+                     "sweep = [\"x\", \"y\", \"z\"]\nbox = { " +
+                     box + " }\n";
+  for (const std::string name : {"x", "y", "z"})
+    text += "[[limb]]\nname = \"q" + name + "\"\ndrive = \"formula\"\njoint = \"" + name + "\"\nunit = \"m\"\n";
+  for (std::size_t i = 0; i < margins.size(); ++i)
+    text +=
+        "[[margin]]\nname = \"margin " + std::to_string(i) + "\"\nformula = \"" + margins[i] + "\"\nunit = \"m^2\"\n";
+  return text;
+}
+
+std::string three_cylinders(double r_1, double r_2, double r_3, double dx, double dy, double dz) {
+  const auto parameter = [](const std::string& name, double value) {
+    return name + " = { default = " + std::to_string(value) +
+           ", min = -9, max = 9, unit = \"m\", meaning = \"length\" }\n";
+  };
+  return by_margins(parameter("r_1", r_1) + parameter("r_2", r_2) + parameter("r_3", r_3) + parameter("dx", dx) +
+                        parameter("dy", dy) + parameter("dz", dz),
+                    "x = [-1.2, 1.2], y = [-1.2, 1.2], z = [-1.2, 1.2]",
+                    {"r_1^2 - (x - dx)^2 - y^2", "r_2^2 - (y - dy)^2 - z^2", "r_3^2 - x^2 - (z - dz)^2"});
+}
+
+void expect_holds(const VolumeBounds& found, double truth, double gap) {
+  EXPECT_LE(found.lower, truth);
+  EXPECT_GE(found.upper, truth);
+  EXPECT_LE(found.gap(), gap);
+}
+
+TEST(CertainBounds, HoldVolumesThatTwoOtherRoutesProve) {
+  const VolumeBounds equal = bounds_of(*read(three_cylinders(1, 1, 1, 0, 0, 0)), 1e-2);
+  expect_holds(equal, 8 * (2 - std::sqrt(2.0)), 1e-2);
+  EXPECT_LE(equal.boxes, 130'000U);
+  expect_holds(bounds_of(*read(three_cylinders(1, 0.9, 0.8, 0.05, 0.1, -0.07)), 1e-2), 3.06083756014132, 1e-2);
+}
+
+/// Reference values made by two other programs, of 3-RPR over (x, y, phi) and Gough at fixed orientations.
+TEST(CertainBounds, HoldReferenceVolumesOfFiles) {
+  expect_holds(bounds_of(*test::described("3-rpr"), 3e-2), 0.228794315997323, 3e-2);
+  const Mechanism& gough = *test::described("gough");
+  const auto at = [&](const nlohmann::json& design, double tilt, double yaw) {
+    SurveyPlan plan = plain_plan(gough.info());
+    plan.held = {{3, HeldCoordinate::Kind::value, tilt}, {5, HeldCoordinate::Kind::value, yaw}};
+    return gough.bounds()->volume(test::design_with(gough.info(), design), plan, "", {.gap = 5e-2});
+  };
+  expect_holds(at(nlohmann::json::object(), 0.15, 0.1), 0.272714271224695, 5e-2);
+  expect_holds(at({{"r", 0.5}, {"l_min", 1.15}, {"l_max", 1.75}}, 0.07, -0.2), 0.250842061521403, 5e-2);
+}
+
+TEST(CertainBounds, OfABallAndOfWhatIsEmpty) {
+  const std::string box = "x = [-1, 1], y = [-1, 1], z = [-1, 1]",
+                    radius = "r = { default = 0.5, min = 0, max = 9, unit = \"m\", meaning = \"radius\" }";
+  expect_holds(bounds_of(*read(by_margins(radius, box, {"r^2 - x^2 - y^2 - z^2"})), 1e-3), 4.0 / 3 * kPi * 0.125, 1e-3);
+  // roots that are undefined over most of the box
+  expect_holds(bounds_of(*read(by_margins(radius, box, {"sqrt(r^2 - x^2 - y^2) - abs(z)"})), 1e-2),
+               4.0 / 3 * kPi * 0.125, 1e-2);
+  const VolumeBounds none = bounds_of(*read(by_margins(radius, box, {"-r^2 - x^2 - y^2 - z^2"})), 1e-2);
+  EXPECT_EQ(none.upper, 0);
+  EXPECT_EQ(none.gap(), 0);
+  const VolumeBounds all = bounds_of(*read(by_margins(radius, box, {"r + x^2"})), 1e-2);
+  EXPECT_NEAR(all.lower, 8, 1e-12);
+}
+
+TEST(CertainBounds, AreTheSameForAnyNumberOfThreads) {
+  VolumeBounds one, three;
+  const Mechanism& gough = *test::described("gough");
+  with_team(1, [&] { one = bounds_of(gough, 0.1); });
+  with_team(3, [&] { three = bounds_of(gough, 0.1); });
+  EXPECT_EQ(one.lower, three.lower);
+  EXPECT_EQ(one.upper, three.upper);
+  EXPECT_EQ(one.boxes, three.boxes);
+}
+
+/// Of every file: voxels, as far as a grid of 40 cells along each axis is right.
+class BoundsOfFile : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(BoundsOfFile, HoldWhatVoxelsCountAlmost) {
+  const Mechanism& mechanism = *test::described(GetParam());
+  SurveyPlan plan = plain_plan(mechanism.info());
+  const VolumeBounds found =
+      mechanism.bounds()->volume(defaults(mechanism.info()), plan, "", {.gap = 0.3, .most_boxes = 3000});
+  VoxelOptions voxels;
+  const std::size_t swept = sweep_of(mechanism.info(), plan).swept.size();
+  std::fill_n(voxels.cells.begin(), swept, 40);
+  plan.method = voxels;
+  Survey<double> counted;
+  survey_once<double>(*prepare_survey(mechanism, plan, {}), defaults(mechanism.info()), counted);
+  EXPECT_GT(found.upper, 0);
+  EXPECT_LE(found.lower, counted.volume * 1.05);
+  EXPECT_GE(found.upper, counted.volume * 0.95);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryFile, BoundsOfFile, ::testing::ValuesIn(test::mechanism_files()), [](const auto& of) {
+  std::string name = of.param;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
+
+/// Closed forms of the papers' mechanisms lie within the bounds of their files.
+class BoundsOfPaper : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(BoundsOfPaper, HoldTheClosedForms) {
+  const Mechanism& own =
+      **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m->info().name == GetParam(); });
+  const Mechanism& file = *test::described(GetParam());
+  const char* const asked = std::getenv("PKM_BOUNDED_DESIGNS");
+  const int designs = asked ? std::atoi(asked) : 3;
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> change(0.9, 1.1);
+  int compared = 0, wrong = 0;
+  for (int tried = 0; compared < designs && tried < 20 * designs; ++tried) {
+    std::vector<double> design, same;
+    for (const Parameter& p : own.info().parameters)
+      design.push_back(std::clamp(p.nominal * change(random), p.lower, p.upper));
+    for (const Parameter& p : file.info().parameters)
+      same.push_back(
+          design[static_cast<std::size_t>(find_named(own.info().parameters, p.name) - own.info().parameters.data())]);
+    if (own.refuse(design) || file.refuse(same)) continue;
+    Survey<double> exact;
+    survey_once<double>(*prepare_survey(own, plain_plan(own.info()), {}), design, exact);
+    const VolumeBounds found = file.bounds()->volume(same, plain_plan(file.info()), "",
+                                                     {.gap = 0.02, .most_boxes = asked ? 4'000'000U : 4000U});
+    ++compared;
+    const bool holds = found.lower <= exact.volume * (1 + 1e-8) && found.upper >= exact.volume * (1 - 1e-8);
+    wrong += !holds;
+    EXPECT_TRUE(holds) << found.lower << ' ' << exact.volume << ' ' << found.upper << ' '
+                       << ::testing::PrintToString(design);
+  }
+  EXPECT_EQ(compared, designs);
+  std::cout << GetParam() << ": " << compared << " designs, " << wrong << " closed forms outside of their bounds\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryPaper, BoundsOfPaper, ::testing::Values("4ppa-2par", "3crr-r-cru", "quadrupteron"),
+                         [](const auto& of) {
+                           std::string name = of.param;
+                           std::ranges::replace(name, '-', '_');
+                           return "of_" + name;
+                         });
+
+TEST(CertainBounds, OfABoxOfPoses) {
+  const Mechanism& orthoglide = *test::described("orthoglide");
+  const MechanismInfo& info = orthoglide.info();
+  const auto certified = [&](double from, double to) {
+    return orthoglide.bounds()->box(defaults(info), plain_plan(info), "",
+                                    std::vector<std::array<double, 2>>(3, {from, to}), {.most_boxes = 20000});
+  };
+  const BoxCertificate inside = certified(-0.05, 0.03);
+  EXPECT_EQ(inside.feasible.kind, Kind::holds);
+  ASSERT_TRUE(inside.regular);
+  EXPECT_EQ(inside.regular->kind, Kind::holds);
+
+  const BoxCertificate across = certified(-0.1, 0.12);
+  ASSERT_EQ(across.feasible.kind, Kind::fails);
+  const PoseReport report =
+      orthoglide.inspect(defaults(info), *across.feasible.where, info.modes.front(), no_limits(info));
+  EXPECT_FALSE(report.feasible);
+}
+
+TEST(CertainBounds, NameASingularityThatABoxMayHold) {
+  // two telescopes in a plane, singular where both are in line
+  const auto legs = read(
+      "[mechanism]\nname = \"legs\"\n[parameters]\nb = { default = 1, min = 0, max = 9, unit = \"m\", meaning = "
+      "\"width\" }\n[platform]\ncoordinates = { x = \"along "
+      "x\", y = \"along y\" }\n[survey]\nbox = { x = [-1, 2], y = [-1, 1] }\n[[limb]]\nname = \"left\"\ndrive = "
+      "\"telescope\"\nbase = [0, 0, 0]\nplatform = [0, 0, 0]\n[[limb]]\nname = \"right\"\ndrive = "
+      "\"telescope\"\nbase = [\"b\", 0, 0]\nplatform = [0, 0, 0]\n");
+  const auto regular = [&](double from, double to) {
+    const std::vector<std::array<double, 2>> ranges = {{0.2, 0.8}, {from, to}};
+    return *legs->bounds()
+                ->box(defaults(legs->info()), plain_plan(legs->info()), "", ranges, {.most_boxes = 2000})
+                .regular;
+  };
+  EXPECT_EQ(regular(0.1, 0.9).kind, Kind::holds);
+  const BoxVerdict across = regular(-0.1, 0.9);
+  EXPECT_EQ(across.kind, Kind::undecided);
+  EXPECT_THAT(across.what, ::testing::HasSubstr("parallel"));
+  EXPECT_NEAR((*across.where)[1], 0, 0.1);
+}
+
+}  // namespace
+}  // namespace pkm
