@@ -88,7 +88,8 @@ TEST(Derivative, ByOneInputLiesInItsInterval) {
   for (const std::string text :
        {"x + y - 3*x", "x*y/(x + 2)", "x/y", "-x^3 + y^-2", "sqrt(x + y)*abs(x - y)", "sin(x)*cos(y) + tan(x*y)",
         "asin(x) + acos(y*x) + atan(x/y)", "atan2(x, y) - atan2(y, -x)", "sinh(x) + cosh(x*y) - tanh(y)",
-        "exp(x*y) + log(x + y)", "min(x, y) + max(x*y, y)", "x < y ? x^2 : y*x", "x^y + y^2.5 + 2^x", "sign(x)*x*y", "log10(x*y + 3)"}) {
+        "exp(x*y) + log(x + y)", "min(x, y) + max(x*y, y)", "x < y ? x^2 : y*x", "x^y + y^2.5 + 2^x", "sign(x)*x*y",
+        "log10(x*y + 3)"}) {
     Graph graph;
     const std::vector<Node> inputs = {graph.input(0), graph.input(1)};
     const Node f = read_formula(graph, text, kNames, inputs);

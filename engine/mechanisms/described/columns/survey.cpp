@@ -206,23 +206,22 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
       check_masses(e_, parameters);
       inertia_->start(room.inputs, room.inertia);
     }
-    integral_->for_each_node(
-        outer_rule_, inner_rule_, room.integral,
-        [&](const std::vector<double>& outer, double v, double z, double weight) {
-          Pose<double> pose(at.coordinates);
-          std::copy_n(&room.inputs[at.coordinate(0)], pose.size(), pose.begin());
-          for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
-          if (order.v) pose[*order.v] = v;
-          pose[order.z] = z;
-          survey.weight.push_back(weight);
-          if (demand_.poses) survey.pose.push_back(pose);
-          std::vector<double>& inputs = room.of_sample;
-          inputs = room.inputs;
-          std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
-          if (demand_.has(kConditioning))
-            add_reported(report_of_sample(e_, parameters, pose, inputs), at.joints, survey);
-          if (inertia_) inertia_->add(pose, room.inertia, survey);
-        });
+    integral_->for_each_node(outer_rule_, inner_rule_, room.integral,
+                             [&](const std::vector<double>& outer, double v, double z, double weight) {
+                               Pose<double> pose(at.coordinates);
+                               std::copy_n(&room.inputs[at.coordinate(0)], pose.size(), pose.begin());
+                               for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
+                               if (order.v) pose[*order.v] = v;
+                               pose[order.z] = z;
+                               survey.weight.push_back(weight);
+                               if (demand_.poses) survey.pose.push_back(pose);
+                               std::vector<double>& inputs = room.of_sample;
+                               inputs = room.inputs;
+                               std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
+                               if (demand_.has(kConditioning))
+                                 add_reported(report_of_sample(e_, parameters, pose, inputs), at.joints, survey);
+                               if (inertia_) inertia_->add(pose, room.inertia, survey);
+                             });
     if (inertia_) inertia_->finish(room.inertia, survey);
   }
 
