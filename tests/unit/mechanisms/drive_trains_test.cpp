@@ -72,8 +72,9 @@ TEST(DrivenMechanism, SurveysTheInertiaThatItsEquationsHave) {
     std::vector<SurveyPlan> plans;
     std::array<std::int64_t, 3> cells{1, 1, 1};
     for (std::size_t i = 0; i < info.sweeps.front().swept.size(); ++i) cells[i] = 7;
-    plans.push_back({VoxelOptions{.cells = cells}, {}, no_limits(info)});
-    if (bare->columns()) plans.push_back({ColumnOptions{.nodes = {2, 2}}, {}, no_limits(info)});
+    plans.push_back({.method = VoxelOptions{.cells = cells}, .held = {}, .limits = no_limits(info)});
+    if (bare->columns())
+      plans.push_back({.method = ColumnOptions{.nodes = {2, 2}}, .held = {}, .limits = no_limits(info)});
     for (const SurveyPlan& plan : plans) {
       const Demand demand{.fields = {&kCouplingIndex, &kInertiaCondition}, .poses = true};
       const Survey<double> survey = test::survey(*driven, design, plan, demand);
@@ -130,7 +131,7 @@ TEST(DrivenMechanism, SamplesOfMirroredPosesNeedEqualDrives) {
   DriveTrains trains(4, kTrain);
   trains[1].rotor = 1;
   const auto driven = with_drive_trains(*paper, trains);
-  const SurveyPlan plan{VoxelOptions{.cells = {4, 4, 4}}, {}, no_limits(driven->info())};
+  const SurveyPlan plan{.method = VoxelOptions{.cells = {4, 4, 4}}, .held = {}, .limits = no_limits(driven->info())};
   EXPECT_THROW(prepare_survey(*driven, plan, {.fields = {&kCouplingIndex}}), std::invalid_argument);
   EXPECT_NO_THROW(prepare_survey(*driven, plan, {}));
 }

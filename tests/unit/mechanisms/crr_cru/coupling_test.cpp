@@ -116,9 +116,10 @@ TEST(CrrCruCoupling, DerivativesOfStatisticsEqualDifferences) {
   for (const std::string& name : both())
     for (int round = 0; round < 4; ++round) {
       const auto p = random_design(uniform, 0.03);
-      const SurveyPlan region = {ColumnOptions{.tolerance = 1e-10, .box = {{{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}}}},
-                                 {{.coordinate = 3, .kind = HeldCoordinate::Kind::listed, .values = {-0.6, 0.1, 0.5}}},
-                                 limit_spec(0.2, 0.1)};
+      const SurveyPlan region = {
+          .method = ColumnOptions{.tolerance = 1e-10, .box = {{{{0.12, 0.2}, {0.12, 0.2}, {0.17, 0.24}}}}},
+          .held = {{.coordinate = 3, .kind = HeldCoordinate::Kind::listed, .values = {-0.6, 0.1, 0.5}}},
+          .limits = limit_spec(0.2, 0.1)};
       const auto surveyor = prepare_survey(mechanism(name), region, coupling());
       const std::array<std::size_t, 4> by = {kL11, kL42, kL, kRodMass + 3};
       const auto statistics = [](const auto& s) {

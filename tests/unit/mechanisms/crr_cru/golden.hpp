@@ -117,7 +117,9 @@ inline LimitSpec limit_spec(double s_min, double c_min, std::optional<double> cl
 /// The plan that holds coordinate `held` at `value`.
 inline SurveyPlan plan(const std::variant<ColumnOptions, VoxelOptions>& method, int held, double value,
                        const LimitSpec& limits) {
-  return {method, {{.coordinate = held, .kind = HeldCoordinate::Kind::value, .value = value}}, limits};
+  return {.method = method,
+          .held = {{.coordinate = held, .kind = HeldCoordinate::Kind::value, .value = value}},
+          .limits = limits};
 }
 
 template <class S>

@@ -326,36 +326,37 @@ TEST_P(PaperMechanism, HasTheSameCouplingOverEveryGoldenGrid) {
     EXPECT_NEAR(weighted_mean(here.weight, here.of(kInertiaCondition)),
                 weighted_mean(there.weight, there.of(kInertiaCondition)), 1e-10);
   }
+}
 
-  /// Random designs with and without limits, to the closed forms' volumes; where columns of the file say that they know
-  /// no better, to what they say.
-  TEST_P(PaperMechanism, HasTheSameExactVolumes) {
-    const MechanismInfo& info = own().info();
-    Stream random(13, 0, 0, Stream::Use::start);
-    const SurveyPlan usual = test::columns(file().info()), closed = test::columns(info);
-    Scratch scratch;
-    Survey<double> mine, theirs;
-    int compared = 0, exact = 0;
-    for (int i = 0; i < 100; ++i) {
-      const std::vector<double> design = i == 0 ? test::nominal(info) : test::random_design(info, random);
-      const LimitSpec limits = i % 2 == 0 ? no_limits(info) : test::random_limits(info, random);
-      SurveyPlan here = usual, there = closed;
-      there.limits = without_clearance(limits);
-      here.limits = of_file(there.limits);
-      prepare_survey(file(), here, {})->survey(of_file(design), scratch, mine);
-      prepare_survey(own(), there, {})->survey(design, scratch, theirs);
-      SCOPED_TRACE("design " + std::to_string(i));
-      EXPECT_NEAR(mine.volume, theirs.volume, (1e-7 + mine.error + theirs.error) * theirs.volume + 1e-12);
-      compared += theirs.volume > 0;
-      exact += theirs.volume > 0 && mine.error < 1e-7;
-    }
-    EXPECT_GT(compared, 30);
-    EXPECT_GT(exact, 0.95 * compared);
+/// Random designs with and without limits, to the closed forms' volumes; where columns of the file say that they know
+/// no better, to what they say.
+TEST_P(PaperMechanism, HasTheSameExactVolumes) {
+  const MechanismInfo& info = own().info();
+  Stream random(13, 0, 0, Stream::Use::start);
+  const SurveyPlan usual = test::columns(file().info()), closed = test::columns(info);
+  Scratch scratch;
+  Survey<double> mine, theirs;
+  int compared = 0, exact = 0;
+  for (int i = 0; i < 100; ++i) {
+    const std::vector<double> design = i == 0 ? test::nominal(info) : test::random_design(info, random);
+    const LimitSpec limits = i % 2 == 0 ? no_limits(info) : test::random_limits(info, random);
+    SurveyPlan here = usual, there = closed;
+    there.limits = without_clearance(limits);
+    here.limits = of_file(there.limits);
+    prepare_survey(file(), here, {})->survey(of_file(design), scratch, mine);
+    prepare_survey(own(), there, {})->survey(design, scratch, theirs);
+    SCOPED_TRACE("design " + std::to_string(i));
+    EXPECT_NEAR(mine.volume, theirs.volume, (1e-7 + mine.error + theirs.error) * theirs.volume + 1e-12);
+    compared += theirs.volume > 0;
+    exact += theirs.volume > 0 && mine.error < 1e-7;
   }
+  EXPECT_GT(compared, 30);
+  EXPECT_GT(exact, 0.95 * compared);
+}
 
-  INSTANTIATE_TEST_SUITE_P(All, PaperMechanism,
-                           ::testing::Values("4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"),
-                           [](const auto& name) { return test::test_name(name.param); });
+INSTANTIATE_TEST_SUITE_P(All, PaperMechanism,
+                         ::testing::Values("4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"),
+                         [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace
 }  // namespace pkm
