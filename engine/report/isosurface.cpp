@@ -101,6 +101,7 @@ class Builder {
           (margin(workspace.pose(edges_[k].at(middle)), scratch[worker]) >= 0 ? inside : outside) = middle;
         }
         surface_.vertices[k] = edges_[k].at((inside + outside) / 2);
+        surface_.inside[k] = edges_[k].at(inside);
       }
     });
   }
@@ -140,7 +141,7 @@ class Builder {
     number = static_cast<std::uint32_t>(surface_.vertices.size());
     edges_.push_back({nodes_.place(in.node), nodes_.place(out.node), ends});
     surface_.vertices.push_back(edges_.back().at(ends ? 0 : in.margin / (in.margin - out.margin)));
-    surface_.cell.push_back(nodes_.cell(in.node));
+    surface_.inside.push_back(edges_.back().from);
     return number;
   }
 

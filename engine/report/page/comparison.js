@@ -42,7 +42,7 @@ function comparisonTable(studies) {
           element("td", "text", ...(first ? [key, study.name] : [])),
           element("td", "text", first ? problem.mechanism : ""),
           element("td", "text", row ? row.name : "–"),
-          element("td", "", row ? quantity(row.values[0], row.unit, 10) : "–"),
+          element("td", "", row ? result(row.values[0], row.unit) : "–"),
           element("td", "", row ? gainText(row.gain) : ""),
           ...[
             summary.evaluations.toLocaleString("en-GB"),
@@ -110,7 +110,7 @@ function showComparison(studies, section) {
             ...bestCurve(study, k),
             name: label(study.name),
             line: { color: studyColour(i), width: 2.5, shape: "hv" },
-            hovertemplate: `%{y:.7g} ${label(unitText(objective.unit))}<br>after %{x} evaluations<extra>${label(study.name)}</extra>`,
+            hovertemplate: `%{y:.4g} ${label(unitText(objective.unit))}<br>after %{x} evaluations<extra>${label(study.name)}</extra>`,
           })),
           layout: {
             xaxis: axis("evaluations", { type: "log", tickangle: 0, nticks: 5 }),
@@ -141,7 +141,7 @@ function showComparison(studies, section) {
           const low = Math.min(...bounds.map((b) => b.lower)),
             high = Math.max(...bounds.map((b) => b.upper));
           return row
-            ? [[label(v.name), (row.values[0] - low) / (high - low), label(quantity(row.values[0], v.unit))]]
+            ? [[label(v.name), (row.values[0] - low) / (high - low), label(shownQuantity(row.values[0], v.unit))]]
             : [];
         });
         return [

@@ -81,12 +81,14 @@ function layoutOf(more) {
  */
 function addPlot(parent, { title, caption, size = "", height = 380, make }) {
   const node = element("div", "plot");
+  node.setAttribute("role", "img");
+  node.setAttribute("aria-label", [title, caption].flat().filter((part) => typeof part === "string").join(". ") || "plot");
   node.style.height = height + "px";
   const panel = element(
     "div",
     "panel " + size,
     title ? element("h3", "", title) : null,
-    caption ? element("p", "caption", caption) : null,
+    caption ? element("p", "caption", ...[caption].flat()) : null,
     node,
   );
   parent.append(panel);
@@ -141,6 +143,7 @@ function themeButton(button) {
     const dark = chosen === null ? system.matches : chosen === "dark";
     document.documentElement.dataset.theme = dark ? "dark" : "light";
     button.textContent = dark ? "☀ Light" : "☾ Dark";
+    button.setAttribute("aria-label", dark ? "light theme" : "dark theme");
     for (const plot of plots) plot.drawAgain();
   };
   button.addEventListener("click", () => {
