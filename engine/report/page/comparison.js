@@ -74,6 +74,47 @@ function bestCurve(study, k) {
   return { x, y };
 }
 
+/** The best designs' workspaces over each other, of studies that sweep the same three coordinates. */
+function addOverlays(studies, grid) {
+  const groups = new Map();
+  studies.forEach((study, i) => {
+    const packed = study.workspace?.designs[0];
+    if (!packed?.surface) return;
+    const swept = packed.axes.map((axis) => `${axis.name} [${axis.unit}]`).join(", ");
+    if (!groups.has(swept)) groups.set(swept, []);
+    groups.get(swept).push({ study, i, cells: (packed.cells ??= new Cells(packed)) });
+  });
+  for (const those of groups.values()) {
+    if (those.length < 2) continue;
+    const all = those.map(({ cells }) => cells),
+      order = drawingOrder(all[0].axes);
+    addPlot(grid, {
+      title: "Workspaces over each other",
+      caption: [
+        "Of the best designs: ",
+        ...those.flatMap(({ study, cells }, k) => [
+          (k ? ", " : "") + study.name + " ",
+          result(cells.volume, cells.volume_unit),
+        ]),
+        ".",
+      ],
+      size: "half",
+      height: 460,
+      make: () => ({
+        data: those.map(({ study, i, cells }) =>
+          surfaceTrace(cells, null, null, order, {
+            name: label(study.name),
+            color: studyColour(i),
+            opacity: 0.4,
+            showlegend: true,
+          }),
+        ),
+        layout: { scene: workspaceScene(all, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+      }),
+    });
+  }
+}
+
 function showComparison(studies, section) {
   section.append(
     element(
@@ -120,6 +161,7 @@ function showComparison(studies, section) {
         }),
       });
   }
+  addOverlays(studies, grid);
   const variables = [
     ...new Map(studies.flatMap((s) => s.problem.variables.map((v) => [v.name + "|" + v.unit, v]))).values(),
   ];

@@ -92,12 +92,15 @@ function stepSections(event) {
   section.focus({ preventScroll: true });
 }
 
-/** Does something to the page without moving a section in view. */
+/** Makes a section anew where it is in view; a control that had the keyboard has it again. */
 function keepInView(id, change) {
   const top = () => document.getElementById(id).getBoundingClientRect().top;
-  const before = top();
+  const controls = () => [...document.querySelectorAll(`#${id} select`)];
+  const before = top(),
+    focused = controls().indexOf(document.activeElement);
   change();
   scrollBy({ top: top() - before, behavior: "instant" });
+  controls()[focused]?.focus({ preventScroll: true });
 }
 
 function showReport(report) {
