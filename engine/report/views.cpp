@@ -15,8 +15,8 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kFrontDesigns = 10;        // that a page carries beside the best
-constexpr PageDetail kFrontDetail = {18, 5, 3};  // of those
+constexpr std::size_t kFrontDesigns = 10;               // that a page carries beside the best
+constexpr PageDetail kFrontDetail = {16, 5, 3, false};  // of those
 
 /// Voxels of the study's workspace, at most as many as a page can carry.
 SurveyPlan page_plan(const MechanismInfo& info, const SurveyPlan& plan, std::int64_t most) {

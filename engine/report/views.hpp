@@ -33,6 +33,7 @@ struct PageDetail {
   std::int64_t cells = 40;     ///< of the workspace, at most, per axis
   std::size_t steps = 9;       ///< of each coordinate that the workspace sweeps over, for poses that are drawn
   std::size_t held_steps = 7;  ///< of the first that it holds; the others stay where they are
+  bool joints = true;          ///< fields of margins and joints beside those of quantities
 };
 
 /// Designs of one mechanism, under the same plan.

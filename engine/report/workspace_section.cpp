@@ -9,12 +9,13 @@
 namespace pkm {
 namespace {
 
-/// Fields that follow from inertia.
-bool of_inertia(const std::string& field) {
-  return std::ranges::any_of(pose_quantities(), [&](const PoseQuantity* quantity) {
+/// Which fields a page has room for, and a reader use.
+bool is_shown(const Views& views, const std::string& field) {
+  for (const PoseQuantity* const quantity : pose_quantities()) {
     const std::string name = quantity->name;
-    return quantity->needs_inertia() && (field == name || field.starts_with(name + "_"));
-  });
+    if (field == name || field.starts_with(name + "_")) return views.coupling || !quantity->needs_inertia();
+  }
+  return views.detail.joints;
 }
 
 /// Vertices by coordinate, and the fields beside them by name.
@@ -36,7 +37,7 @@ Json surface(const Views* views, const View* view, const WorkspaceFields& worksp
   for (const auto& place : found.inside) poses.push_back(workspace.pose(place));
   for (const WorkspaceField& field :
        fields_at(views->mechanism, view->parameters, views->plan.limits, views->mode, poses))
-    if (views->coupling || !of_inertia(field.name)) json["values"][field.name] = packed_levels(field.values);
+    if (is_shown(*views, field.name)) json["values"][field.name] = packed_levels(field.values);
   return json;
 }
 
@@ -63,7 +64,7 @@ Json workspace(const std::string& name, const WorkspaceFields& found, const View
   json["feasible"] = packed_bits(std::vector<std::uint8_t>(feasible.begin(), feasible.end()));
   json["fields"] = Json::array();
   for (const WorkspaceField& field : found.fields) {
-    if (field.name == "feasible" || (views && !views->coupling && of_inertia(field.name))) continue;
+    if (field.name == "feasible" || (views && !is_shown(*views, field.name))) continue;
     std::vector<double> values;
     for (const std::size_t cell : found.feasible_cells()) values.push_back(field.values[cell]);
     json["fields"].push_back(

@@ -44,8 +44,9 @@ function holdingSentence({ summary, problem, point }) {
       .slice(0, 4)
       .flatMap((a, k) => [
         k ? "; " : "",
-        `${a.name} (${a.kind}), `,
+        `${a.name} (${a.kind}): `,
         rateText(a.multiplier, problem.objectives[0], a.unit),
+        " of " + problem.objectives[0].name,
       ])
       .concat(optimality.active.length > 4 ? [`; and ${optimality.active.length - 4} more.`] : ["."]);
   if (!active) return ["Not known before the study has ended."];
@@ -130,17 +131,18 @@ function dimensionTrace(dimensions, poses, pose, axes) {
 
 /** Their names and values, beside the middle of each line on alternate sides. */
 function dimensionNotes(dimensions, poses, pose, axes) {
+  const crowded = dimensions.length > 5; // then the values are said beside the drawing
   return dimensions.map((d, i) => {
     const [a, b] = [poses.end(pose, d.from), poses.end(pose, d.to)];
     return {
       ...Object.fromEntries(axes.map((c, k) => ["xyz"[k], (a[c] + b[c]) / 2])),
-      text: label(dimensionText(d)),
+      text: label(crowded ? d.name : dimensionText(d)),
       ax: i % 4 < 2 ? 55 : -55,
       ay: i % 2 ? 30 : -30,
       arrowcolor: colour("accent"),
       arrowwidth: 1,
       arrowhead: 0,
-      font: { size: 13, color: colour("ink") },
+      font: { size: crowded ? 12 : 13, color: colour("ink") },
       bgcolor: faded(colour("panel"), 0.85),
     };
   });
@@ -160,6 +162,7 @@ function drawingPlot(study, grid, poses) {
     title: "The mechanism, " + poses.name,
     caption:
       "To scale, at a pose amid its workspace." +
+      (dimensions.length > 5 ? " " + dimensions.map(dimensionText).join(", ") + "." : "") +
       (others.length ? " Not drawn: " + others.join(", ") + "." : ""),
     size: "half",
     height: 520,
@@ -191,11 +194,11 @@ function drawingPlot(study, grid, poses) {
 function reachPlot(study, grid, cells) {
   const order = drawingOrder(cells.axes),
     solid = order.length === 3;
-  const field = cells.fields.find((f) => f.name === "conditioning") ?? cells.fields[0];
+  const field = cells.fields[firstField(cells)];
   const range = field && fieldRange([cells], field.name);
   return addPlot(grid, {
     title: "Where it can go",
-    caption: ["Feasible poses" + (field ? ", coloured by " + fieldTitle(field.name) : "") + ": ", result(cells.volume, cells.volume_unit), "."],
+    caption: "Feasible poses" + (field ? ", coloured by " + fieldTitle(field.name) : "") + ".",
     size: "half",
     height: 520,
     make: () => {

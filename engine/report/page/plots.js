@@ -23,9 +23,19 @@ function loadPlotly() {
   );
 }
 
+/** Those that came into view are drawn one by one, and the reader may scroll in between. */
+const inTurn = [];
+function drawNext() {
+  inTurn.shift()?.draw();
+  if (inTurn.length) setTimeout(drawNext, 50);
+}
+
 const toBeSeen = new IntersectionObserver(
   (entries) => {
-    for (const entry of entries) if (entry.isIntersecting) plots.find((plot) => plot.node === entry.target)?.draw();
+    const seen = entries.filter((entry) => entry.isIntersecting);
+    const idle = !inTurn.length;
+    inTurn.push(...plots.filter((plot) => !plot.drawn && seen.some((entry) => entry.target === plot.node)));
+    if (idle && inTurn.length) setTimeout(drawNext, 50);
   },
   { rootMargin: "400px" },
 );
@@ -123,6 +133,7 @@ function addPlot(parent, { title, caption, size = "", height = 380, make }) {
 }
 
 function forgetPlots() {
+  inTurn.length = 0;
   for (const plot of plots.splice(0)) {
     toBeSeen.unobserve(plot.node);
     if (plot.drawn) Plotly.purge(plot.node);

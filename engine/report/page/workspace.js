@@ -94,6 +94,12 @@ function linkCameras(plots) {
   }
 }
 
+/** Which field is shown first: the coupling where there is any, else conditioning. */
+function firstField({ fields }) {
+  const names = fields.map((field) => field.name);
+  return Math.max(0, names.indexOf(names.includes("dci_worst") ? "dci_worst" : "conditioning"));
+}
+
 function showWorkspace(study, section) {
   const designs = study.workspace.designs.map((packed) => (packed.cells ??= new Cells(packed)));
   for (const problem of study.workspace.problems) section.append(element("p", "warning", problem));
@@ -128,7 +134,7 @@ function showWorkspace(study, section) {
   const controls = element("div", "controls"),
     grid = element("div", "grid");
   section.append(controls, grid);
-  const start = Math.max(0, names.indexOf(names.includes("dci_worst") ? "dci_worst" : "conditioning"));
+  const start = firstField(first);
   const field = names.length
     ? choice(
         controls,
