@@ -45,7 +45,11 @@ function faintTexts() {
 function namelessThings() {
   const nameOf = (node) =>
     node.getAttribute("aria-label") ||
-    (node.labels && [...node.labels].map((label) => label.textContent.replace(node.textContent, "")).join("").trim()) ||
+    (node.labels &&
+      [...node.labels]
+        .map((label) => label.textContent.replace(node.textContent, ""))
+        .join("")
+        .trim()) ||
     (/^(button|a|summary)$/.test(node.localName) && node.textContent.trim());
   const things = [
     ...document.querySelectorAll("a, button, input, select, summary, [role=img], [role=group], nav, main > section"),

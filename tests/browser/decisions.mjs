@@ -43,10 +43,7 @@ const clicked = await page.page.evaluate(() => {
   return {
     name,
     f,
-    at: [
-      box.left + _size.l + xaxis.d2p(trace.x[point - 1]),
-      box.top + _size.t + yaxis.d2p(trace.y[point - 1]),
-    ],
+    at: [box.left + _size.l + xaxis.d2p(trace.x[point - 1]), box.top + _size.t + yaxis.d2p(trace.y[point - 1])],
   };
 });
 await page.page.mouse.move(clicked.at[0] - 3, clicked.at[1] - 3);
@@ -63,7 +60,9 @@ await page.screenshots(folder, "1280-light", ["summary", "front"]);
 // What the page says of the point is what the program says of it.
 const [, point, stage] = /^point (\d+) of stage (\d+)$/.exec(clicked.name);
 const evaluated = JSON.parse(pkmopt("evaluate", "--from", file, "--front", point, "--stage", stage, "--json"));
-const titles = await page.page.locator("#summary tbody td [title]").evaluateAll((list) => list.map((cell) => cell.title));
+const titles = await page.page
+  .locator("#summary tbody td [title]")
+  .evaluateAll((list) => list.map((cell) => cell.title));
 const volume = evaluated.objectives["workspace-volume"];
 assert.ok(
   titles.some((title) => Math.abs(parseFloat(title) / volume - 1) < 1e-12),
@@ -82,7 +81,13 @@ await page.page.evaluate(() => {
 });
 const command = await page.text("#front .warning code");
 assert.match(command, /^pkmopt workspace --from \S+ --front \d+ --stage 1 --html /);
-pkmopt(...command.split(" ").slice(1, 3), file, ...command.split(" ").slice(4, -1), path.join(folder, "point.html"), "--force");
+pkmopt(
+  ...command.split(" ").slice(1, 3),
+  file,
+  ...command.split(" ").slice(4, -1),
+  path.join(folder, "point.html"),
+  "--force",
+);
 await page.page.click("#chosen button");
 assert.equal(await page.text("#chosen"), "");
 await page.draw("workspace");

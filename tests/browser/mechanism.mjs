@@ -44,7 +44,10 @@ for (const [key, value] of Object.entries(shown.best.design)) {
   const { unit } = study.problem.variables.find((variable) => variable.name === key);
   const scale = { m: 1000, rad: 180 / Math.PI }[unit];
   const text = String(Number((value * scale).toPrecision(4))).replace("-", "−");
-  assert.ok(cells.some(([title, cell]) => Number(title) === value && cell === text), `${key} = ${value} is not in the summary`);
+  assert.ok(
+    cells.some(([title, cell]) => Number(title) === value && cell === text),
+    `${key} = ${value} is not in the summary`,
+  );
 }
 assert.equal(await page.page.locator(".decision dt").count(), 3);
 if (name === "2t1r-p-hybrid")

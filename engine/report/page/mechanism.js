@@ -103,7 +103,9 @@ function solidWorkspace(cells, values, place) {
   const [a, b] = cells.axes.flatMap((axis, k) => (room.includes(axis.role) ? [k] : []));
   if (first === null || a === undefined) return null;
   if (b === undefined) {
-    const line = toRoom(cells.centres(a)).map((value, k) => (cells.feasible[first + k * cells.strides[a]] ? value : null));
+    const line = toRoom(cells.centres(a)).map((value, k) =>
+      cells.feasible[first + k * cells.strides[a]] ? value : null,
+    );
     const points = room.map((role, c) => line.map((value) => (cells.axes[a].role === role ? value : place[c])));
     const { color, hoverinfo, name, showlegend } = look;
     return {

@@ -36,8 +36,12 @@ function holdingSentence({ summary, problem, point }) {
   const { optimality, active } = summary;
   if (point) {
     const { variables } = problem;
-    const at = variables.flatMap((v, i) => (boundAt(point.design[i], v) ? [`${v.name} (${boundAt(point.design[i], v)})`] : []));
-    return [(at.length ? "bounds: " + at.join("; ") + ". " : "no bound. ") + "Margins are known after the command below."];
+    const at = variables.flatMap((v, i) =>
+      boundAt(point.design[i], v) ? [`${v.name} (${boundAt(point.design[i], v)})`] : [],
+    );
+    return [
+      (at.length ? "bounds: " + at.join("; ") + ". " : "no bound. ") + "Margins are known after the command below.",
+    ];
   }
   if (optimality?.active.length)
     return byMultiplier(optimality)
@@ -52,7 +56,11 @@ function holdingSentence({ summary, problem, point }) {
   if (!active) return ["Not known before the study has ended."];
   if (!active.length) return ["No bound and no constraint is active."];
   const names = active.map((sentence) => sentence.replace(/ is active,.*/, "").replace(/ (-?[\d.e+-]+ (m|rad))$/, ""));
-  const shown = element("span", "", names.slice(0, 5).join("; ") + (names.length > 5 ? `; and ${names.length - 5} more` : ""));
+  const shown = element(
+    "span",
+    "",
+    names.slice(0, 5).join("; ") + (names.length > 5 ? `; and ${names.length - 5} more` : ""),
+  );
   shown.title = active.join("\n");
   return [shown, ". Multipliers are known after a gradient stage."];
 }
@@ -65,29 +73,53 @@ function nextSentence(study) {
   const { optimality, stages } = summary;
   const file = word(study.file);
   if (study.point)
-    return ["For all of its values: ", code(`pkmopt evaluate --from ${file} --front ${study.point.p + 1} --stage ${study.point.stage}`), "."];
-  if (summary.verdict) return ["Loosen what no design kept; the reasons are below, and ", code("pkmopt check"), " looks for contradictions."];
+    return [
+      "For all of its values: ",
+      code(`pkmopt evaluate --from ${file} --front ${study.point.p + 1} --stage ${study.point.stage}`),
+      ".",
+    ];
+  if (summary.verdict)
+    return [
+      "Loosen what no design kept; the reasons are below, and ",
+      code("pkmopt check"),
+      " looks for contradictions.",
+    ];
   if (summary.state !== "finished") return ["Let it finish: ", code("pkmopt resume " + file), "."];
   if (summary.touches_box) return ["Enlarge the box of the workspace: feasible poses touch it."];
   const bounds = optimality
-    ? byMultiplier(optimality).filter((a) => isBound(a.kind)).map((a) => `${a.name} (${a.kind})`)
-    : (summary.active ?? []).filter(isBound).map((sentence) => sentence.replace(/ at its (\w+) bound.*/, " ($1 bound)"));
+    ? byMultiplier(optimality)
+        .filter((a) => isBound(a.kind))
+        .map((a) => `${a.name} (${a.kind})`)
+    : (summary.active ?? [])
+        .filter(isBound)
+        .map((sentence) => sentence.replace(/ at its (\w+) bound.*/, " ($1 bound)"));
   if (bounds.length)
     return ["Widen the bounds the design lies on, as far as it can be built: " + bounds.slice(0, 3).join(", ") + "."];
   if (study.front && !stages.some((stage) => stage.starts))
     return ["Refine the trade-off: a stage ", code('optimiser = "nlopt", start = "pareto"'), "."];
   if (!optimality && problem.objectives.length === 1 && !stages.some((stage) => stage.starts))
-    return ["Add a gradient stage (", code('optimiser = "nlopt", start = "best"'), "): it ends at an optimum and tells what each bound costs."];
+    return [
+      "Add a gradient stage (",
+      code('optimiser = "nlopt", start = "best"'),
+      "): it ends at an optimum and tells what each bound costs.",
+    ];
   const variables = new Set(problem.variables.map((variable) => variable.name));
   const nominal = (name) => Math.abs(problem.parameters.find((p) => p.name === name)?.value ?? 0);
   const fixed = (optimality?.sensitivities ?? [])
     .filter((s) => !variables.has(s.name) && nominal(s.name) * Math.abs(s.as_built) > 0)
     .sort((a, b) => nominal(b.name) * Math.abs(b.as_built) - nominal(a.name) * Math.abs(a.as_built))[0];
   if (fixed)
-    return [`Vary ${fixed.name}: of what the study holds fixed it matters most, `, rateText(fixed.as_built, problem.objectives[0], fixed.unit), "."];
-  if (study.front)
-    return ["Choose a design of the trade-off below: a click on a point loads it into this page."];
-  return ["Another seed or mechanism: ", code(`pkmopt run ${word(summary.origin.toml_file || "study.toml")} --seed ${BigInt(summary.origin.seed) + 1n}`), "."];
+    return [
+      `Vary ${fixed.name}: of what the study holds fixed it matters most, `,
+      rateText(fixed.as_built, problem.objectives[0], fixed.unit),
+      ".",
+    ];
+  if (study.front) return ["Choose a design of the trade-off below: a click on a point loads it into this page."];
+  return [
+    "Another seed or mechanism: ",
+    code(`pkmopt run ${word(summary.origin.toml_file || "study.toml")} --seed ${BigInt(summary.origin.seed) + 1n}`),
+    ".",
+  ];
 }
 
 const code = (text) => element("code", "", text);
@@ -173,15 +205,22 @@ function drawingPlot(study, grid, poses) {
             layout: {
               annotations: dimensionNotes(dimensions, poses, pose, [0, 1]),
               xaxis: axis(axisName("x", "mm"), { range: spans[0], zeroline: false, constrain: "domain" }),
-              yaxis: axis(axisName("y", "mm"), { range: spans[1], zeroline: false, constrain: "domain", scaleanchor: "x" }),
+              yaxis: axis(axisName("y", "mm"), {
+                range: spans[1],
+                zeroline: false,
+                constrain: "domain",
+                scaleanchor: "x",
+              }),
               showlegend: false,
             },
           }
         : {
-            data: [...solidTraces(poses, pose, null, null), dimensionTrace(dimensions, poses, pose, [0, 1, 2])].map((trace) => ({
-              ...trace,
-              showlegend: false,
-            })),
+            data: [...solidTraces(poses, pose, null, null), dimensionTrace(dimensions, poses, pose, [0, 1, 2])].map(
+              (trace) => ({
+                ...trace,
+                showlegend: false,
+              }),
+            ),
             layout: {
               scene: { ...roomScene(spans, 1.25), annotations: dimensionNotes(dimensions, poses, pose, [0, 1, 2]) },
               uirevision: "camera",

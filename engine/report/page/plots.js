@@ -80,6 +80,7 @@ function layoutOf(more) {
     hoverlabel: { bgcolor: colour("panel"), bordercolor: colour("line"), font: { color: colour("ink"), size: 13 } },
     legend: { orientation: "h", x: 0, y: 1.02, xanchor: "left", yanchor: "bottom" },
     colorway: seriesColours,
+    modebar: { bgcolor: colour("panel"), color: colour("muted"), activecolor: colour("accent") },
     ...more,
   };
 }
@@ -92,7 +93,13 @@ function layoutOf(more) {
 function addPlot(parent, { title, caption, size = "", height = 380, make }) {
   const node = element("div", "plot");
   node.setAttribute("role", "img");
-  node.setAttribute("aria-label", [title, caption].flat().filter((part) => typeof part === "string").join(". ") || "plot");
+  node.setAttribute(
+    "aria-label",
+    [title, caption]
+      .flat()
+      .filter((part) => typeof part === "string")
+      .join(". ") || "plot",
+  );
   node.style.height = height + "px";
   const panel = element(
     "div",

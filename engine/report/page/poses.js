@@ -7,7 +7,9 @@ class Poses {
     Object.assign(this, packed);
     this.drawn = unpack(packed.drawn);
     this.reason = unpack(packed.reason);
-    this.at = packed.at.map((column) => Float64Array.from(unpack(column), (value) => value * shownScale("m")));
+    this.at = packed.at.map(unpack);
+    const scale = shownScale("m");
+    for (const column of this.at) for (let i = 0; i < column.length; ++i) column[i] *= scale;
     this.links = packed.links.map((link) => ({ ...link, radius: link.radius * shownScale("m") }));
     this.motions = packed.motions.map((motion) => ({ ...motion, coordinates: motion.coordinates.map(unpack) }));
     this.positions = packed.positions.map(unpack);

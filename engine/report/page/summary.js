@@ -176,7 +176,6 @@ function remarks(study) {
   );
 }
 
-
 function rateText(value, objective, unit) {
   if (value === null) return "";
   const { unit: of, scale } = resultUnit(objective.unit),
@@ -323,7 +322,8 @@ function howToRepeat(study) {
     element("pre", "", commands.join("\n")),
     details("The study's text, " + toml, origin.toml),
   );
-  if (origin.mechanism_toml) panel.append(details("The mechanism's text, " + origin.mechanism_file, origin.mechanism_toml));
+  if (origin.mechanism_toml)
+    panel.append(details("The mechanism's text, " + origin.mechanism_file, origin.mechanism_toml));
   if (origin.resolved) panel.append(details("The problem with every default spelled out", origin.resolved));
   for (const [i, stage] of study.summary.stages.entries())
     if (stage.options.length)
@@ -340,7 +340,8 @@ function showSummary(study, section) {
   if (notes.length) section.append(element("div", "panel", element("ul", "plain", ...notes)));
   const grid = element("div", "grid");
   if (notes.length) grid.style.marginTop = "16px";
-  if (table) grid.append(element("div", "panel", element("h3", "", "Designs"), designTable(table, study.problem.variables)));
+  if (table)
+    grid.append(element("div", "panel", element("h3", "", "Designs"), designTable(table, study.problem.variables)));
   const pair = [holdingBack(study), stages.length ? timeSpent(study.summary) : null].filter(Boolean);
   if (pair.length === 1) pair[0].classList.remove("half");
   grid.append(...pair, howToRepeat(study));
