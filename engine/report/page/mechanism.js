@@ -171,7 +171,7 @@ function roomScene(spans, away = 1) {
     bgcolor: colour("panel"), // of the film, too
     aspectmode: "manual",
     aspectratio: { x, y, z },
-    camera: { eye: { x: 1.1 * away, y: -1.45 * away, z: 0.75 * away } },
+    camera: { eye: { x: 1.1 * away, y: -1.45 * away, z: 0.75 * away }, center: { x: 0, y: 0, z: -0.1 } },
   };
 }
 

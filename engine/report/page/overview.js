@@ -33,7 +33,7 @@ const byMultiplier = (optimality) =>
 
 /** Active margins and bounds, with what one would gain by moving them where a gradient solver has told. */
 function holdingSentence({ summary, problem, point }) {
-  const { optimality, active } = summary;
+  const { optimality, active, stages } = summary;
   if (point) {
     const { variables } = problem;
     const at = variables.flatMap((v, i) =>
@@ -62,7 +62,8 @@ function holdingSentence({ summary, problem, point }) {
     names.slice(0, 5).join("; ") + (names.length > 5 ? `; and ${names.length - 5} more` : ""),
   );
   shown.title = active.join("\n");
-  return [shown, ". Multipliers are known after a gradient stage."];
+  const solved = stages.some((stage) => stage.starts);
+  return [shown, solved ? "." : ". Multipliers are known after a gradient stage."];
 }
 
 const isBound = (name) => / bound/.test(name);
@@ -161,23 +162,39 @@ function dimensionTrace(dimensions, poses, pose, axes) {
   };
 }
 
-/** Their names and values, beside the middle of each line on alternate sides. */
+/** Where a place of the drawing is on the screen, as the camera first stands. */
+function onScreen(place) {
+  if (place.length === 2) return place;
+  const [x, y, z] = place; // the camera looks from (1.1, -1.45, 0.75)
+  return [0.8 * x + 0.6 * y, 0.92 * z - 0.23 * x + 0.3 * y];
+}
+
+/** Their names and values: outside of the drawing's middle, and on each side one below the other. */
 function dimensionNotes(dimensions, poses, pose, axes) {
   const crowded = dimensions.length > 5; // then the values are said beside the drawing
-  return dimensions.map((d, i) => {
-    const [a, b] = [poses.end(pose, d.from), poses.end(pose, d.to)];
-    return {
-      ...Object.fromEntries(axes.map((c, k) => ["xyz"[k], (a[c] + b[c]) / 2])),
-      text: label(crowded ? d.name : dimensionText(d)),
-      ax: i % 4 < 2 ? 55 : -55,
-      ay: i % 2 ? 30 : -30,
-      arrowcolor: colour("accent"),
-      arrowwidth: 1,
-      arrowhead: 0,
-      font: { size: crowded ? 12 : 13, color: colour("ink") },
-      bgcolor: faded(colour("panel"), 0.85),
-    };
+  const notes = dimensions.map((d) => {
+    const [from, to] = [poses.end(pose, d.from), poses.end(pose, d.to)];
+    const middle = axes.map((c) => (from[c] + to[c]) / 2);
+    const [across, up] = onScreen(middle);
+    return { middle, across, up, text: label(crowded ? d.name : dimensionText(d)) };
   });
+  const centre = notes.reduce((sum, note) => sum + note.across, 0) / notes.length;
+  const sides = [notes.filter((n) => n.across < centre), notes.filter((n) => n.across >= centre)];
+  return sides.flatMap((side, s) =>
+    side
+      .sort((a, b) => b.up - a.up)
+      .map(({ middle, text }, k) => ({
+        ...Object.fromEntries(middle.map((value, i) => ["xyz"[i], value])),
+        text,
+        ax: s ? 60 : -60,
+        ay: 26 * (k - (side.length - 1) / 2),
+        arrowcolor: colour("accent"),
+        arrowwidth: 1,
+        arrowhead: 0,
+        font: { size: crowded ? 12 : 13, color: colour("ink") },
+        bgcolor: faded(colour("panel"), 0.85),
+      })),
+  );
 }
 
 function drawingPlot(study, grid, poses) {
