@@ -17,7 +17,7 @@ namespace pkm {
 
 struct Isosurface {
   std::vector<std::array<double, 3>> vertices;  ///< in the order of WorkspaceFields::axes
-  std::vector<std::array<double, 3>> inside;    ///< per vertex: a feasible place beside it, whose fields it may show
+  std::vector<std::array<double, 3>> inside;    ///< per vertex: a feasible place near it, whose fields it may show
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 
