@@ -83,7 +83,7 @@ Json against_rotation(const Turned& turned, const std::string& limb) {
 
 Json coupling_data(const Views& views) {
   const MechanismInfo& info = views.mechanism.info();
-  if (no_joint_forces(views.mechanism)) return {};
+  if (!views.coupling || no_joint_forces(views.mechanism)) return {};
   const auto rotation = std::ranges::find_if(info.coordinates, &AxisInfo::turns);
   const bool turns = rotation != info.coordinates.end();
   std::vector<std::string> joints, limbs;

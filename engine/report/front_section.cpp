@@ -24,7 +24,8 @@ Json points(const ProblemRecord& problem, const StageRecord& stage) {
 
 }  // namespace
 
-Json front_data(const StudyContents& contents) {
+Json front_data(const PageStudy& page) {
+  const StudyContents& contents = page.contents;
   Json fronts = Json::array();
   for (const StageRecord& stage : contents.stages)
     if (stage.has_front())
@@ -35,6 +36,12 @@ Json front_data(const StudyContents& contents) {
   if (fronts.empty() || contents.problem.objectives.size() < 2) return {};
   Json json = {{"fronts", fronts}, {"baseline", Json()}};
   if (contents.final && contents.final->baseline) json["baseline"] = contents.final->baseline->objectives;
+  if (page.study)
+    if (const Views views = front_views_of(page); !views.designs.empty())
+      for (const auto& [name, data] :
+           {std::pair("workspace", workspace_data(views)), std::pair("mechanism", mechanism_data(views)),
+            std::pair("motions", motions_data(views))})
+        if (!data.is_null()) json["designs"][name] = data;
   return json;
 }
 

@@ -34,7 +34,7 @@ Json study_data(const PageStudy& page) {
   add(study, "summary", summary_data(page));
   add(study, "convergence", convergence_data(contents));
   add(study, "populations", populations_data(contents));
-  add(study, "front", front_data(contents));
+  add(study, "front", front_data(page));
   if (page.study)
     add_views(study, views_of(page));
   else

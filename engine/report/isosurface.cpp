@@ -38,6 +38,12 @@ class Nodes {
     return false;
   }
   double margin(const Index& n) const { return beyond(n) ? -1 : margin_[cell(n)]; }
+  /// Of the cell whose margin the node has.
+  Point centre(const Index& n) const {
+    Point at;
+    for (std::size_t i = 0; i < 3; ++i) at[i] = grid_.centre(i, static_cast<std::int64_t>(nearest(n, i)));
+    return at;
+  }
   Point place(const Index& n) const {
     Point at;
     for (std::size_t i = 0; i < 3; ++i)
@@ -101,6 +107,7 @@ class Builder {
           (margin(workspace.pose(edges_[k].at(middle)), scratch[worker]) >= 0 ? inside : outside) = middle;
         }
         surface_.vertices[k] = edges_[k].at((inside + outside) / 2);
+        if (inside > 0) surface_.inside[k] = edges_[k].at(inside);
       }
     });
   }
@@ -140,7 +147,7 @@ class Builder {
     number = static_cast<std::uint32_t>(surface_.vertices.size());
     edges_.push_back({nodes_.place(in.node), nodes_.place(out.node), ends});
     surface_.vertices.push_back(edges_.back().at(ends ? 0 : in.margin / (in.margin - out.margin)));
-    surface_.cell.push_back(nodes_.cell(in.node));
+    surface_.inside.push_back(nodes_.centre(in.node));
     return number;
   }
 

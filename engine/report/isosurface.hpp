@@ -17,7 +17,7 @@ namespace pkm {
 
 struct Isosurface {
   std::vector<std::array<double, 3>> vertices;  ///< in the order of WorkspaceFields::axes
-  std::vector<std::size_t> cell;                ///< per vertex: the feasible cell next to it, whose fields it may show
+  std::vector<std::array<double, 3>> inside;    ///< per vertex: a feasible place near it, whose fields it may show
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 

@@ -1,16 +1,17 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <span>
 
 #include "engine/core/team.hpp"
+#include "engine/report/dimensions.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
 
 namespace pkm {
 namespace {
 
-constexpr std::size_t kSteps = 9;      // of each coordinate that the workspace sweeps over
-constexpr std::size_t kHeldSteps = 7;  // of the first that it holds; the others stay where they are
+constexpr std::size_t kMotionPoses = 121;  // along each motion, both ends included
 
 using Slider = std::vector<double>;
 
@@ -25,7 +26,7 @@ Slider slider(double lower, double upper, std::size_t steps) {
 /// One for each coordinate: values that span the feasible cells, and the first held coordinate's range.
 using Sliders = std::vector<Slider>;
 
-Sliders sliders_of(const View& view) {
+Sliders sliders_of(const View& view, const PageDetail& detail) {
   const WorkspaceFields& workspace = *view.workspace;
   const std::size_t coordinates = workspace.axes.size() + workspace.held.size();
   std::vector<std::array<double, 2>> range(coordinates, {1e300, -1e300});
@@ -35,10 +36,10 @@ Sliders sliders_of(const View& view) {
       range[c] = {std::min(range[c][0], pose[c]), std::max(range[c][1], pose[c])};
   }
   Sliders sliders;
-  for (const auto& [lower, upper] : range) sliders.push_back(slider(lower, upper, kSteps));
+  for (const auto& [lower, upper] : range) sliders.push_back(slider(lower, upper, detail.steps));
   if (!workspace.held.empty())
     sliders[static_cast<std::size_t>(workspace.held[0].coordinate)] =
-        slider(view.held_range[0][0], view.held_range[0][1], kHeldSteps);
+        slider(view.held_range[0][0], view.held_range[0][1], detail.held_steps);
   return sliders;
 }
 
@@ -56,20 +57,52 @@ struct DrawnPose {
 };
 
 /// Every combination of the sliders' values.
-std::vector<DrawnPose> draw(const Views& views, const View& view, const Sliders& sliders) {
+std::vector<Pose<double>> combinations(const Sliders& sliders) {
   std::size_t count = 1;
   for (const Slider& values : sliders) count *= values.size();
-  std::vector<DrawnPose> poses(count);
-  share_pieces(count, [&](std::size_t pose, std::size_t end) {
+  std::vector<Pose<double>> poses(count, Pose<double>(sliders.size()));
+  for (std::size_t pose = 0; pose < count; ++pose) {
+    const std::vector<std::size_t> steps = steps_of(pose, sliders);
+    for (std::size_t c = 0; c < sliders.size(); ++c) poses[pose][c] = sliders[c][steps[c]];
+  }
+  return poses;
+}
+
+/// Appends the poses of a motion.
+void add_motion(const Motion& motion, std::vector<Pose<double>>& poses) {
+  for (std::size_t k = 0; k < kMotionPoses; ++k)
+    poses.push_back(motion.at(motion.duration() * static_cast<double>(k) / (kMotionPoses - 1)).pose);
+}
+
+std::vector<DrawnPose> draw(const Views& views, const View& view, const std::vector<Pose<double>>& poses) {
+  std::vector<DrawnPose> drawn(poses.size());
+  share_pieces(poses.size(), [&](std::size_t pose, std::size_t end) {
     for (; pose < end; ++pose) {
-      const std::vector<std::size_t> steps = steps_of(pose, sliders);
-      Pose<double> drawn(sliders.size());
-      for (std::size_t c = 0; c < sliders.size(); ++c) drawn[c] = sliders[c][steps[c]];
-      poses[pose].report = views.mechanism.inspect(view.parameters, drawn, views.mode, views.limits);
-      poses[pose].links = views.mechanism.links()->place(view.parameters, drawn, views.mode);
+      drawn[pose].report = views.mechanism.inspect(view.parameters, poses[pose], views.mode, views.limits);
+      drawn[pose].links = views.mechanism.links()->place(view.parameters, poses[pose], views.mode);
     }
   });
-  return poses;
+  return drawn;
+}
+
+/// The motions: which of the drawn poses, and the coordinates there.
+Json motions(const Views& views, const std::vector<Pose<double>>& poses, std::size_t first) {
+  Json list = Json::array();
+  for (const NamedMotion& named : views.motions) {
+    Json coordinates = Json::array();
+    for (std::size_t c = 0; c < poses.front().size(); ++c) {
+      std::vector<double> column;
+      for (std::size_t k = 0; k < kMotionPoses; ++k) column.push_back(poses[first + k][c]);
+      coordinates.push_back(packed_floats(column));
+    }
+    list.push_back({{"name", named.name},
+                    {"duration", named.motion->duration()},
+                    {"first", first},
+                    {"count", kMotionPoses},
+                    {"coordinates", coordinates}});
+    first += kMotionPoses;
+  }
+  return list;
 }
 
 /// The ends of the links, each place once: links that are joined share theirs. `from` and `to` number them.
@@ -102,7 +135,8 @@ struct Ends {
 };
 
 /// The feasible pose nearest to the middle of the feasible ones, else the first that is drawn.
-std::size_t usual_pose(const std::vector<DrawnPose>& poses, const Sliders& sliders) {
+/// @param poses  the combinations of the sliders
+std::size_t usual_pose(std::span<const DrawnPose> poses, const Sliders& sliders) {
   std::vector<double> middle(sliders.size());
   double count = 0;
   for (std::size_t pose = 0; pose < poses.size(); ++pose) {
@@ -129,8 +163,11 @@ std::size_t usual_pose(const std::vector<DrawnPose>& poses, const Sliders& slide
 
 Json mechanism(const Views& views, const View& view) {
   const MechanismInfo& info = views.mechanism.info();
-  const Sliders sliders = sliders_of(view);
-  const std::vector<DrawnPose> poses = draw(views, view, sliders);
+  const Sliders sliders = sliders_of(view, views.detail);
+  std::vector<Pose<double>> places = combinations(sliders);
+  const std::size_t combined = places.size();
+  for (const NamedMotion& named : views.motions) add_motion(*named.motion, places);
+  const std::vector<DrawnPose> poses = draw(views, view, places);
   const auto drawn = std::ranges::find_if(poses, [](const DrawnPose& pose) { return !pose.links.empty(); });
   if (drawn == poses.end()) return Json();
 
@@ -165,7 +202,18 @@ Json mechanism(const Views& views, const View& view) {
     for (std::size_t i = 0; i < joints.size(); ++i)
       joints[i].push_back(pose.report.joints ? (*pose.report.joints)[i] : std::nan(""));
   }
-  json["start"] = usual_pose(poses, sliders);
+  const std::size_t start = usual_pose({poses.data(), combined}, sliders);
+  json["start"] = start;
+  json["motions"] = motions(views, places, combined);
+  json["dimensions"] = Json::array();
+  for (const Dimension& d : dimensions_of(views.mechanism, view.parameters, places[start], views.mode)) {
+    const auto end = [&](std::size_t e) { return (e % 2 ? ends.to : ends.from)[e / 2]; };
+    json["dimensions"].push_back({{"name", info.parameters[d.parameter].name},
+                                  {"unit", info.parameters[d.parameter].unit},
+                                  {"value", view.parameters[d.parameter]},
+                                  {"from", end(d.from)},
+                                  {"to", end(d.to)}});
+  }
   json["ends"] = ends.count;
   json["drawn"] = packed_bits(is_drawn);
   json["reasons"] = reasons;

@@ -18,19 +18,19 @@ Json summary_data(const PageStudy& page);
 Json convergence_data(const StudyContents& contents);
 /// The designs of the populations, thinned, and which of them each generation has.
 Json populations_data(const StudyContents& contents);
-/// The trade-offs, with knees and compromise.
-Json front_data(const StudyContents& contents);
+/// The trade-offs, with knees and compromise, and the sections below for some of their designs.
+Json front_data(const PageStudy& page);
 
 /// The parameters of a design that no study has found.
 Json design_data(const Views& views);
-/// The feasible cells of each design with their fields, and the surface around them.
+/// The feasible cells of each design with their fields, and the surface around them with the fields at its vertices.
 Json workspace_data(const Views& views);
 /// The same of the map that the file itself holds, which has no fields.
 Json workspace_data(const StudyContents& contents);
-/// The links of each design at the poses that the page's sliders reach.
+/// The links of each design at the poses that the page's sliders reach and along the motions, and its dimensions.
 Json mechanism_data(const Views& views);
-/// Coupling indices against the first rotation, where there is one; maps and histograms are drawn from the workspace's
-/// fields.
+/// Coupling indices against the first rotation, where there is one, if the study asks for coupling; maps and histograms
+/// are drawn from the workspace's fields.
 Json coupling_data(const Views& views);
 /// Joints, forces and power along the study's motions.
 Json motions_data(const Views& views);

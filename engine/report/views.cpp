@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "engine/core/error.hpp"
+#include "engine/problem/front.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/report/thinning.hpp"
 #include "engine/survey/picture_plan.hpp"
@@ -14,12 +15,13 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kMostCells = 40;  // per axis of a page
+constexpr std::size_t kFrontDesigns = 10;               // that a page carries beside the best
+constexpr PageDetail kFrontDetail = {16, 5, 3, false};  // of those
 
 /// Voxels of the study's workspace, at most as many as a page can carry.
-SurveyPlan page_plan(const MechanismInfo& info, const SurveyPlan& plan) {
-  SurveyPlan picture = picture_plan(info, plan, {kMostCells, kMostCells, kMostCells});
-  for (std::int64_t& cells : std::get<VoxelOptions>(picture.method).cells) cells = std::min(cells, kMostCells);
+SurveyPlan page_plan(const MechanismInfo& info, const SurveyPlan& plan, std::int64_t most) {
+  SurveyPlan picture = picture_plan(info, plan, {most, most, most});
+  for (std::int64_t& cells : std::get<VoxelOptions>(picture.method).cells) cells = std::min(cells, most);
   return picture;
 }
 
@@ -55,14 +57,41 @@ std::array<double, 2> range_of(const WorkspaceAxis& held, const Views& views, co
 }
 
 Views no_views(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
-               const std::vector<NamedMotion>& motions) {
+               const std::vector<NamedMotion>& motions, const PageDetail& detail = {}) {
   const MechanismInfo& info = mechanism.info();
-  return {mechanism,
-          page_plan(info, plan),
-          survey_limits(info, plan.limits),
-          mode.empty() ? info.modes.front() : mode,
-          motions,
-          {}};
+  return {.mechanism = mechanism,
+          .plan = page_plan(info, plan, detail.cells),
+          .limits = survey_limits(info, plan.limits),
+          .mode = mode.empty() ? info.modes.front() : mode,
+          .motions = motions,
+          .designs = {},
+          .detail = detail};
+}
+
+/// A study asks for coupling where it computes something of inertia or loads, or says anything about masses.
+bool names_masses(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  const Dynamics* const dynamics = parts.mechanism->dynamics();
+  if (!dynamics) return false;
+  if (dynamics->mass_model() != dynamics->mass_models().front() || parts.demand.needs_inertia() ||
+      std::ranges::any_of(parts.regions, [](const Region& region) { return region.demand.needs_inertia(); }))
+    return true;
+  for (const auto* const entries : {&study.objectives, &study.constraints, &study.reports})
+    if (std::ranges::any_of(*entries, [](const StudyEntry& entry) { return entry.type.starts_with("peak-"); }))
+      return true;
+  const auto& known = parts.mechanism->info().parameters;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const bool changed = parts.parameters[i] != known[i].nominal || std::ranges::count(parts.varies, i) > 0;
+    if (changed && known[i].unit.starts_with("kg")) return true;
+  }
+  return false;
+}
+
+Views views_of_study(const PageStudy& page, const PageDetail& detail) {
+  const ProblemParts& parts = page.study->problem->parts();
+  Views views = no_views(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions, detail);
+  views.coupling = names_masses(*page.study);
+  return views;
 }
 
 void add_view(Views& views, const std::string& name, const std::vector<double>& parameters) {
@@ -87,11 +116,26 @@ void add_view(Views& views, const std::string& name, const std::vector<double>& 
 
 Views views_of(const PageStudy& page) {
   const StudyContents& contents = page.contents;
-  const ProblemParts& parts = page.study->problem->parts();
-  Views views = no_views(*parts.mechanism, parts.plan, parts.demand.mode, page.study->motions);
+  Views views = views_of_study(page, {});
   if (contents.best.row >= 0)
     add_view(views, name_of_best(contents), page.study->problem->parameters(contents.best_design()));
   if (page.study->baseline) add_view(views, "baseline", *page.study->baseline);
+  return views;
+}
+
+Views front_views_of(const PageStudy& page) {
+  const StudyContents& contents = page.contents;
+  Views views = views_of_study(page, kFrontDetail);
+  const auto last = std::ranges::find_if(contents.stages.rbegin(), contents.stages.rend(), &StageRecord::has_front);
+  if (last == contents.stages.rend() || contents.problem.objectives.size() < 2) return views;
+  const std::vector<std::int64_t>& rows = last->front->rows;
+  const std::int64_t stage = contents.stages.rend() - last;  // from 1
+  for (const std::size_t point :
+       spread_choice(scores_of(contents.problem.objectives, last->table, rows), kFrontDesigns)) {
+    if (contents.best.stage == stage - 1 && contents.best.row == rows[point]) continue;
+    add_view(views, "point " + std::to_string(point + 1) + " of stage " + std::to_string(stage),
+             page.study->problem->parameters(last->table.design(static_cast<std::size_t>(rows[point]))));
+  }
   return views;
 }
 

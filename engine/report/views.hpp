@@ -28,6 +28,14 @@ struct View {
   std::string problem = {};                            ///< why there is no workspace, in a sentence
 };
 
+/// How finely a page samples its designs.
+struct PageDetail {
+  std::int64_t cells = 40;     ///< of the workspace, at most, per axis
+  std::size_t steps = 9;       ///< of each coordinate that the workspace sweeps over, for poses that are drawn
+  std::size_t held_steps = 7;  ///< of the first that it holds; the others stay where they are
+  bool joints = true;          ///< fields of margins and joints beside those of quantities
+};
+
 /// Designs of one mechanism, under the same plan.
 struct Views {
   const Mechanism& mechanism;
@@ -36,11 +44,17 @@ struct Views {
   std::string mode;
   std::vector<NamedMotion> motions;
   std::vector<View> designs;
+  PageDetail detail = {};
+  bool coupling = true;  ///< whether anybody asked for what follows from inertia
 };
 
 /// The best design of a study (the compromise where there are several objectives) and its baseline, evaluated again.
 /// @param page  of a study that this program can read
 Views views_of(const PageStudy& page);
+
+/// Designs spread over the last trade-off of a study, named "point 7 of stage 2" as `pkmopt show` numbers them, in less
+/// detail. Without the best design, which views_of() shows; none where there is no trade-off.
+Views front_views_of(const PageStudy& page);
 
 /// One design, without a study's results.
 /// @param plan    as of a study

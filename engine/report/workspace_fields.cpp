@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -27,25 +28,29 @@ std::string note_of(const HeldCoordinate& held) {
   return held.kind == Kind::listed ? "the first of those listed" : "the middle of what the plan integrates over";
 }
 
-/// Fills fields in, one row of cells along the last axis after the other.
+/// Fills fields in, one row of poses after the other; the first field says which are feasible.
 class Rows {
  public:
+  using Poses = std::function<Pose<double>(std::size_t)>;
+
+  /// @param size  of a row
   Rows(const Mechanism& mechanism, std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
-       WorkspaceFields& found)
+       std::vector<WorkspaceField>& fields, const Poses& poses, std::size_t size)
       : mechanism_(mechanism),
         info_(mechanism.info()),
         parameters_(parameters),
         limits_(limits),
         margin_(mechanism, parameters, limits),
         mode_(mode.empty() ? info_.modes.front() : mode),
-        found_(found),
-        size_(static_cast<std::size_t>(found.grid().cells[2])) {
+        fields_(fields),
+        poses_(poses),
+        size_(size) {
     const PoseMargins* const margins = mechanism.pose_margins();
     const bool mixed = !margins;
     add("margin", mixed ? "mixed" : margins->margin_unit(),
         std::string("least margin of the pose, > 0 where it is feasible") + (mixed ? ", in m, rad or 1" : ""));
     add_quantities(false);
-    joints_ = found_.fields.size();
+    joints_ = fields_.size();
     for (const AxisInfo& joint : info_.joints) add(joint.name, joint.unit, "position of joint " + joint.name);
     if (!no_joint_forces(mechanism)) add_quantities(true);
   }
@@ -60,18 +65,27 @@ class Rows {
     std::vector<std::size_t> cells;
   };
 
+  std::size_t count() const { return (fields_[kFeasible].values.size() + size_ - 1) / size_; }
+
   void fill(std::size_t row, Room& room) const {
-    const std::size_t first = row * size_;
-    for (std::size_t cell = first; cell < first + size_; ++cell) fill_pose(cell, room);
-    if (!no_joint_forces(mechanism_)) fill_inertia(first, room);
+    const std::size_t first = row * size_, end = std::min(first + size_, fields_[kFeasible].values.size());
+    for (std::size_t cell = first; cell < end; ++cell) fill_pose(cell, room);
+    if (!no_joint_forces(mechanism_)) fill_inertia(first, end, room);
+  }
+
+  void fill_all() const {
+    std::vector<Room> rooms(workers());
+    share_pieces(count(), [&](std::size_t row, std::size_t end, std::size_t worker) {
+      for (; row < end; ++row) fill(row, rooms[worker]);
+    });
   }
 
  private:
   static constexpr std::size_t kMargin = 1, kQuantities = 2;  ///< fields; those of inertia come behind the joints
 
   void add(std::string name, std::string unit, std::string meaning) {
-    found_.fields.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
-    found_.fields.back().values.assign(found_.fields[kFeasible].values.size(), kNone);
+    fields_.push_back({std::move(name), std::move(unit), std::move(meaning), {}});
+    fields_.back().values.assign(fields_[kFeasible].values.size(), kNone);
   }
   void add_quantities(bool of_inertia) {
     const std::string& length = info_.characteristic_length;
@@ -106,11 +120,11 @@ class Rows {
     }
   }
 
-  double& at(std::size_t field, std::size_t cell) const { return found_.fields[field].values[cell]; }
+  double& at(std::size_t field, std::size_t cell) const { return fields_[field].values[cell]; }
   bool feasible(std::size_t cell) const { return at(kFeasible, cell) > 0; }
 
   void fill_pose(std::size_t cell, Room& room) const {
-    const Pose<double> pose = found_.pose(cell);
+    const Pose<double> pose = poses_(cell);
     at(kMargin, cell) = on_its_side(margin_(pose, room.margins), feasible(cell));
     if (!feasible(cell)) return;
     const PoseReport report = mechanism_.inspect(parameters_, pose, info_.modes.front(), limits_);
@@ -126,15 +140,15 @@ class Rows {
     return feasible ? std::fmax(margin, kLeast) : std::fmin(margin, -kLeast);
   }
 
-  void fill_inertia(std::size_t first, Room& room) const {
+  void fill_inertia(std::size_t first, std::size_t end, Room& room) const {
     auto& [margins, states, dynamics, cells] = room;
     const AxisVector<double> at_rest(info_.coordinates.size());
     states.clear();
     cells.clear();
-    for (std::size_t cell = first; cell < first + size_; ++cell) {
+    for (std::size_t cell = first; cell < end; ++cell) {
       if (!feasible(cell)) continue;
       cells.push_back(cell);
-      states.push_back({found_.pose(cell), at_rest});
+      states.push_back({poses_(cell), at_rest});
     }
     dynamics.resize(states.size());
     mechanism_.dynamics()->equations(parameters_, mode_, states, dynamics);
@@ -152,7 +166,8 @@ class Rows {
   const LimitSpec& limits_;
   PoseMargin margin_;
   std::string mode_;
-  WorkspaceFields& found_;
+  std::vector<WorkspaceField>& fields_;
+  const Poses& poses_;
   std::size_t size_;
   std::size_t joints_ = 0;  ///< field of the first
 };
@@ -250,13 +265,21 @@ WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const dou
   found.volume_unit = volume_unit(info, picture);
   found.touches_box = picture.box() && summary.touches_box;
 
-  const Rows rows(mechanism, parameters, picture.limits, mode, found);
-  std::vector<Rows::Room> rooms(workers());
-  share_pieces(static_cast<std::size_t>(grid.cells[0] * grid.cells[1]),
-               [&](std::size_t row, std::size_t end, std::size_t worker) {
-                 for (; row < end; ++row) rows.fill(row, rooms[worker]);
-               });
+  const Rows::Poses poses = [&](std::size_t cell) { return found.pose(cell); };
+  Rows(mechanism, parameters, picture.limits, mode, found.fields, poses, static_cast<std::size_t>(grid.cells[2]))
+      .fill_all();
   return found;
+}
+
+std::vector<WorkspaceField> fields_at(const Mechanism& mechanism, std::span<const double> parameters,
+                                      const LimitSpec& limits, const std::string& mode,
+                                      const std::vector<Pose<double>>& poses) {
+  constexpr std::size_t kRow = 64;
+  std::vector<WorkspaceField> fields = {{"feasible", "1", "", std::vector<double>(poses.size(), 1.0)}};
+  const Rows::Poses of = [&](std::size_t i) { return poses[i]; };
+  Rows(mechanism, parameters, limits, mode, fields, of, kRow).fill_all();
+  fields.erase(fields.begin());
+  return fields;
 }
 
 LimitSpec survey_limits(const MechanismInfo& info, LimitSpec limits) {

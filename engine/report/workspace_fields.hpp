@@ -92,6 +92,12 @@ class PoseMargin {
 WorkspaceFields workspace_fields(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
                                  const std::string& mode);
 
+/// The same fields but `feasible` at feasible poses; NaN where one does not exist.
+/// @param limits  as of the plan
+std::vector<WorkspaceField> fields_at(const Mechanism& mechanism, std::span<const double> parameters,
+                                      const LimitSpec& limits, const std::string& mode,
+                                      const std::vector<Pose<double>>& poses);
+
 /// Limits under which the margins of a pose say what surveys say: those leave out a clearance that is not given.
 LimitSpec survey_limits(const MechanismInfo& info, LimitSpec limits);
 

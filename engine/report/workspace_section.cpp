@@ -1,16 +1,29 @@
+#include <algorithm>
+#include <optional>
+
 #include "engine/report/isosurface.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
+#include "engine/survey/pose_quantities.hpp"
 
 namespace pkm {
 namespace {
 
-/// Vertices by coordinate, each with the feasible cell next to it: its number among the feasible ones.
-Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
-  const Isosurface found = isosurface(workspace, margin);
-  std::vector<std::int64_t> number(workspace.cells()), cells, corners;
-  for (std::int64_t k = 0; const std::size_t cell : workspace.feasible_cells()) number[cell] = k++;
-  for (const std::size_t cell : found.cell) cells.push_back(number[cell]);
+/// Which fields a page has room for, and a reader use.
+bool is_shown(const Views& views, const std::string& field) {
+  for (const PoseQuantity* const quantity : pose_quantities()) {
+    const std::string name = quantity->name;
+    if (field == name || field.starts_with(name + "_")) return views.coupling || !quantity->needs_inertia();
+  }
+  return views.detail.joints;
+}
+
+/// Vertices by coordinate, and the fields beside them by name.
+Json surface(const Views* views, const View* view, const WorkspaceFields& workspace) {
+  std::optional<PoseMargin> margin;
+  if (views) margin.emplace(views->mechanism, view->parameters, views->plan.limits);
+  const Isosurface found = isosurface(workspace, margin ? &*margin : nullptr);
+  std::vector<std::int64_t> corners;
   for (const auto& triangle : found.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
   Json vertices = Json::array();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -18,7 +31,14 @@ Json surface(const WorkspaceFields& workspace, const PoseMargin* margin) {
     for (const auto& vertex : found.vertices) values.push_back(vertex[axis]);
     vertices.push_back(packed_levels(values));
   }
-  return {{"vertices", vertices}, {"cells", packed_integers(cells)}, {"triangles", packed_integers(corners)}};
+  Json json = {{"vertices", vertices}, {"triangles", packed_integers(corners)}, {"values", Json::object()}};
+  if (!views) return json;
+  std::vector<Pose<double>> poses;
+  for (const auto& place : found.inside) poses.push_back(workspace.pose(place));
+  for (const WorkspaceField& field :
+       fields_at(views->mechanism, view->parameters, views->plan.limits, views->mode, poses))
+    if (is_shown(*views, field.name)) json["values"][field.name] = packed_levels(field.values);
+  return json;
 }
 
 Json axis_of(const WorkspaceAxis& axis) {
@@ -27,7 +47,8 @@ Json axis_of(const WorkspaceAxis& axis) {
   return json;
 }
 
-Json workspace(const std::string& name, const WorkspaceFields& found, const PoseMargin* margin) {
+/// @param views, view  null: nothing is known but the cells
+Json workspace(const std::string& name, const WorkspaceFields& found, const Views* views, const View* view) {
   Json json = {{"name", name}, {"axes", Json::array()}, {"held", Json::array()}};
   for (const WorkspaceAxis& axis : found.axes) {
     json["axes"].push_back(axis_of(axis));
@@ -43,13 +64,13 @@ Json workspace(const std::string& name, const WorkspaceFields& found, const Pose
   json["feasible"] = packed_bits(std::vector<std::uint8_t>(feasible.begin(), feasible.end()));
   json["fields"] = Json::array();
   for (const WorkspaceField& field : found.fields) {
-    if (field.name == "feasible") continue;
+    if (field.name == "feasible" || (views && !is_shown(*views, field.name))) continue;
     std::vector<double> values;
     for (const std::size_t cell : found.feasible_cells()) values.push_back(field.values[cell]);
     json["fields"].push_back(
         {{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}, {"values", packed_levels(values)}});
   }
-  if (!refuse_surface(found)) json["surface"] = surface(found, margin);
+  if (!refuse_surface(found)) json["surface"] = surface(views, view, found);
   return json;
 }
 
@@ -81,8 +102,7 @@ Json workspace_data(const Views& views) {
       json["problems"].push_back("The design “" + view.name + "” is not shown: " + view.problem + ".");
       continue;
     }
-    const PoseMargin margin(views.mechanism, view.parameters, plan.limits);
-    json["designs"].push_back(workspace(view.name, *view.workspace, &margin));
+    json["designs"].push_back(workspace(view.name, *view.workspace, &views, &view));
   }
   return json;
 }
@@ -90,7 +110,7 @@ Json workspace_data(const Views& views) {
 Json workspace_data(const StudyContents& contents) {
   if (!contents.final || !contents.final->map || !contents.final->best) return {};
   const FinalRecord& final = *contents.final;
-  Json design = workspace("best", fields_of(*final.map, *final.best, final.volume_unit), nullptr);
+  Json design = workspace("best", fields_of(*final.map, *final.best, final.volume_unit), nullptr, nullptr);
   design["fields"].clear();  // the margin is only made up for the surface
   return {{"column", design["axes"].back()["name"]}, {"designs", {design}}, {"problems", Json::array()}};
 }

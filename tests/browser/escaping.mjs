@@ -69,6 +69,7 @@ const {
   studies: [study],
 } = await page.data();
 assert.ok(study.summary.origin.toml.includes("</script><script>alert(3)</script> <!-- <script> \u2028 \u2029"));
+assert.ok((await page.text("#comparison")).includes("Workspaces over each other"), "both sweep the same coordinates");
 const legend = await page.page.locator("#comparison .plot .legendtext").first().textContent();
 assert.equal(legend, evil);
 const hover = await page.hover("comparison");

@@ -30,7 +30,7 @@ assert.deepEqual(await design.sections(), ["design", "workspace", "mechanism", "
 await design.draw();
 assert.ok((await design.moveSliders("mechanism")) === 4);
 await design.page.click("#design summary");
-assert.match(await design.text("#design"), /\bl\s+0\.05 m/);
+assert.match(await design.text("#design"), /\bl\s+50 mm/);
 await design.screenshots(folder, "one-design-dark");
 await design.close();
 console.log("two studies compared, one design without a study");

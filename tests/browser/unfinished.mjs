@@ -62,7 +62,7 @@ for (const schema of [1, 2, 3]) {
   pkmopt("report", path.join(process.env.BROWSER_DATA, name + ".h5"), "--output", html, "--force");
   const page = await Page.open(html),
     front = schema === 3 ? ["front"] : [];
-  const sections = ["summary", "workspace", "mechanism", "coupling", "convergence", ...front, "populations"];
+  const sections = ["summary", ...front, "workspace", "mechanism", "convergence", "populations"];
   assert.deepEqual(await page.sections(), sections);
   for (const section of ["convergence", ...front, "populations"]) await page.draw(section);
   assert.match(await page.text("#summary"), /interrupted/);

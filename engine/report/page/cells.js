@@ -1,11 +1,5 @@
-// The cells of a workspace: which are feasible, their fields, cuts through them. Angles are shown in degrees.
+// The cells of a workspace: which are feasible, their fields, cuts through them. Lengths are shown in mm, angles in degrees.
 
-function shownUnit(unit) {
-  return unit === "rad" ? "deg" : unit;
-}
-function shownScale(unit) {
-  return unit === "rad" ? 180 / Math.PI : 1;
-}
 function axisTitle(axis) {
   return axisName(axis.name, shownUnit(axis.unit));
 }
@@ -42,8 +36,8 @@ class Cells {
     const { surface } = packed; // of three axes only
     this.surface = surface && {
       at: surface.vertices.map(unpack),
-      cells: unpack(surface.cells),
       triangles: unpack(surface.triangles),
+      values: new Map(Object.entries(surface.values).map(([field, values]) => [field, unpack(values)])),
     };
   }
   centre(axis, k) {
@@ -104,7 +98,8 @@ function sharedRange(designs, axis) {
 
 /** Range of a field over all designs. */
 function fieldRange(designs, field) {
-  return rangeOf(designs.flatMap((d) => rangeOf(d.values.get(field) || [])));
+  const [low, high] = rangeOf(designs.flatMap((d) => rangeOf(d.values.get(field) || [])));
+  return high - low > 1e-9 * Math.abs(high) ? [low, high] : widened([low, high]); // of a constant
 }
 
 /**

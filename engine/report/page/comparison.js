@@ -42,7 +42,7 @@ function comparisonTable(studies) {
           element("td", "text", ...(first ? [key, study.name] : [])),
           element("td", "text", first ? problem.mechanism : ""),
           element("td", "text", row ? row.name : "–"),
-          element("td", "", row ? quantity(row.values[0], row.unit, 10) : "–"),
+          element("td", "", row ? result(row.values[0], row.unit) : "–"),
           element("td", "", row ? gainText(row.gain) : ""),
           ...[
             summary.evaluations.toLocaleString("en-GB"),
@@ -72,6 +72,47 @@ function bestCurve(study, k) {
     });
   }
   return { x, y };
+}
+
+/** The best designs' workspaces over each other, of studies that sweep the same three coordinates. */
+function addOverlays(studies, grid) {
+  const groups = new Map();
+  studies.forEach((study, i) => {
+    const packed = study.workspace?.designs[0];
+    if (!packed?.surface) return;
+    const swept = packed.axes.map((axis) => `${axis.name} [${axis.unit}]`).join(", ");
+    if (!groups.has(swept)) groups.set(swept, []);
+    groups.get(swept).push({ study, i, cells: (packed.cells ??= new Cells(packed)) });
+  });
+  for (const those of groups.values()) {
+    if (those.length < 2) continue;
+    const all = those.map(({ cells }) => cells),
+      order = drawingOrder(all[0].axes);
+    addPlot(grid, {
+      title: "Workspaces over each other",
+      caption: [
+        "Of the best designs: ",
+        ...those.flatMap(({ study, cells }, k) => [
+          (k ? ", " : "") + study.name + " ",
+          result(cells.volume, cells.volume_unit),
+        ]),
+        ".",
+      ],
+      size: "half",
+      height: 460,
+      make: () => ({
+        data: those.map(({ study, i, cells }) =>
+          surfaceTrace(cells, null, null, order, {
+            name: label(study.name),
+            color: studyColour(i),
+            opacity: 0.4,
+            showlegend: true,
+          }),
+        ),
+        layout: { scene: workspaceScene(all, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+      }),
+    });
+  }
 }
 
 function showComparison(studies, section) {
@@ -110,7 +151,7 @@ function showComparison(studies, section) {
             ...bestCurve(study, k),
             name: label(study.name),
             line: { color: studyColour(i), width: 2.5, shape: "hv" },
-            hovertemplate: `%{y:.7g} ${label(unitText(objective.unit))}<br>after %{x} evaluations<extra>${label(study.name)}</extra>`,
+            hovertemplate: `%{y:.4g} ${label(unitText(objective.unit))}<br>after %{x} evaluations<extra>${label(study.name)}</extra>`,
           })),
           layout: {
             xaxis: axis("evaluations", { type: "log", tickangle: 0, nticks: 5 }),
@@ -120,6 +161,7 @@ function showComparison(studies, section) {
         }),
       });
   }
+  addOverlays(studies, grid);
   const variables = [
     ...new Map(studies.flatMap((s) => s.problem.variables.map((v) => [v.name + "|" + v.unit, v]))).values(),
   ];
@@ -141,7 +183,7 @@ function showComparison(studies, section) {
           const low = Math.min(...bounds.map((b) => b.lower)),
             high = Math.max(...bounds.map((b) => b.upper));
           return row
-            ? [[label(v.name), (row.values[0] - low) / (high - low), label(quantity(row.values[0], v.unit))]]
+            ? [[label(v.name), (row.values[0] - low) / (high - low), label(shownQuantity(row.values[0], v.unit))]]
             : [];
         });
         return [

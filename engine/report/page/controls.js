@@ -5,6 +5,7 @@ function slider(parent, name, count, start, text, changed) {
   const input = element("input");
   Object.assign(input, { type: "range", min: 0, max: count - 1, step: 1, value: start });
   input.setAttribute("aria-label", name);
+  input.setAttribute("aria-valuetext", text(start));
   const shown = element("output", "", text(start));
   const control = {
     node: element("label", "control slider", element("span", "label", name), input, shown),
@@ -13,12 +14,16 @@ function slider(parent, name, count, start, text, changed) {
     },
     set(value) {
       input.value = value;
-      shown.textContent = text(Number(input.value));
+      tell();
     },
+  };
+  const tell = () => {
+    shown.textContent = text(control.value);
+    input.setAttribute("aria-valuetext", shown.textContent);
   };
   input.addEventListener("input", () => {
     changed(control.value);
-    shown.textContent = text(control.value);
+    tell();
   });
   parent.append(control.node);
   return control;
@@ -29,7 +34,7 @@ function choice(parent, name, options, start, changed) {
   const select = element("select");
   options.forEach((option, i) => select.append(new Option(option, i, false, i === start)));
   const control = {
-    node: element("label", "control", name, select),
+    node: element("label", "control", element("span", "label", name), select),
     get value() {
       return Number(select.value);
     },
@@ -42,6 +47,8 @@ function choice(parent, name, options, start, changed) {
 /** One of a few names, side by side. */
 function buttons(parent, name, options, start, changed) {
   const group = element("span", "switch");
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", name);
   const control = { node: element("span", "control", name, group), value: start };
   options.forEach((option, i) => {
     const button = element("button", "", option);

@@ -72,7 +72,7 @@ function objectiveTraces(axes, k, objective) {
       type: "scatter",
       customdata: number,
     };
-    const hover = (what) => `${what} %{y:.7g}${unit}<br>generation %{customdata}<extra></extra>`;
+    const hover = (what) => `${what} %{y:.4g}${unit}<br>generation %{customdata}<extra></extra>`;
     const hasSpread = median.some((value) => value !== null);
     if (hasSpread && !stage.starts)
       traces.push(
@@ -114,7 +114,7 @@ function objectiveTraces(axes, k, objective) {
               color: feasible ? seriesColours[5] : colour("muted"),
               symbol: feasible ? "circle" : "circle-open",
             },
-            hovertemplate: `%{y:.7g}${unit}<br>evaluation %{customdata} of the stage<extra>${feasible ? "feasible" : "infeasible"}</extra>`,
+            hovertemplate: `%{y:.4g}${unit}<br>evaluation %{customdata} of the stage<extra>${feasible ? "feasible" : "infeasible"}</extra>`,
           });
       }
       for (const [end, symbol, name] of [
@@ -140,7 +140,7 @@ function objectiveTraces(axes, k, objective) {
             color: seriesColours[1],
             line: { width: 1.5, color: end === "begin" ? seriesColours[1] : colour("panel") },
           },
-          hovertemplate: `%{y:.7g}${unit}, %{customdata[2]}<br>%{customdata[0]}${end === "end" ? "<br>%{customdata[1]}" : ""}<extra>${name}</extra>`,
+          hovertemplate: `%{y:.4g}${unit}, %{customdata[2]}<br>%{customdata[0]}${end === "end" ? "<br>%{customdata[1]}" : ""}<extra>${name}</extra>`,
         });
     }
     traces.push({

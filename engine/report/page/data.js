@@ -22,11 +22,14 @@ function unpack(packed) {
     case "bits":
       return Uint8Array.from({ length: 8 * bytes.length }, (_, i) => (bytes[i >> 3] >> (i & 7)) & 1);
     case "q16": {
+      // A loop, because from() with a function takes ten times as long.
       const lower = Number(parts[1]),
-        upper = Number(parts[2]);
-      return Float64Array.from(new Uint16Array(bytes.buffer), (level) =>
-        level === 65535 ? NaN : lower + ((upper - lower) * level) / 65534,
-      );
+        upper = Number(parts[2]),
+        levels = new Uint16Array(bytes.buffer),
+        values = new Float64Array(levels.length);
+      for (let i = 0; i < levels.length; ++i)
+        values[i] = levels[i] === 65535 ? NaN : lower + ((upper - lower) * levels[i]) / 65534;
+      return values;
     }
   }
   throw new Error("unknown kind of packed column: " + parts[0]);

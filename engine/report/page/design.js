@@ -3,7 +3,8 @@
 function showDesign(study, section) {
   const { mechanism, title, name, parameters } = study.design;
   section.append(element("h1", "", mechanism), element("p", "facts", title), element("p", "facts", name));
-  const rows = parameters.map((p) => [p.name, quantity(p.value, p.unit, 10), p.meaning]);
+  addOverview(study, section);
+  const rows = parameters.map((p) => [p.name, measured(p.value, p.unit), p.meaning]);
   section.append(
     element(
       "div",

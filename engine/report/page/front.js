@@ -1,4 +1,4 @@
-// The trade-off: designs of which no other one is better everywhere, with knees and compromise.
+// The trade-off: designs of which no other one is better everywhere, with knees and compromise. A click on one loads it.
 
 const frontSymbols = ["circle", "diamond", "square", "cross"];
 
@@ -6,7 +6,7 @@ function frontPoint(study, front, point) {
   const { variables, objectives } = study.problem;
   const lines = [`<b>stage ${front.stage}, point ${front.points.indexOf(point) + 1}</b>`];
   objectives.forEach((o, k) => lines.push(label(o.name) + " = " + label(quantity(point.objectives[k], o.unit))));
-  variables.forEach((v, i) => lines.push(label(v.name) + " = " + label(quantity(point.design[i], v.unit))));
+  variables.forEach((v, i) => lines.push(label(v.name) + " = " + label(shownQuantity(point.design[i], v.unit))));
   return lines.join("<br>");
 }
 
@@ -22,7 +22,8 @@ function frontTraces(study, x, y, byColour) {
     x: front.points.map((p) => p.objectives[x]),
     y: front.points.map((p) => p.objectives[y]),
     text: front.points.map((p) => frontPoint(study, front, p)),
-    hovertemplate: "%{text}<extra></extra>",
+    hovertemplate: "%{text}<br><i>click: load it</i><extra></extra>",
+    front: f,
     marker: {
       size: f ? 9 : 7,
       symbol: frontSymbols[f % frontSymbols.length],
@@ -56,6 +57,16 @@ function frontTraces(study, x, y, byColour) {
         marker: { size, symbol: "circle-open", color: ink, line: { width: 2.5, color: ink } },
       });
   }
+  if (study.point)
+    traces.push({
+      type: "scatter",
+      mode: "markers",
+      name: "shown",
+      x: [study.point.objectives[x]],
+      y: [study.point.objectives[y]],
+      hoverinfo: "skip",
+      marker: { size: 20, symbol: "star-open", color: colour("ink"), line: { width: 2 } },
+    });
   if (baseline)
     traces.push({
       type: "scatter",
@@ -71,11 +82,17 @@ function frontTraces(study, x, y, byColour) {
   return traces;
 }
 
-/** The designs worth naming: ends, knees, compromise. */
-function namedPoints(study) {
+function loadButton(text, pressed) {
+  const node = button(element("span"), text, "load the design " + text, pressed);
+  node.className = "link";
+  return node;
+}
+
+/** The designs worth naming: ends, knees, compromise. Each name loads its design. */
+function namedPoints(study, load) {
   const { variables, objectives } = study.problem;
   const rows = [];
-  for (const front of study.front.fronts) {
+  for (const [f, front] of study.front.fronts.entries()) {
     front.points.forEach((point, i) => {
       const marks = objectives.flatMap((o, k) => {
         const values = front.points.map((p) => p.objectives[k]);
@@ -86,14 +103,14 @@ function namedPoints(study) {
       if (point.compromise) marks.push("compromise");
       if (marks.length)
         rows.push([
-          front.stage + " / " + (i + 1),
+          loadButton(front.stage + " / " + (i + 1), () => load(f, i)),
           marks.join(", "),
-          ...point.objectives.map((v) => digits(v)),
-          ...point.design.map((v) => digits(v)),
+          ...point.objectives.map((v, k) => result(v, objectives[k].unit)),
+          ...point.design.map((v, i) => measured(v, variables[i].unit)),
         ]);
     });
   }
-  const name = (each) => each.name + (unitText(each.unit) ? " [" + unitText(each.unit) + "]" : "");
+  const name = (each) => each.name;
   return simpleTable(["stage / point", "what", ...objectives.map(name), ...variables.map(name)], rows);
 }
 
@@ -105,7 +122,7 @@ function showFront(study, section) {
       "p",
       "lead",
       sizes.join(", ") +
-        ". To leave a knee in any direction costs more than it gains; the compromise is nearest to the best of all objectives.",
+        ". To leave a knee in any direction costs more than it gains; the compromise is nearest to the best of all objectives. A click on a point loads it into the page.",
     ),
   );
   const controls = element("div", "controls"),
@@ -116,6 +133,18 @@ function showFront(study, section) {
   const x = choice(controls, "across", names, 0, redraw),
     y = choice(controls, "up", names, 1, redraw);
   const third = names.length > 2 ? choice(controls, "colour", names, 2, redraw) : { value: -1 };
+  const load = (f, p) => study.choose(chosenPoint(study.whole ?? study, f, p));
+  pointChoice(controls, study, load);
+  if (study.point?.missing)
+    section.insertBefore(
+      element(
+        "p",
+        "warning",
+        `The page has the values of ${study.point.name}, but not its workspace: below are those of the ${study.whole.summary.table.columns[0].name}. Its own: `,
+        code(pointCommand(study, study.point)),
+      ),
+      grid,
+    );
   const plot = addPlot(grid, {
     height: 520,
     make: () => ({
@@ -126,5 +155,14 @@ function showFront(study, section) {
       },
     }),
   });
-  grid.append(element("div", "panel", element("h3", "", "Designs worth naming"), namedPoints(study)));
+  const draw = plot.draw;
+  plot.draw = () => {
+    const first = !plot.drawn;
+    draw();
+    if (first)
+      plot.node.on("plotly_click", ({ points: [hit] }) => {
+        if (hit.data.front !== undefined) load(hit.data.front, hit.pointIndex);
+      });
+  };
+  grid.append(element("div", "panel", element("h3", "", "Designs worth naming"), namedPoints(study, load)));
 }

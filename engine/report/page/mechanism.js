@@ -22,6 +22,8 @@ function layerAt(cells, values) {
   return layers.some((layer) => layer < 0) ? null : layers.reduce((sum, layer, k) => sum + layer * cells.strides[k], 0);
 }
 
+const toRoom = (values) => Array.from(values, (value) => value * shownScale("m")); // drawn in mm
+
 /** Cells of the workspace that are feasible at a pose's rotation, seen along an axis; null where it does not show. */
 function workspaceShadow(cells, values, h, v) {
   const places = axesInRoom(cells);
@@ -35,7 +37,7 @@ function workspaceShadow(cells, values, h, v) {
       layers.some((k) => cells.feasible[first + k + i * cells.strides[across] + j * cells.strides[up]]) ? 1 : null,
     ),
   );
-  return { x: cells.centres(across), y: cells.centres(up), z };
+  return { x: toRoom(cells.centres(across)), y: toRoom(cells.centres(up)), z };
 }
 
 function flatTraces(poses, pose, cells, values, [h, v]) {
@@ -78,7 +80,7 @@ function flatTraces(poses, pose, cells, values, [h, v]) {
 /**
  * The workspace in the room: its surface, or of those that sweep other coordinates too, the cells at the pose's values
  * of these: a layer where the platform's plane is, or a line.
- * @param place  of the platform, [x, y, z]
+ * @param place  of the platform, [x, y, z] in mm
  */
 function solidWorkspace(cells, values, place) {
   const look = {
@@ -93,14 +95,17 @@ function solidWorkspace(cells, values, place) {
   if (order.every((k) => k >= 0)) {
     const { at, triangles } = cells.surface;
     const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
-    return { ...look, x: at[order[0]], y: at[order[1]], z: at[order[2]], i: corner(0), j: corner(1), k: corner(2) };
+    const [x, y, z] = order.map((axis) => toRoom(at[axis]));
+    return { ...look, x, y, z, i: corner(0), j: corner(1), k: corner(2) };
   }
   const first = layerAt(cells, values),
     mesh = { x: [], y: [], z: [], i: [], j: [], k: [] };
   const [a, b] = cells.axes.flatMap((axis, k) => (room.includes(axis.role) ? [k] : []));
   if (first === null || a === undefined) return null;
   if (b === undefined) {
-    const line = cells.centres(a).map((value, k) => (cells.feasible[first + k * cells.strides[a]] ? value : null));
+    const line = toRoom(cells.centres(a)).map((value, k) =>
+      cells.feasible[first + k * cells.strides[a]] ? value : null,
+    );
     const points = room.map((role, c) => line.map((value) => (cells.axes[a].role === role ? value : place[c])));
     const { color, hoverinfo, name, showlegend } = look;
     return {
@@ -124,7 +129,7 @@ function solidWorkspace(cells, values, place) {
         const at = { [a]: p + da, [b]: q + db };
         room.forEach((role, c) => {
           const axis = cells.axes[order[c]];
-          mesh[role].push(axis ? axis.lower + at[order[c]] * axis.step : place[c]);
+          mesh[role].push(axis ? shownScale("m") * (axis.lower + at[order[c]] * axis.step) : place[c]);
         });
       }
       mesh.i.push(corner, corner);
@@ -154,24 +159,52 @@ function solidTraces(poses, pose, cells, values) {
   return around ? [...traces, around] : traces;
 }
 
+/** A scene of the room, to scale. @param spans  of x, y and z @param away  how far the camera is */
+function roomScene(spans, away = 1) {
+  const extents = spans.map(([low, high]) => high - low),
+    most = Math.max(...extents);
+  const [x, y, z] = extents.map((extent) => (1.35 * extent) / most);
+  return {
+    xaxis: sceneAxis("x [mm]", spans[0]),
+    yaxis: sceneAxis("y [mm]", spans[1]),
+    zaxis: sceneAxis("z [mm]", spans[2]),
+    bgcolor: colour("panel"), // of the film, too
+    aspectmode: "manual",
+    aspectratio: { x, y, z },
+    camera: { eye: { x: 1.1 * away, y: -1.45 * away, z: 0.75 * away }, center: { x: 0, y: 0, z: -0.1 } },
+  };
+}
+
+const posesOf = (packed) => (packed.poses ??= new Poses(packed));
+
+/** The workspace of the design of this name; null: the page has none. */
+function cellsOf(study, name) {
+  const found = study.workspace?.designs.find((design) => design.name === name);
+  return found ? (found.cells ??= new Cells(found)) : null;
+}
+
+/** It moves in the plane of x and y. */
+function isPlanar({ coordinates }) {
+  const roles = coordinates.map((coordinate) => coordinate.role);
+  return (
+    ["x", "y"].every((role) => roles.includes(role)) &&
+    roles.every((role, c) => /x|y/.test(role) || (role === "turn" && roles.indexOf(role) === c))
+  );
+}
+
 function showMechanism(study, section) {
   const { designs, mode } = study.mechanism;
-  const all = designs.map((packed) => (packed.poses ??= new Poses(packed)));
-  const cellsOf = (name) => {
-    const found = study.workspace?.designs.find((design) => design.name === name);
-    return found ? (found.cells ??= new Cells(found)) : null;
-  };
-  const roles = all[0].coordinates.map((coordinate) => coordinate.role);
-  const planar =
-    ["x", "y"].every((role) => roles.includes(role)) &&
-    roles.every((role, c) => /x|y/.test(role) || (role === "turn" && roles.indexOf(role) === c));
+  const all = designs.map(posesOf);
+  const turning = all[0].coordinates.some((coordinate) => coordinate.role === "turn");
+  const planar = isPlanar(all[0]);
   const goes = study.workspace?.designs.some((design) => design.axes.some((axis) => room.includes(axis.role)));
   section.append(
     element(
       "p",
       "lead",
       `Drawn to scale in working mode ${mode}. The sliders step through stored poses` +
-        (goes ? "; blue is where the platform can go" + (roles.includes("turn") ? " at this rotation" : "") : "") +
+        (all.some((design) => design.motions.length) ? ", the player along the motions" : "") +
+        (goes ? "; blue is where the platform can go" + (turning ? " at this rotation" : "") : "") +
         ".",
     ),
   );
@@ -179,13 +212,19 @@ function showMechanism(study, section) {
     grid = element("div", "grid");
   section.append(grid);
   grid.append(controls);
+  const playBar = element("div", "controls panel");
+  if (all.some((design) => design.motions.length)) grid.append(playBar);
   let poses,
     places,
     sliders,
+    player,
+    inSpace,
     plots = [];
   const verdict = element("p", "verdict"),
     readout = element("div", "readout");
-  const now = () => poses.pose(places);
+  let along = null; // { motion, k }: a pose of a motion instead of the sliders'
+  const now = () => (along ? along.motion.first + along.k : poses.pose(places));
+  const valuesNow = () => (along ? along.motion.coordinates.map((column) => column[along.k]) : poses.values(places));
   const tell = () => {
     const pose = now(),
       number = poses.number[pose],
@@ -197,8 +236,8 @@ function showMechanism(study, section) {
       ...(number < 0
         ? []
         : [
-            ...poses.joints.map((joint, i) => [joint.name, shownValue(poses.positions[i][number], joint, 5)]),
-            ["conditioning", digits(poses.conditioning[number], 4)],
+            ...poses.joints.map((joint, i) => [joint.name, shownValue(poses.positions[i][number], joint)]),
+            ["conditioning", digits(poses.conditioning[number])],
           ]
       ).map(([name, value]) => element("div", "", element("span", "", name + " "), element("b", "", value))),
     );
@@ -220,10 +259,26 @@ function showMechanism(study, section) {
         (k) => shownValue(coordinate.values[k], coordinate),
         (k) => {
           places[c] = k;
+          player?.stop();
+          along = null;
           moved();
         },
       ),
     );
+    player?.stop();
+    playBar.replaceChildren();
+    along = null;
+    player = poses.motions.length
+      ? addPlayer(
+          playBar,
+          poses.motions,
+          (motion, k) => {
+            along = { motion, k };
+            moved();
+          },
+          () => inSpace?.node.querySelector("canvas"),
+        )
+      : null;
     moved();
   };
   if (all.length > 1)
@@ -249,10 +304,10 @@ function showMechanism(study, section) {
       title,
       height: tall,
       make: () => ({
-        data: flatTraces(poses, now(), cellsOf(poses.name), poses.values(places), [h, v]),
+        data: flatTraces(poses, now(), cellsOf(study, poses.name), valuesNow(), [h, v]),
         layout: {
-          xaxis: axis(axisName(room[h], "m"), { range: spans[h], zeroline: false, constrain: "domain" }),
-          yaxis: axis(axisName(room[v], "m"), {
+          xaxis: axis(axisName(room[h], "mm"), { range: spans[h], zeroline: false, constrain: "domain" }),
+          yaxis: axis(axisName(room[v], "mm"), {
             range: spans[v],
             scaleanchor: "x",
             constrain: "domain",
@@ -268,21 +323,13 @@ function showMechanism(study, section) {
       size: "half",
       height: 694,
       make() {
-        const most = Math.max(width, depth, height);
         return {
-          data: solidTraces(poses, now(), cellsOf(poses.name), poses.values(places)),
+          data: solidTraces(poses, now(), cellsOf(study, poses.name), valuesNow()),
           layout: {
             uirevision: "camera",
             margin: { l: 0, r: 0, t: 0, b: 0 },
             legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
-            scene: {
-              xaxis: sceneAxis("x [m]", xs),
-              yaxis: sceneAxis("y [m]", ys),
-              zaxis: sceneAxis("z [m]", zs),
-              aspectmode: "manual",
-              aspectratio: { x: (1.35 * width) / most, y: (1.35 * depth) / most, z: (1.35 * height) / most },
-              camera: { eye: { x: 1.1, y: -1.45, z: 0.75 } },
-            },
+            scene: roomScene(spans),
           },
         };
       },
@@ -290,7 +337,7 @@ function showMechanism(study, section) {
   if (planar) {
     column.className = "half";
     plots = [flat("In its plane", 0, 1, 694)];
-  } else plots = [solid(), flat("From the front", 0, 2), flat("From above", 0, 1)];
+  } else plots = [(inSpace = solid()), flat("From the front", 0, 2), flat("From above", 0, 1)];
   grid.append(column);
   grid.append(element("div", "panel", element("h3", "", "At this pose"), verdict, readout));
 }

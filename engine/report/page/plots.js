@@ -23,9 +23,19 @@ function loadPlotly() {
   );
 }
 
+/** Those that came into view are drawn one by one, and the reader may scroll in between. */
+const inTurn = [];
+function drawNext() {
+  inTurn.shift()?.draw();
+  if (inTurn.length) setTimeout(drawNext, 50);
+}
+
 const toBeSeen = new IntersectionObserver(
   (entries) => {
-    for (const entry of entries) if (entry.isIntersecting) plots.find((plot) => plot.node === entry.target)?.draw();
+    const seen = entries.filter((entry) => entry.isIntersecting);
+    const idle = !inTurn.length;
+    inTurn.push(...plots.filter((plot) => !plot.drawn && seen.some((entry) => entry.target === plot.node)));
+    if (idle && inTurn.length) setTimeout(drawNext, 50);
   },
   { rootMargin: "400px" },
 );
@@ -70,6 +80,7 @@ function layoutOf(more) {
     hoverlabel: { bgcolor: colour("panel"), bordercolor: colour("line"), font: { color: colour("ink"), size: 13 } },
     legend: { orientation: "h", x: 0, y: 1.02, xanchor: "left", yanchor: "bottom" },
     colorway: seriesColours,
+    modebar: { bgcolor: colour("panel"), color: colour("muted"), activecolor: colour("accent") },
     ...more,
   };
 }
@@ -81,12 +92,20 @@ function layoutOf(more) {
  */
 function addPlot(parent, { title, caption, size = "", height = 380, make }) {
   const node = element("div", "plot");
+  node.setAttribute("role", "img");
+  node.setAttribute(
+    "aria-label",
+    [title, caption]
+      .flat()
+      .filter((part) => typeof part === "string")
+      .join(". ") || "plot",
+  );
   node.style.height = height + "px";
   const panel = element(
     "div",
     "panel " + size,
     title ? element("h3", "", title) : null,
-    caption ? element("p", "caption", caption) : null,
+    caption ? element("p", "caption", ...[caption].flat()) : null,
     node,
   );
   parent.append(panel);
@@ -121,6 +140,7 @@ function addPlot(parent, { title, caption, size = "", height = 380, make }) {
 }
 
 function forgetPlots() {
+  inTurn.length = 0;
   for (const plot of plots.splice(0)) {
     toBeSeen.unobserve(plot.node);
     if (plot.drawn) Plotly.purge(plot.node);
@@ -141,6 +161,7 @@ function themeButton(button) {
     const dark = chosen === null ? system.matches : chosen === "dark";
     document.documentElement.dataset.theme = dark ? "dark" : "light";
     button.textContent = dark ? "☀ Light" : "☾ Dark";
+    button.setAttribute("aria-label", dark ? "light theme" : "dark theme");
     for (const plot of plots) plot.drawAgain();
   };
   button.addEventListener("click", () => {

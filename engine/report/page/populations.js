@@ -9,7 +9,20 @@ function populationColumns(study) {
     ...margins.map((m) => ({ ...m, name: m.name + " margin", kind: "margin" })),
     ...reports.map((r) => ({ ...r, kind: "report" })),
   ];
-  return named.map((column, i) => ({ ...column, values: unpack(study.populations.columns[i]) }));
+  return named.map((column, i) => {
+    const isResult = column.kind === "objective" || column.kind === "report";
+    const { unit, scale } = isResult
+      ? resultUnit(column.unit)
+      : { unit: shownUnit(column.unit), scale: shownScale(column.unit) };
+    const inUnit = (bound) => (Number.isFinite(bound) ? bound * scale : bound);
+    return {
+      ...column,
+      unit,
+      lower: inUnit(column.lower),
+      upper: inUnit(column.upper),
+      values: Array.from(unpack(study.populations.columns[i]), (value) => value * scale),
+    };
+  });
 }
 
 /** All generations shown, stage after stage. */

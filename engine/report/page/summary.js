@@ -41,6 +41,7 @@ function headline(study) {
   );
 }
 
+/** Nothing where no objective has a value yet. */
 function cards(study) {
   const { table, stages } = study.summary;
   const list = element("div", "cards");
@@ -49,24 +50,53 @@ function cards(study) {
     const baseline = table.columns.findIndex((column) => column.name === "baseline");
     const against =
       baseline >= 0 && row.values[baseline] !== null
-        ? " beside the baseline's " + quantity(row.values[baseline], row.unit)
-        : "";
-    list.append(
-      card(row.name, digits(row.values[0]), row.unit, ...(row.gain ? [gainText(row.gain), against] : [row.meaning])),
-    );
+        ? [" beside the baseline's ", result(row.values[baseline], row.unit)]
+        : [];
+    if (row.values[0] === null) continue;
+    const { unit, scale } = resultUnit(row.unit);
+    const value = rounded(digits(row.values[0] * scale), row.values[0], row.unit);
+    list.append(card(row.name, value, unit, ...(row.gain ? [gainText(row.gain), ...against] : [row.meaning])));
   }
-  list.append(
-    card(
-      "volume of work",
-      study.summary.evaluations.toLocaleString("en-GB"),
-      "evaluations",
-      "in " + count(stages.length, "stage") + ": " + stages.map((stage) => stage.optimiser).join(", then "),
-    ),
-  );
-  return list;
+  if (stages.length)
+    list.append(
+      card(
+        "volume of work",
+        study.summary.evaluations.toLocaleString("en-GB"),
+        "evaluations",
+        "in " + count(stages.length, "stage") + ": " + stages.map((stage) => stage.optimiser).join(", then "),
+      ),
+    );
+  return list.children.length ? list : "";
 }
 
-function designTable({ columns, rows }) {
+const isResult = (row) => row.kind === "objective" || row.kind === "report";
+const unitOf = (row) => (isResult(row) ? resultUnit(row.unit).unit : shownUnit(row.unit));
+
+/** A margin that has nothing left to give: below the study's own threshold, and not broken beyond rounding. */
+const isActive = (margin) => margin <= 1e-4 && margin > -1e-6;
+
+function tableCell(row, value) {
+  if (value === null) return element("td");
+  const scale = isResult(row) ? resultUnit(row.unit).scale : shownScale(row.unit); // the unit has a column
+  const margin = row.kind === "constraint";
+  const node = element(
+    "td",
+    margin && value < 0 && !isActive(value) ? "worse" : "",
+    rounded(margin && isActive(value) ? "active" : digits(value * scale), value, row.unit),
+  );
+  const bound = row.bounds && boundAt(value, row.bounds);
+  if (bound) node.append(element("small", "bound", " " + bound));
+  return node;
+}
+
+/** "min" or "max" where a variable is at its bound. */
+function boundAt(value, { lower, upper }) {
+  const near = 1e-6 * (upper - lower);
+  return value - lower <= near ? "min" : upper - value <= near ? "max" : "";
+}
+
+/** @param variables  of the problem: a value at a bound is marked */
+function designTable({ columns, rows }, variables) {
   const table = element("table");
   const gains = rows.some((row) => row.gain);
   const head = element("tr", "", element("th"), element("th"));
@@ -77,7 +107,7 @@ function designTable({ columns, rows }) {
     variable: "variables",
     objective: "objectives",
     report: "reports",
-    constraint: "margins of constraints (≥ 0 holds)",
+    constraint: "margins of constraints (≥ 0 holds; active: at its bound)",
   };
   let kind = "";
   const body = element("tbody");
@@ -88,13 +118,12 @@ function designTable({ columns, rows }) {
       body.append(element("tr", "group", cell));
       kind = row.kind;
     }
-    const name = element("td", "text", row.name);
+    const name = element("th", "text", row.name);
+    name.scope = "row";
     name.title = row.meaning;
-    const line = element("tr", "", name, element("td", "unit", unitText(row.unit)));
-    for (const value of row.values)
-      line.append(
-        element("td", value < 0 && row.kind === "constraint" ? "worse" : "", value === null ? "" : digits(value, 10)),
-      );
+    const line = element("tr", "", name, element("td", "unit", unitText(unitOf(row))));
+    const bounds = row.kind === "variable" ? variables.find((variable) => variable.name === row.name) : null;
+    for (const value of row.values) line.append(tableCell({ ...row, bounds }, value));
     if (gains) line.append(element("td", "", gainText(row.gain)));
     body.append(line);
   }
@@ -147,21 +176,17 @@ function remarks(study) {
   );
 }
 
-function perStep(unit) {
-  // what an engineer thinks in
-  if (unit === "m") return [1e-3, "mm"];
-  if (unit === "rad") return [Math.PI / 180, "deg"];
-  return [1, unit];
-}
-
 function rateText(value, objective, unit) {
-  const [step, name] = perStep(unit);
-  return value === null ? "" : quantity(value * step, objective.unit, 4) + (name && name !== "1" ? " per " + name : "");
+  if (value === null) return "";
+  const { unit: of, scale } = resultUnit(objective.unit),
+    name = shownUnit(unit);
+  const text = quantity((value / shownScale(unit)) * scale, of) + (name && name !== "1" ? " per " + name : "");
+  return rounded(text, value, `${objective.unit} per ${unit}`);
 }
 
 /** A table of text; columns that hold numbers are set to the right. */
 function simpleTable(head, rows) {
-  const isText = head.map((_, i) => rows.some((row) => row[i] && !/^[−+\d∞–]/.test(row[i])));
+  const isText = head.map((_, i) => rows.some((row) => row[i] && !/^[−+\d∞–]/.test(row[i].textContent ?? row[i])));
   const table = element(
     "table",
     "",
@@ -178,11 +203,9 @@ function simpleTable(head, rows) {
 }
 
 function holdingBack(study) {
-  const { active, optimality } = study.summary;
+  const { optimality } = study.summary;
+  if (!optimality) return null; // what is active is said above, and in the table
   const panel = element("div", "panel half stretch", element("h3", "", "What holds the best design back"));
-  if (active && active.length) panel.append(element("ul", "plain", ...active.map((text) => element("li", "", text))));
-  else if (active) panel.append(element("p", "caption", "No bound and no constraint is active."));
-  if (!optimality) return active ? panel : null;
   const objective = study.problem.objectives[0];
   panel.append(
     element(
@@ -255,7 +278,7 @@ function timeSpent({ stages, seconds }) {
   }
   return element(
     "div",
-    "panel half stretch",
+    "panel half stretch time",
     element("h3", "", "Where the time went"),
     element("p", "caption", duration(seconds) + " of wall time in all."),
     bars,
@@ -282,7 +305,7 @@ function howToRepeat(study) {
     commands.push("pkmopt resume " + word(study.file) + " --" + extension.limit + " " + extension.value);
   const panel = element(
     "div",
-    "panel",
+    "panel repeat",
     element("h3", "", "How to repeat it"),
     element(
       "p",
@@ -299,7 +322,8 @@ function howToRepeat(study) {
     element("pre", "", commands.join("\n")),
     details("The study's text, " + toml, origin.toml),
   );
-  if (origin.mechanism_toml) panel.append(details("The mechanism's text, " + origin.mechanism_file, origin.mechanism_toml));
+  if (origin.mechanism_toml)
+    panel.append(details("The mechanism's text, " + origin.mechanism_file, origin.mechanism_toml));
   if (origin.resolved) panel.append(details("The problem with every default spelled out", origin.resolved));
   for (const [i, stage] of study.summary.stages.entries())
     if (stage.options.length)
@@ -309,14 +333,17 @@ function howToRepeat(study) {
 
 function showSummary(study, section) {
   const { table, stages } = study.summary;
-  section.append(headline(study), cards(study));
+  section.append(headline(study), verdictOf(study));
+  addOverview(study, section);
+  section.append(cards(study));
   const notes = remarks(study);
   if (notes.length) section.append(element("div", "panel", element("ul", "plain", ...notes)));
   const grid = element("div", "grid");
   if (notes.length) grid.style.marginTop = "16px";
-  if (table) grid.append(element("div", "panel", element("h3", "", "Designs"), designTable(table)));
-  grid.append(
-    ...[holdingBack(study), stages.length ? timeSpent(study.summary) : null, howToRepeat(study)].filter(Boolean),
-  );
+  if (table)
+    grid.append(element("div", "panel", element("h3", "", "Designs"), designTable(table, study.problem.variables)));
+  const pair = [holdingBack(study), stages.length ? timeSpent(study.summary) : null].filter(Boolean);
+  if (pair.length === 1) pair[0].classList.remove("half");
+  grid.append(...pair, howToRepeat(study));
   section.append(grid);
 }

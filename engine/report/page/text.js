@@ -6,8 +6,8 @@ function label(text) {
   return String(text).replace(/[&<>%]/g, (c) => entities[c]);
 }
 
-/** Up to `digits` significant digits, without trailing zeros; "–" for what does not exist. */
-function digits(value, count = 6) {
+/** Up to `count` significant digits, without trailing zeros; "–" for what does not exist. */
+function digits(value, count = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   const text = Number(value.toPrecision(count));
@@ -18,6 +18,38 @@ function digits(value, count = 6) {
 
 function unitText(unit) {
   return unit === "1" || !unit ? "" : unit.replace(/\^2/g, "²").replace(/\^3/g, "³").replace(/ /g, " ");
+}
+
+/** Units that an engineer thinks in; files and commands have SI. */
+function shownUnit(unit) {
+  return { m: "mm", rad: "deg" }[unit] ?? unit;
+}
+function shownScale(unit) {
+  return { m: 1000, rad: 180 / Math.PI }[unit] ?? 1;
+}
+/** Of objectives and reports: their rad is seldom an angle (a volume over x, z and theta divided by a size), so it stays. */
+function resultUnit(unit) {
+  return unit === "rad" ? { unit, scale: 1 } : { unit: shownUnit(unit), scale: shownScale(unit) };
+}
+
+/** A value of SI in the unit that is shown. */
+function shownQuantity(value, unit, count) {
+  return quantity(value === null ? null : value * shownScale(unit), shownUnit(unit), count);
+}
+
+/** Text that tells in full, on hover, what it rounds. */
+function rounded(text, value, unit) {
+  const node = element("span", "", text);
+  if (Number.isFinite(value)) node.title = String(value) + (unitText(unit) ? " " + unitText(unit) : "");
+  return node;
+}
+function measured(value, unit, count) {
+  return rounded(shownQuantity(value, unit, count), value, unit);
+}
+/** The same of an objective or report. */
+function result(value, unit) {
+  const shown = resultUnit(unit);
+  return rounded(quantity(value === null ? null : value * shown.scale, shown.unit), value, unit);
 }
 
 function quantity(value, unit, count) {

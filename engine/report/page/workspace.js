@@ -1,12 +1,12 @@
 // Where the designs can go: surface, cuts, column lengths. Both designs have the same axes and colours.
 
 function surfaceTrace(design, field, range, order, more = {}) {
-  const { at, cells, triangles } = design.surface;
-  const values = design.values.get(field);
+  const { at, triangles } = design.surface;
+  const values = design.surface.values.get(field);
   const shown = order.map((k) => Array.from(at[k], (value) => value * shownScale(design.axes[k].unit)));
   const info = design.fields.find((f) => f.name === field);
   const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
-  const intensity = values ? Array.from(cells, (cell) => values[cell]) : undefined;
+  const intensity = values && Array.from(values);
   const axes = order.map((k) => design.axes[k]);
   const template = axes
     .map((a, i) => `${label(a.name)} %{${"xyz"[i]}:.4g} ${label(unitText(shownUnit(a.unit)))}`)
@@ -27,7 +27,7 @@ function surfaceTrace(design, field, range, order, more = {}) {
           cmax: range[1],
           colorscale: fieldColours,
           colorbar: colourBar(axisName(fieldTitle(field), info.unit === "mixed" ? "1" : info.unit)),
-          text: intensity.map((value) => label(fieldTitle(field)) + " " + digits(value, 4)),
+          text: intensity.map((value) => label(fieldTitle(field)) + " " + digits(value)),
         }
       : { color: seriesColours[0], text: "" }),
     hovertemplate: template + (values ? "<br>%{text}" : "") + "<extra></extra>",
@@ -94,6 +94,12 @@ function linkCameras(plots) {
   }
 }
 
+/** Which field is shown first: the coupling where there is any, else conditioning. */
+function firstField({ fields }) {
+  const names = fields.map((field) => field.name);
+  return Math.max(0, names.indexOf(names.includes("dci_worst") ? "dci_worst" : "conditioning"));
+}
+
 function showWorkspace(study, section) {
   const designs = study.workspace.designs.map((packed) => (packed.cells ??= new Cells(packed)));
   for (const problem of study.workspace.problems) section.append(element("p", "warning", problem));
@@ -108,14 +114,16 @@ function showWorkspace(study, section) {
         .map((d) => d.held.map((held) => `${held.name} = ${shownValue(held.value, held)}, ${held.note}`).join("; ")),
     ),
   ];
-  const volumes = designs.map((d) => `${d.name} ${quantity(d.volume, d.volume_unit, 6)}`).join(", ");
+  const volumes = designs.flatMap((d, i) => [i ? ", " : "", d.name + " ", result(d.volume, d.volume_unit)]);
   section.append(
     element(
       "p",
       "lead",
       "Feasible poses" +
         (places.length ? " at " + places.join("; ") : "") +
-        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their ${solid ? "volume" : "extent"}: ${volumes}.` +
+        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their ${solid ? "volume" : "extent"}: `,
+      ...volumes,
+      "." +
         (designs.length > 1
           ? " The designs have the same axes and colours" + (solid ? ", and turn together." : ".")
           : ""),
@@ -126,7 +134,7 @@ function showWorkspace(study, section) {
   const controls = element("div", "controls"),
     grid = element("div", "grid");
   section.append(controls, grid);
-  const start = Math.max(0, names.indexOf(names.includes("dci_worst") ? "dci_worst" : "conditioning"));
+  const start = firstField(first);
   const field = names.length
     ? choice(
         controls,

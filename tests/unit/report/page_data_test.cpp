@@ -25,6 +25,7 @@ using nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
 using ::testing::Not;
 
 std::string base64_of(const std::string& text) {
@@ -192,6 +193,15 @@ TEST(PageData, ADesignHasAWorkspaceItsLinksAndItsCoupling) {
   EXPECT_GT(drawn["links"].size(), 10u);
   EXPECT_LT(drawn["ends"], 2 * drawn["links"].size());  // joined links share their ends
   EXPECT_EQ(study["coupling"]["designs"][0]["indices"].size(), 5u);
+  const auto& parameters = mechanism->info().parameters;
+  std::vector<std::string> dimensions;
+  for (const json& d : drawn["dimensions"]) {
+    dimensions.push_back(d["name"]);
+    const auto known = std::ranges::find(parameters, dimensions.back(), &Parameter::name);
+    EXPECT_EQ(d["value"], nominal[static_cast<std::size_t>(known - parameters.begin())]);
+  }
+  EXPECT_THAT(dimensions, IsSupersetOf({"l_11", "l_12", "l_31", "l_42", "l"}));  // some are equally long
+  EXPECT_TRUE(study["workspace"]["designs"][0]["surface"]["values"].contains("conditioning"));
   EXPECT_FALSE(study.contains("motions"));
 }
 

@@ -1,0 +1,99 @@
+// Who cannot see colours well, uses a keyboard or listens: contrast and names of everything that is read or worked with;
+// and who wants it on paper.
+import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import path from "node:path";
+import { folderOf, Page, reportOf, studies } from "./page.mjs";
+
+const folder = folderOf("access");
+const { html } = reportOf(path.join(studies, "quadrupteron.toml"), folder);
+
+/** Texts whose contrast is below what WCAG 2.1 AA asks: 4.5, or 3 of large ones. */
+function faintTexts() {
+  const channels = (text) => {
+    const [r, g, b, a = 1] = text.match(/[\d.]+/g).map(Number);
+    return [r, g, b, a];
+  };
+  const over = ([r, g, b, a], [R, G, B]) => [r * a + R * (1 - a), g * a + G * (1 - a), b * a + B * (1 - a), 1];
+  const luminance = (rgb) =>
+    rgb
+      .slice(0, 3)
+      .map((c) => (c / 255 <= 0.03928 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4))
+      .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+  const ground = (node) => {
+    const own = node ? channels(getComputedStyle(node).backgroundColor) : [255, 255, 255, 1];
+    return own[3] < 1 ? over(own, ground(node.parentElement)) : own;
+  };
+  const faint = [];
+  let checked = 0;
+  for (const node of document.querySelectorAll("body *:not(script, style, noscript, option, .plot *)")) {
+    const text = [...node.childNodes].filter((child) => child.nodeType === 3 && child.data.trim()).map((t) => t.data);
+    if (!text.length || !node.getClientRects().length || /^[■\s]+$/.test(text.join(""))) continue;
+    const style = getComputedStyle(node),
+      size = parseFloat(style.fontSize);
+    const behind = ground(node),
+      [light, dark] = [luminance(over(channels(style.color), behind)), luminance(behind)].sort((a, b) => b - a);
+    const ratio = (light + 0.05) / (dark + 0.05);
+    ++checked;
+    if (ratio < (size >= 24 || (size >= 18.7 && style.fontWeight >= 700) ? 3 : 4.5))
+      faint.push(`${ratio.toFixed(2)}: “${text.join("").slice(0, 40)}” in ${node.localName}.${node.className}`);
+  }
+  return { faint: [...new Set(faint)], checked };
+}
+
+/** Controls without a name, plots and sections without a label. */
+function namelessThings() {
+  const nameOf = (node) =>
+    node.getAttribute("aria-label") ||
+    (node.labels &&
+      [...node.labels]
+        .map((label) => label.textContent.replace(node.textContent, ""))
+        .join("")
+        .trim()) ||
+    (/^(button|a|summary)$/.test(node.localName) && node.textContent.trim());
+  const things = [
+    ...document.querySelectorAll("a, button, input, select, summary, [role=img], [role=group], nav, main > section"),
+  ].filter((node) => !node.closest(".plot") || node.matches(".plot"));
+  return {
+    nameless: things.filter((node) => !nameOf(node)).map((node) => node.outerHTML.slice(0, 120)),
+    named: things.length,
+  };
+}
+
+let checked = 0;
+for (const scheme of ["light", "dark"]) {
+  const page = await Page.open(html, { scheme });
+  const contrast = await page.page.evaluate(faintTexts);
+  assert.deepEqual(contrast.faint, [], `faint in the ${scheme} theme`);
+  const names = await page.page.evaluate(namelessThings);
+  assert.deepEqual(names.nameless, []);
+  assert.ok(contrast.checked > 100 && names.named > 20, `${contrast.checked} texts, ${names.named} names`);
+  checked += contrast.checked;
+  if (scheme === "light") {
+    // The first stop of the keyboard leads past the bar; every stop is seen; sections are a key away.
+    await page.page.keyboard.press("Tab");
+    assert.equal(await page.page.evaluate(() => document.activeElement.textContent), "To the report");
+    for (let i = 0; i < 12; ++i) {
+      await page.page.keyboard.press("Tab");
+      const outline = await page.page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
+      assert.notEqual(outline, "none", await page.page.evaluate(() => document.activeElement.outerHTML.slice(0, 80)));
+    }
+    await page.page.keyboard.press("j");
+    assert.equal(await page.page.evaluate(() => document.activeElement.id), "front");
+    // Sliders follow the arrow keys, and say where they are.
+    const slider = page.page.locator("#mechanism input[type=range]").first();
+    const before = await slider.getAttribute("aria-valuetext");
+    await slider.focus();
+    await page.page.keyboard.press("ArrowRight");
+    assert.notEqual(await slider.getAttribute("aria-valuetext"), before);
+
+    // On paper: four pages.
+    await page.draw();
+    const pdf = await page.page.pdf({ preferCSSPageSize: true, printBackground: true });
+    writeFileSync(path.join(folder, "report.pdf"), pdf);
+    const pages = pdf.toString("latin1").match(/\/Type\s*\/Page\b/g).length;
+    assert.ok(pages >= 3 && pages <= 4, `${pages} pages on paper`);
+  }
+  await page.close();
+}
+console.log(`${checked} texts with contrast enough, all controls named, at most four pages on paper`);
