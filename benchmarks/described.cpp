@@ -218,22 +218,23 @@ void columns(benchmark::State& state, const std::string& name, bool limited) {
   const auto g = four_ppa_two_par::geometry(std::span<const double>(original));
   const peers::Voxels voxels{g.d, g.L0, {32, 34, 60}, 0, 0, kPi / 2, 0, 0, 0};
   const peers::Design lengths{g.a, g.b, g.l_u, g.l_d};
-  const Duel duel = take_turns(
-      state, "plain_loop_s", [&] { benchmark::DoNotOptimize(peers::feasible_cells(voxels, lengths)); }, "survey_s",
-      [&] { surveyor->survey(design, scratch, result); });
-  state.counters["loops"] = duel.second / duel.first;  // the survey's time in those of the loop
-  const Duel gradient = take_turns(
-      state, "value_s", [&] { surveyor->survey(design, scratch, result); }, "gradient_s",
-      [&] {
-        scratch = Scratch();  // forgets the design
-        for (std::size_t first = 0; first < duals.size(); first += 4) {
-          for (std::size_t i = 0; i < duals.size(); ++i) duals[i] = Dual4(design[i]);
-          for (std::size_t i = first; i < std::min(first + 4, duals.size()); ++i)
-            duals[i] = Dual4::variable(design[i], static_cast<int>(i - first));
-          surveyor->slopes()->survey(duals, scratch, slopes);
-        }
-      });
-  state.counters["gradient"] = gradient.second / gradient.first;
+  double loop_s = 0, value_s = 0, gradient_s = 0;
+  for (auto _ : state) {
+    loop_s += seconds_of([&] { benchmark::DoNotOptimize(peers::feasible_cells(voxels, lengths)); });
+    value_s += seconds_of([&] { surveyor->survey(design, scratch, result); });
+    scratch = Scratch();  // forgets the design
+    gradient_s += seconds_of([&] {
+      for (std::size_t first = 0; first < duals.size(); first += 4) {
+        for (std::size_t i = 0; i < duals.size(); ++i) duals[i] = Dual4(design[i]);
+        for (std::size_t i = first; i < std::min(first + 4, duals.size()); ++i)
+          duals[i] = Dual4::variable(design[i], static_cast<int>(i - first));
+        surveyor->slopes()->survey(duals, scratch, slopes);
+      }
+    });
+  }
+  state.counters["survey_s"] = value_s / static_cast<double>(state.iterations());
+  state.counters["loops"] = value_s / loop_s;  // the survey's time in those of the loop
+  state.counters["gradient"] = gradient_s / value_s;
   state.counters["sections"] = static_cast<double>(result.columns);
   state.counters["error"] = result.error;
 }

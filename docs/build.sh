@@ -55,5 +55,6 @@ SETTINGS
 version=$("$program" --version | head -1)
 PKM_DOCS_VERSION=${version#pkmopt } PKM_DOCS_XML=$out/xml \
   /usr/bin/sphinx-build -q -W -n --keep-going -b html -d "$out/doctrees" docs "$out/html"
+cp -R -- experiments/mechanisms/pictures "$out/html/reference"  # named by <img> in an included README
 /usr/bin/python3 "$root/docs/links.py" "$out/html"
 echo "$out/html/index.html"

@@ -15,6 +15,7 @@ HEADERS = {
     "What a mechanism may be able to": [
         "engine/mechanism/abilities/kinematics.hpp", "engine/mechanism/abilities/design.hpp",
         "engine/mechanism/abilities/columns.hpp", "engine/mechanism/abilities/dynamics.hpp",
+        "engine/mechanism/abilities/bounds.hpp", "engine/dynamics/drive_train.hpp",
         "engine/model/influence.hpp", "engine/model/placed_link.hpp", "engine/model/chain.hpp",
         "engine/dynamics/pose_dynamics.hpp", "engine/dynamics/reactions.hpp", "engine/motion/motion.hpp",
         "engine/mechanism/pose_quantity.hpp"],
@@ -23,12 +24,14 @@ HEADERS = {
                          "engine/problem/evaluator.hpp", "engine/problem/design_problem.hpp",
                          "engine/problem/quantity.hpp"],
     "Optimisers and options": ["engine/optimisers/optimiser.hpp", "engine/core/options.hpp"],
-    "Studies": ["engine/setup/study.hpp"],
+    "Studies": ["engine/setup/study.hpp", "engine/setup/study_changes.hpp", "engine/setup/mechanism_file.hpp",
+                "engine/core/error.hpp"],
 }
 
 
 def fenced(code):
-    return f"```cpp\n{code}\n```\n\n"
+    language = "cpp" if code.rstrip().endswith((";", "}")) else "text"  # formulas
+    return f"```{language}\n{code}\n```\n\n"
 
 
 def first_comment(header):
@@ -41,7 +44,7 @@ def first_comment(header):
 
 
 def markdown_of(comment):
-    """Indented lines of a comment as a block of C++."""
+    """Indented lines of a comment as a block of C++ or of formulas."""
     text, code = "", []
     for line in comment.splitlines() + [""]:
         if line.startswith("  "):

@@ -27,7 +27,7 @@ struct Refusal {
 TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
   const std::string commands =
       "one of run, resume, check, evaluate, pose, forward, dynamics, coupling, trajectory, simulate, "
-      "workspace, show, report, export, list, new";
+      "workspace, certify, show, report, export, list, new, completion, manual";
   const std::string mechanism = "4ppa-2par";
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry->info().name;

@@ -78,7 +78,8 @@ Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, Integ
   const double low = room.registers[from], high = room.registers[to], whole = high - low;
   if (!(whole > 0)) return {};
   const int samples = kSamples[levels() > 1 ? 1 : 0];
-  Breaks breaks;
+  Breaks& breaks = own.breaks[0];
+  breaks.clear();
   Slice before = slice(level, low + kSettled * whole, room);
   breaks.push_back({low, false, false, {}, before, true});
   for (int i = 0; i <= samples; ++i) {
@@ -183,9 +184,10 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
     less += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
-  if (!same && depth < 10 && width > kBlurred * whole && room.sections < room.most) {
-    Breaks breaks{
-        {part.piece.lower, false, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox}};
+  if (!same && depth < kDeepest && width > kBlurred * whole && room.sections < room.most) {
+    Breaks& breaks = own.breaks[static_cast<std::size_t>(depth) + 1];
+    breaks.assign(
+        1, {part.piece.lower, false, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox});
     Slice before = part.below;
     for (const Slice& next : slices) {
       find_breaks(level, before, next, whole, breaks, room);

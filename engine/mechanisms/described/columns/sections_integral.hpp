@@ -39,10 +39,13 @@ struct SlicePart {
   double unresolved = 0;  ///< error that smaller parts do not mend
 };
 
+inline constexpr int kDeepest = 10;  ///< parts within parts
+
 /// What an integral overwrites.
 struct IntegralRoom {
   struct Level {
     std::vector<SlicePart> parts;
+    std::array<std::vector<SliceBreak>, kDeepest + 1> breaks;  ///< of the range, and of parts by their depth
     Structure structure;
     std::vector<std::uint32_t> corners;
     double greatest = 0;    ///< slice so far
