@@ -12,8 +12,8 @@ Term is_less(const Term& x, const Term& y) { return call(operation("<"), x, y); 
 }  // namespace
 
 Term Rates::of(Node root) {
-  for (const Node node : graph_.reachable({&root, 1}))
-    if (!known_.contains(node)) known_.emplace(node, of_operation(node).node());
+  for (const Node node : graph_.reachable({&root, 1}, [&](Node each) { return known_.contains(each); }))
+    known_.emplace(node, of_operation(node).node());
   return known(root);
 }
 

@@ -1,7 +1,6 @@
 #include "engine/graph/formula_reader.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/graph/formula_words.hpp"
@@ -139,9 +138,6 @@ class Reader {
 
 Node read_formula(Graph& graph, const std::string& text, const std::vector<std::string>& names,
                   std::span<const Node> nodes) {
-  for (auto name = names.begin(); name != names.end(); ++name)
-    if (!may_be_name(*name) || std::find(name + 1, names.end(), *name) != names.end())
-      throw std::logic_error("a formula cannot know a number called '" + *name + "'");
   const std::vector<Word> words = words_of(text, names);
   if (text.size() >= kMostCharacters) refuse(text, "has more than " + std::to_string(kMostCharacters) + " characters");
   return Reader(graph, text, nodes).run(words);

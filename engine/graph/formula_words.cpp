@@ -23,9 +23,7 @@ std::string known_words(const std::string& word, const std::vector<std::string>&
 
 class WordCheck {
  public:
-  WordCheck(const std::string& text, const std::vector<std::string>& names) : text_(text), known_(names) {
-    known_.emplace_back(kPiName);
-  }
+  WordCheck(const std::string& text, const std::vector<std::string>& names) : text_(text), names_(names) {}
 
   std::vector<Word> run() {
     for (std::size_t i = 0; i < text_.size();)
@@ -90,13 +88,17 @@ class WordCheck {
 
     const std::string word(begin, end);
     const Operation* function = find_named(functions(), word);
-    const auto position = static_cast<std::size_t>(std::ranges::find(known_, word) - known_.begin());
-    const bool known = position < known_.size();
+    const auto position = static_cast<std::size_t>(std::ranges::find(names_, word) - names_.begin());
+    const bool known = position < names_.size() || word == kPiName;
     if (calls && known) refuse(text_, "calls " + quote(word, i) + ", which is no function; multiply with '*'");
     if (calls && !function)
       refuse(text_, "calls the unknown function " + quote(word, i) + known_words(word, names_of(functions())));
     if (!calls && function) refuse(text_, "lacks the arguments of " + quote(word, i) + ", in parentheses");
-    if (!calls && !known) refuse(text_, "has the unknown name " + quote(word, i) + known_words(word, known_));
+    if (!calls && !known) {
+      std::vector<std::string> names = names_;
+      names.emplace_back(kPiName);
+      refuse(text_, "has the unknown name " + quote(word, i) + known_words(word, names));
+    }
     if (calls) return {.text = word, .place = i, .function = function};
     if (word == kPiName) return {.text = word, .place = i, .number = kPi};
     return {.text = word, .place = i, .name = position};
@@ -116,7 +118,7 @@ class WordCheck {
   }
 
   const std::string& text_;
-  std::vector<std::string> known_;
+  const std::vector<std::string>& names_;
   std::vector<Word> words_;
   std::vector<Parenthesis> open_;
 };

@@ -83,15 +83,19 @@ Node Graph::apply(const Operation& operation, std::span<const Node> arguments) {
   return add(entry);
 }
 
-std::vector<Node> Graph::reachable(std::span<const Node> roots) const {
-  std::vector<bool> used(entries_.size());
-  for (const Node root : roots) used[static_cast<std::size_t>(root)] = true;
-  for (std::size_t i = entries_.size(); i-- > 0;)
-    if (used[i])
-      for (const Node operand : entries_[i].operands()) used[static_cast<std::size_t>(operand)] = true;
+std::vector<Node> Graph::reachable(std::span<const Node> roots, const std::function<bool(Node)>& is_known) const {
+  std::vector<bool> seen(entries_.size());
   std::vector<Node> all;
-  for (std::size_t i = 0; i < entries_.size(); ++i)
-    if (used[i]) all.push_back(static_cast<Node>(i));
+  const auto meet = [&](Node node) {
+    const auto place = static_cast<std::size_t>(node);
+    if (seen[place]) return;
+    seen[place] = true;
+    if (!is_known || !is_known(node)) all.push_back(node);
+  };
+  for (const Node root : roots) meet(root);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const Node operand : (*this)[all[i]].operands()) meet(operand);
+  std::ranges::sort(all);
   return all;
 }
 

@@ -46,7 +46,8 @@ class Graph {
   std::size_t size() const { return entries_.size(); }
 
   /// The nodes among `roots` and those that they are made of, each once, before those that use it.
-  std::vector<Node> reachable(std::span<const Node> roots) const;
+  /// @param is_known  of nodes that are left out, with what only they are made of
+  std::vector<Node> reachable(std::span<const Node> roots, const std::function<bool(Node)>& is_known = {}) const;
 
  private:
   struct Hash {

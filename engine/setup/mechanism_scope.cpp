@@ -100,8 +100,12 @@ void MechanismScope::refuse_empty(const ConfigValue& range, const Term& from, co
                       shortest(greatest) + "]");
 }
 
+std::vector<Node> MechanismScope::unseen(Node root) const {
+  return model_.graph.reachable({&root, 1}, [&](Node each) { return seen_.contains(each); });
+}
+
 void MechanismScope::known_to_exist(Node node) {
-  for (const Node each : model_.graph.reachable({&node, 1})) seen_.insert(each);
+  for (const Node each : unseen(node)) seen_.insert(each);
 }
 
 void MechanismScope::watch(Node root, const std::string& what) {
@@ -110,9 +114,11 @@ void MechanismScope::watch(Node root, const std::string& what) {
                          operation->name == "log" || operation->name == "log10");
   };
   int count = 0;
-  for (const Node node : model_.graph.reachable({&root, 1}))
-    if (seen_.insert(node).second && has_domain(model_.graph[node].operation))
+  for (const Node node : unseen(root)) {
+    seen_.insert(node);
+    if (has_domain(model_.graph[node].operation))
       watched_.push_back({node, what + (++count > 1 ? " exists (" + std::to_string(count) + ")" : " exists")});
+  }
 }
 
 void MechanismScope::note_domains() {

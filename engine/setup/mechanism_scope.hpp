@@ -47,6 +47,9 @@ class MechanismScope {
   void note_domains();
 
  private:
+  /// What a node is made of and has not been looked at.
+  std::vector<graph::Node> unseen(graph::Node root) const;
+
   void watch(graph::Node node, const std::string& what);
 
   struct Watched {

@@ -1,6 +1,7 @@
 // `pkmopt-check-proof FILE`: checks the proof of a volume's bounds that `pkmopt certify --proof` wrote. It shares the
 // reader of formulas and the intervals with the program, nothing else; README.md has the format.
 
+#include <algorithm>
 #include <bitset>
 #include <charconv>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <iterator>
 
 #include "engine/graph/formula_reader.hpp"
+#include "engine/graph/formula_words.hpp"
 #include "experiments/checker/evaluate.hpp"
 
 namespace pkm::checker {
@@ -71,6 +73,8 @@ class Check {
     return value;
   }
   void add_name(const std::string& name, graph::Node node) {
+    if (!graph::may_be_name(name) || std::ranges::find(names_, name) != names_.end())
+      refuse("'" + name + "' is no new name");
     names_.push_back(name);
     nodes_.push_back(node);
   }
