@@ -134,7 +134,7 @@ ABOVE = np.cross(TO_EYE, RIGHT)
 class Sheet:
     """Where points of space lie on the picture, and paths between them."""
 
-    margin, foot = 34, 34  # [px]
+    margin, foot = 34, 40  # [px]
 
     def __init__(self, points):
         flat = self.flat(points)
@@ -185,9 +185,9 @@ STYLE = """svg { --paper: #fff; --ink: #24292f; --frame: #8c959f; --arm: #3b6ea8
 @media (prefers-color-scheme: dark) {
   svg { --paper: #161b22; --ink: #e6edf3; --frame: #8b949e; --arm: #79b0ee; --rod: #6fcf97; --platform: #f08a8d }
 }
-text { font: italic 22px sans-serif; fill: var(--ink); text-anchor: middle }
-text { paint-order: stroke; stroke: var(--paper); stroke-width: 4; stroke-linejoin: round }
-.legend { font: 17px sans-serif; text-anchor: start }
+text { font: italic 30px sans-serif; fill: var(--ink); text-anchor: middle }
+text { paint-order: stroke; stroke: var(--paper); stroke-width: 5; stroke-linejoin: round }
+.legend { font: 25px sans-serif; text-anchor: start }
 .behind { stroke-width: 0.8; stroke-linejoin: round }
 .edge { fill: none; stroke: var(--ink); stroke-opacity: 0.6; stroke-width: 1.5 }
 .way { fill: none; stroke: var(--paper); stroke-width: 2; stroke-dasharray: 5 5 }
@@ -245,13 +245,13 @@ def picture(program):
             out.append(f'<path class="{kind}" d="{shapes[0]}">{animated(shapes)}</path>')
     out.append("</g>")
 
-    for name, index, line, shift in (("l", "a", drawn["arm 0"][:, :2], (0, -16)), ("l", "b", drawn["rod 0 1"], (24, 0))):
+    for name, index, line, shift in (("l", "a", drawn["arm 0"][:, :2], (0, -20)), ("l", "b", drawn["rod 0 1"], (32, 0))):
         places = [f"{x:.1f} {y:.1f}" for x, y in sheet.at(line.mean(axis=1)) + shift]
         follow = animated(places, "animateTransform", 'attributeName="transform" type="translate"')
         out.append(f'<text transform="translate({places[0]})">{name}<tspan font-size="70%" dy="4">{index}</tspan>'
                    f"{follow}</text>")  # fmt: skip
     for k, level in enumerate(LEVELS):
-        out.append(f'<rect x="{sheet.margin + 24 * k}" y="{sheet.height - 38}" width="24" height="14" '
+        out.append(f'<rect x="{sheet.margin + 24 * k}" y="{sheet.height - 44}" width="24" height="20" '
                    f'fill="{colour(level)}"/>')  # fmt: skip
     out.append(f'<text class="legend" x="{sheet.margin + 24 * len(LEVELS) + 12}" y="{sheet.height - 25}">conditioning '
                f"{LEVELS[0]:.2f} .. {LEVELS[-1] + 0.05:.2f}</text>")  # fmt: skip
