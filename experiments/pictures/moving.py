@@ -210,13 +210,17 @@ def picture(program):
     drawn = links([way[f"arm{i}"] for i in (1, 2, 3)], way_of_tool)
     base = drawn.pop("base")
 
-    def lines(name, level=0.0):
+    def lines(name, levels):
         x, z, grid = field(section, name, "x", "z")
-        for line in outlines(x, z, continued(grid), level):
-            if len(line) > 20:
+        grid = continued(grid)
+        return [list(in_section(outlines(x, z, grid, level))) for level in levels]
+
+    def in_section(found):
+        for line in found:
+            if len(line) > 20:  # crumbs at a corner are left out
                 yield np.stack([line[:, 0], 0 * line[:, 0], line[:, 1]], axis=1)
 
-    edges = list(lines("margin"))
+    edges = lines("margin", [0])[0]
     sheet = Sheet(np.concatenate([*edges, base, *(at for _, at in surface),
                                   *(line.reshape(-1, 3) for line in drawn.values())]))  # fmt: skip
     hidden = within(sheet.at([at for _, at in surface]).reshape(-1, 2), sheet.at(edges[0])).reshape(-1, 3).all(axis=1)
@@ -231,8 +235,8 @@ def picture(program):
 
     out.append(f'<clipPath id="section"><path d="{"".join(sheet.path(edge, "Z", 0.7) for edge in edges)}"/></clipPath>')
     out.append('<g clip-path="url(#section)">')
-    for level in LEVELS:
-        d = "".join(sheet.path(line, "Z", 0.7) for line in lines("conditioning", level))
+    for level, found in zip(LEVELS, lines("conditioning", LEVELS)):
+        d = "".join(sheet.path(line, "Z", 0.7) for line in found)
         out.append(f'<path fill="{colour(level)}" d="{d}"/>')
     out.append("</g>")
     out += [f'<path class="edge" d="{sheet.path(edge, "Z", 0.7)}"/>' for edge in edges]
@@ -245,10 +249,10 @@ def picture(program):
             out.append(f'<path class="{kind}" d="{shapes[0]}">{animated(shapes)}</path>')
     out.append("</g>")
 
-    for name, index, line, shift in (("l", "a", drawn["arm 0"][:, :2], (0, -20)), ("l", "b", drawn["rod 0 1"], (32, 0))):
+    for index, line, shift in (("a", drawn["arm 0"][:, :2], (0, -20)), ("b", drawn["rod 0 1"], (32, 0))):
         places = [f"{x:.1f} {y:.1f}" for x, y in sheet.at(line.mean(axis=1)) + shift]
         follow = animated(places, "animateTransform", 'attributeName="transform" type="translate"')
-        out.append(f'<text transform="translate({places[0]})">{name}<tspan font-size="70%" dy="4">{index}</tspan>'
+        out.append(f'<text transform="translate({places[0]})">l<tspan font-size="70%" dy="4">{index}</tspan>'
                    f"{follow}</text>")  # fmt: skip
     for k, level in enumerate(LEVELS):
         out.append(f'<rect x="{sheet.margin + 24 * k}" y="{sheet.height - 44}" width="24" height="20" '

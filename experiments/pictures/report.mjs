@@ -15,6 +15,6 @@ const page = await browser.newPage({ viewport: { width: 1280, height: 1030 }, co
 await page.goto(pathToFileURL(html).href);
 await page.waitForFunction(() => window.report);
 await page.evaluate(() => window.report.draw("summary"));
-await page.waitForTimeout(3000);  // both scenes are drawn by then
+await page.waitForTimeout(3000); // both scenes are drawn by then
 await page.screenshot({ path: out });
 await browser.close();
