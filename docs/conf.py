@@ -45,7 +45,6 @@ pygments_dark_style = "github-dark"
 # Where the site has what a file of the repository says: file, or file#heading -> page#heading.
 PAGES = {
     "README.md": "index",
-    "README.md#speed": "speed",
     "engine/storage/README.md": "reference/study-file",
     "experiments/README.md": "reference/studies",
     "experiments/README.md#the-hybrid-robot": "theory/2t1r-p-hybrid#the-paper-and-this-program",

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the nominal workspaces of the four mechanisms side by side, as README.md shows them: workspaces.png beside this
+# Draws the nominal workspaces of the four mechanisms side by side, as docs/theory/papers.md shows them: workspaces.png beside this
 # script. Needs the program and of Debian python3-vtk9, python3-h5py, xvfb and libgl1-mesa-dri.
 #   experiments/pictures/workspaces.sh [PROGRAM]     default: build/quickstart/bin/pkmopt
 set -euo pipefail

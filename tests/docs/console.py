@@ -3,9 +3,10 @@
 into the pages instead of comparing it.
 
 A block ```console holds commands after `$ ` and what they print, on stdout and stderr. The commands of a page run one
-after the other in one empty folder, in which `pkmopt` is PROGRAM, `experiments`, `benchmarks` and `tests` are those of
-the repository, and the page's files are: a block ```{code-block} with `:caption: NAME` is written to NAME before the
-commands that stand below it. A command has to succeed, unless `$ echo $?` comes next. It runs on two threads.
+after the other in one empty folder, in which `pkmopt` is PROGRAM, `pkmopt-check-proof` its neighbour, `experiments`,
+`benchmarks` and `tests` are those of the repository, and the page's files are: a block ```{code-block} with
+`:caption: NAME`, or one below a line `<!-- NAME -->`, is written to NAME before the commands that stand below it. A
+command has to succeed, unless `$ echo $?` comes next. It runs on two threads.
 
 What is printed has to be what the page shows, but for the number of spaces between words and for what every run has
 of its own, whose values are not compared: times (a number before ns, us, ms, s, min or h), numbers of threads, shares
@@ -56,7 +57,8 @@ def blocks_of(lines):
             begin = number + 1
             language = line.strip("`").strip()
         elif begin is not None and line.startswith("```"):
-            caption = None
+            above = re.fullmatch(r"<!-- (\S+) -->", lines[begin - 2]) if begin > 1 else None
+            caption = above[1] if above else None
             while lines[begin].startswith(":") and begin < number:
                 if lines[begin].startswith(":caption:"):
                     caption = lines[begin].removeprefix(":caption:").strip()
@@ -90,6 +92,8 @@ class Folder:
         tools = path / ".tools"
         tools.mkdir()
         (tools / "pkmopt").symlink_to(program.resolve())
+        checker = "pkmopt-check-proof"
+        (tools / checker).symlink_to(program.resolve().with_name(checker))
         self.environment = {**os.environ, "PATH": f"{tools}:/usr/bin:{os.environ['PATH']}", "OMP_NUM_THREADS": "2",
                             "PYTHONDONTWRITEBYTECODE": "1",
                             **dict.fromkeys(["OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",

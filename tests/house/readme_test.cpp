@@ -17,10 +17,10 @@ using ::testing::Contains;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
-/// Files of the repository that a Markdown text names: targets of links, and words of shell blocks that begin with one
-/// of our folders.
+/// Files of the repository that a Markdown text names: targets of links, pictures, and words of shell blocks that begin
+/// with one of our folders.
 std::vector<std::string> files_named(const std::string& markdown) {
-  static const std::regex link(R"(\]\((?!https?:|#)([^)#\s]+))");
+  static const std::regex link(R"re((?:\]\(|src=")(?!https?:|#)([^)"#\s]+))re");
   static const std::regex word(
       R"((?:^|\s)(?:\./)?((?:engine|objectives|constraints|experiments|tests|benchmarks)/\S*))");
   static const std::regex shell(R"(^\s*```(?:sh|bash|console)?\s*$)");
@@ -44,10 +44,12 @@ std::vector<std::string> files_named(const std::string& markdown) {
 }
 
 TEST(Readme, NamesOfFilesAreFound) {
-  EXPECT_THAT(files_named("See [this](engine/storage/README.md#x) and [that](https://example.org/tests/a).\n"
-                          "```sh\n$ tests/run.sh  # all\npkmopt run ./experiments/a.toml\n```\n"
-                          "```cpp\n#include \"engine/no.hpp\"\n tests/no\n```\nand tests/not-this\n"),
-              UnorderedElementsAre("engine/storage/README.md", "tests/run.sh", "experiments/a.toml"));
+  EXPECT_THAT(
+      files_named("See [this](engine/storage/README.md#x) and [that](https://example.org/tests/a).\n"
+                  "<img src=\"experiments/a.svg\" width=\"1\">\n"
+                  "```sh\n$ tests/run.sh  # all\npkmopt run ./experiments/a.toml\n```\n"
+                  "```cpp\n#include \"engine/no.hpp\"\n tests/no\n```\nand tests/not-this\n"),
+      UnorderedElementsAre("engine/storage/README.md", "experiments/a.svg", "tests/run.sh", "experiments/a.toml"));
 }
 
 TEST(Readme, NamesBothCommandsAndNothingThatIsMissing) {
@@ -63,21 +65,6 @@ TEST(Readme, NamesBothCommandsAndNothingThatIsMissing) {
     EXPECT_THAT(names, Contains(command));
     EXPECT_EQ(access((root / command).c_str(), X_OK), 0) << command << " cannot be executed";
   }
-}
-
-TEST(Readme, ShowsAMechanismThatATestBuilds) {
-  const fs::path root = PKM_ROOT;
-  const auto read = [](const fs::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-  };
-  const std::string readme = read(root / "README.md"), fence = "```cpp\n";
-  const std::size_t begin = readme.find(fence);
-  ASSERT_NE(begin, std::string::npos);
-  const std::string code =
-      readme.substr(begin + fence.size(), readme.find("```\n", begin + fence.size()) - begin - fence.size());
-  EXPECT_THAT(read(root / "tests" / "packaging" / "external" / "scara.cpp"), ::testing::HasSubstr(code));
 }
 
 /// The keys that the reader of studies looks for by name.

@@ -14,7 +14,7 @@ class Scara final : public pkm::Mechanism {
   Scara() {
     info_.name = "scara";
     info_.title = "two links, a lift and a wrist";
-    info_.source = "the README of pkmopt";
+    info_.source = "the documentation of pkmopt";
     info_.parameters = {{"l_1", "m", 0.3, 0.01, 10, "length of the first link"},  // name, unit, default, bounds
                         {"l_2", "m", 0.25, 0.01, 10, "length of the second link"},
                         {"h", "m", 0.2, 0.01, 10, "stroke of the lift"}};
