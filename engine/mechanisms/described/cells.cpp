@@ -234,10 +234,12 @@ std::array<std::int64_t, 3> CellTest::cell(std::size_t outer, std::size_t middle
   return cell;
 }
 
+bool CellTest::is_outermost(const VoxelGrid& grid, std::size_t outer) const {
+  return order_.size() == 3 && (outer == 0 || outer + 1 == shape(grid)[0]);
+}
+
 bool CellTest::at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const {
-  const auto cells = shape(grid);
-  return (order_.size() == 3 && (outer == 0 || outer + 1 == cells[0])) ||
-         (order_.size() >= 2 && (middle == 0 || middle + 1 == cells[1]));
+  return is_outermost(grid, outer) || (order_.size() >= 2 && (middle == 0 || middle + 1 == shape(grid)[1]));
 }
 
 void CellTest::start(const std::vector<double>& inputs, CellRoom& room) const {
@@ -298,14 +300,15 @@ CellTally CellTest::test_columns(const VoxelGrid& grid, std::size_t outer, std::
   }
   CellTally tally;
   if (!want_bits && !has_holes && alternatives_.empty() && cranks_.empty() && inner_conditions_.empty()) {
-    double sum = 0;
+    double sum = 0, at_ends = 0;  // both without a branch
+    const auto number = [&](std::size_t j) { return std::max(ranges.to[j] - ranges.from[j], 0.0); };
     for (std::size_t j = 0; j < count; ++j) {
-      const double number = std::max(ranges.to[j] - ranges.from[j], 0.0);
-      sum += number;
-      if (number > 0 && !tally.touches_box)
-        tally.touches_box = ranges.from[j] == 0 || ranges.to[j] == column_grid.cells || at_side(grid, outer, first + j);
+      sum += number(j);
+      at_ends += ranges.from[j] == 0 || ranges.to[j] == column_grid.cells ? number(j) : 0;
     }
+    const auto is_side = [&](std::size_t j) { return number(j) > 0 && at_side(grid, outer, first + j); };
     tally.cells = static_cast<std::int64_t>(sum);
+    tally.touches_box = at_ends > 0 || is_side(0) || is_side(count - 1) || (sum > 0 && is_outermost(grid, outer));
     return tally;
   }
   if (!want_bits) room.bits.resize((first + count) * length);
@@ -333,6 +336,7 @@ void CellTest::bits_of(const ColumnCondition& condition, const ColumnGrid& colum
   CellRanges& ranges = room.other;
   std::fill_n(ranges.from.begin(), whole, 0.0);
   std::fill_n(ranges.to.begin(), whole, column_grid.cells);
+  for (auto* const hole : {&ranges.hole_from, &ranges.hole_to}) std::fill_n(hole->begin(), whole, 0.0);
   with_instruction_set([&]<InstructionSet set> {
     narrow<set>(condition, room.registers.data(), room.middle_rows.data(), column_grid, whole, ranges);
   });

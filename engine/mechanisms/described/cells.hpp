@@ -48,6 +48,7 @@ class CellTest {
   std::array<std::int64_t, 3> cell(std::size_t outer, std::size_t middle, std::size_t inner) const;
   static std::size_t words(std::size_t cells) { return (cells + 63) / 64; }
   /// Whether a column is on the box's outside.
+  bool is_outermost(const VoxelGrid& grid, std::size_t outer) const;
   bool at_side(const VoxelGrid& grid, std::size_t outer, std::size_t middle) const;
 
   /// Computes what no swept coordinate changes.

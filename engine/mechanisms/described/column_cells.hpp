@@ -31,7 +31,8 @@ struct CellRanges {
 };
 
 /// Narrows `from` and `to` to where a condition holds, for `count` columns, whole lanes; a condition that is undefined
-/// holds nowhere. True where a hole is left inside of some column's range: then holes are set, in all columns.
+/// holds nowhere. True where a hole is left inside of some column's range: then holes are set, in all columns; holes of
+/// conditions that cannot have any stay as they are.
 /// @param registers, rows  as graph::RowStage has them
 template <InstructionSet set>
 bool narrow(const ColumnCondition& condition, const double* registers, const double* rows, const ColumnGrid& grid,

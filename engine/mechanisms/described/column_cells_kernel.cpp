@@ -8,11 +8,8 @@ bool narrow(const ColumnCondition& condition, const double* registers, const dou
             std::size_t count, CellRanges& ranges) {
   using L = LanesOf<set>;
   const auto& [shape, c, has_unless, unless] = condition;
-  if (has_unless && !unless.row && registers[unless.index] >= 0) {  // it narrows nothing
-    for (double& end : ranges.hole_to) end = 0;
-    for (double& end : ranges.hole_from) end = 0;
-    return false;
-  }
+  if (has_unless && !unless.row && registers[unless.index] >= 0) return false;  // it narrows nothing
+  const bool may_have_holes = shape == Shape::convex || shape == Shape::any;
   const L none(0.0), all(grid.cells);
   const double per_step = 1 / grid.step;
   const auto load = [&](const graph::Operand& operand, std::size_t k) __attribute__((always_inline)) {
@@ -28,8 +25,10 @@ bool narrow(const ColumnCondition& condition, const double* registers, const dou
   bool has_holes = false;
   for (std::size_t k = 0; k < count; k += kLanes) {
     const L before_from = L::load(&ranges.from[k]), before_to = L::load(&ranges.to[k]);
-    none.store(&ranges.hole_from[k]);
-    none.store(&ranges.hole_to[k]);
+    if (may_have_holes) {
+      none.store(&ranges.hole_from[k]);
+      none.store(&ranges.hole_to[k]);
+    }
     if (!any(before_from < before_to)) continue;
     const L c0 = load(c[0], k), b = load(c[1], k);
     L from = none, to = all, hole_from = none, hole_to = none;
@@ -79,7 +78,7 @@ bool narrow(const ColumnCondition& condition, const double* registers, const dou
     }
     from = greater(before_from, from);
     to = lesser(before_to, to);
-    if (shape == Shape::convex || shape == Shape::any) {  // what of the hole reaches over an end shortens the range
+    if (may_have_holes) {  // what of the hole reaches over an end shortens the range
       const auto is_hole = hole_from < hole_to;
       from = select(is_hole & (hole_from <= from), greater(from, hole_to), from);
       to = select(is_hole & (hole_to >= to), lesser(to, hole_from), to);
