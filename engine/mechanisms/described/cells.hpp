@@ -18,7 +18,8 @@ namespace pkm::described {
 
 /// What a worker overwrites.
 struct CellRoom {
-  std::vector<double> registers, middle_rows, rows;
+  std::vector<double> registers;
+  graph::Rows middle_rows, rows;
   std::vector<std::uint64_t> bits;  ///< of a slice, where they are asked for: words() words for each column
   std::vector<std::uint64_t> some, hole, at_min, at_max, after_min, before_max;
   std::vector<std::vector<std::uint64_t>> in_range, if_reached;  ///< by crank

@@ -27,7 +27,7 @@ struct ColumnCondition {
 
 /// By column, whole numbers: cells [from, to) without those of the hole, [hole_from, hole_to).
 struct CellRanges {
-  std::array<double, graph::kRow> from, to, hole_from, hole_to;
+  alignas(64) std::array<double, graph::kRow> from, to, hole_from, hole_to;
 };
 
 /// Narrows `from` and `to` to where a condition holds, for `count` columns, whole lanes; a condition that is undefined

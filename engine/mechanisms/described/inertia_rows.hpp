@@ -11,7 +11,8 @@ namespace pkm::described {
 
 /// What a worker overwrites.
 struct InertiaRoom {
-  std::vector<double> registers, rows, M_q, indices, found;
+  std::vector<double> registers, found;
+  graph::Rows rows, M_q, indices;
   std::size_t count = 0;  ///< poses that wait
 };
 
