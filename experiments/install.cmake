@@ -59,12 +59,13 @@ else()
   install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET pkmopt_libraries RUNTIME)
   install(RUNTIME_DEPENDENCY_SET pkmopt_libraries DESTINATION ${beside}
     PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|ld-linux.*)\\.so")  # the system's own
+  # Who wrote these: of the Debian packages that they are from.
   install(CODE "set(beside ${beside})\nset(licences ${CMAKE_INSTALL_DOCDIR}/licences)")
   install(CODE [[
     set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
     file(GLOB libraries RELATIVE ${prefix}/${beside} ${prefix}/${beside}/*)
     foreach(library IN LISTS libraries)
-      execute_process(COMMAND dpkg-query --search */${library} OUTPUT_VARIABLE found ERROR_QUIET)
+      execute_process(COMMAND dpkg-query --search *-linux-gnu*/${library} OUTPUT_VARIABLE found ERROR_QUIET)
       string(REGEX MATCHALL "(^|\n)[^:\n]+" packages "${found}")
       foreach(package IN LISTS packages)
         string(STRIP "${package}" package)
@@ -74,8 +75,9 @@ else()
 endif()
 
 set(CPACK_PACKAGE_CONTACT "the pkmopt authors")
-set(CPACK_PACKAGE_DESCRIPTION "For a parallel robot, pkmopt finds its workspace, its best dimensions, its coupling and
-its forces, with exact derivatives where there are closed forms. The robot is built in or described by a file.")
+set(CPACK_PACKAGE_DESCRIPTION "For a parallel robot, pkmopt finds its workspace, its best dimensions, its
+coupling and its forces, with exact derivatives where there are closed forms.
+The robot is built in or described by a file.")
 set(CPACK_PACKAGE_VENDOR pkmopt)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_STRIP_FILES ON)

@@ -9,10 +9,11 @@ pkm_install_missing debootstrap
 
 work=$(mktemp -d)
 root=$work/root bare=${1:-$work/bare}
-trap 'umount -q "$root/proc" || true; rm -rf --one-file-system "$work"' EXIT
+leave() { if mountpoint -q "$root/proc"; then umount "$root/proc"; fi; }
+trap 'leave; rm -rf --one-file-system "$work"' EXIT
 
 begin_again() {  # begin_again TITLE: in a root folder where nothing is installed
-  umount -q "$root/proc" || true
+  leave
   rm -rf --one-file-system "$root"
   cp -a --reflink=auto -- "$bare" "$root"
   mount -t proc proc "$root/proc"

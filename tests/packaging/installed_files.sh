@@ -8,10 +8,10 @@ installed() { grep -Eq -- "^$prefix/$1\$" "$manifest" || fail "not installed: $1
 
 commands=$("$prefix/bin/pkmopt" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p')
 (($(wc -w <<< "$commands") > 15)) || fail "few commands: $commands"
-for command in $commands; do installed "share/man/man1/pkmopt-$command\.1"; done
+for command in $commands; do installed "share/man/man1/pkmopt-$command\.1\.gz"; done
 for file in bin/pkmopt bin/pkmopt-check-proof 'lib[^/]*(/.*)?/libpkmopt\.a' 'lib[^/]*(/.*)?/libpkmopt_program\.a' \
   'lib[^/]*(/.*)?/cmake/pkmopt/pkmopt-config\.cmake' include/pkmopt/engine/mechanism/mechanism.hpp \
-  include/pkmopt/experiments/app/program.hpp share/man/man1/pkmopt.1 share/bash-completion/completions/pkmopt \
+  include/pkmopt/experiments/app/program.hpp share/man/man1/pkmopt{,-check-proof}\\.1\\.gz share/bash-completion/completions/pkmopt \
   share/zsh/vendor-completions/_pkmopt share/fish/vendor_completions.d/pkmopt.fish \
   share/doc/pkmopt/{README.md,CHANGELOG.md,LICENSE,docs/install.md,docs/tutorials/cluster.md,licences/libhdf5-dev} \
   share/pkmopt/experiments/{4ppa-2par/paper-problem.toml,mechanisms/linear-delta.toml,slurm/study.sbatch}; do
@@ -23,9 +23,9 @@ done
 ! grep -E '\.(cpp|in|h5)$|CMakeLists|/(debian-packages|package|quickstart)\.sh$|experiments/app/[^p]' "$manifest" ||
   fail "installed, and of no use there"
 
-# What the pages say of each other, of studies and of pictures.
+# Where the first page leads: to pages, studies and pictures.
 cd -- "$prefix/share/doc/pkmopt"
-links=$(grep -oE '\]\((docs|experiments)/[^)#]*' README.md | sed 's/](//')
+links=$(grep -oE '(\]\(|src=")(docs|experiments)/[^)#"]*\.(md|toml|svg|png)' README.md | sed 's/^.*[("]//')
 (($(wc -l <<< "$links") > 5)) || fail "few links in README.md: $links"
 for link in $links; do [[ -e $link ]] || fail "README.md leads nowhere: $link"; done
 exit $failures
