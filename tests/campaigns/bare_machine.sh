@@ -22,27 +22,30 @@ begin_again() {  # begin_again TITLE: in a root folder where nothing is installe
 }
 inside() { chroot "$root" /usr/bin/env -i -C /root PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root LANG=C.UTF-8 "$@"; }
 installed() { inside apt-get install -q --yes --no-install-recommends "$@"; }
+quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log"; echo "failed: $*"; exit 1; }; }
+late=0
 step() {  # step NAME COMMAND...
   local name=$1 begin=${EPOCHREALTIME/./}
   shift
-  "$@" >"$work/log" 2>&1 || { cat "$work/log"; echo "failed: $name"; exit 1; }
+  quietly "$@"
   local took=$((${EPOCHREALTIME/./} - begin))
   total=$((total + took))
   printf '%8.2f s  %s\n' "$((took / 10000))e-2" "$name"
 }
 goal() {  # goal SECONDS WHAT
   printf '%8.2f s  in all: %s (goal: %d)\n' "$((total / 10000))e-2" "$2" "$1"
-  ((total < $1 * 1000000))
+  ((total < $1 * 1000000)) || late=1
 }
-# typed TEXT: what a terminal shows where somebody types this into bash, \t being the tabulator
-typed() {
-  { sleep 1; printf "$1"'\nexit\n'; } |
-    script -qec "chroot '$root' /usr/bin/env -i HOME=/root TERM=dumb LANG=C.UTF-8 /bin/bash -i" /dev/null
+# offered LINE TYPED: a terminal shows LINE where somebody types this into bash, \t being the tabulator
+offered() {
+  { sleep 1; printf "$2"'\nexit\n'; } |
+    script -qec "chroot '$root' /usr/bin/env -i HOME=/root TERM=dumb LANG=C.UTF-8 /bin/bash -i" /dev/null |
+    tee /dev/stderr | grep "$1"
 }
 
-ls packages/pkmopt* >/dev/null 2>&1 || experiments/package.sh >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+ls packages/pkmopt* >/dev/null 2>&1 || quietly experiments/package.sh
 package=$(ls packages/pkmopt_*.deb) archive=$(ls packages/pkmopt-*.tar.gz)
-[[ -x $bare/usr/bin/apt-get ]] || debootstrap --variant=minbase bookworm "$bare" >/dev/null
+[[ -x $bare/usr/bin/apt-get ]] || quietly debootstrap --variant=minbase bookworm "$bare"
 
 begin_again "the archive, where nothing is installed, in a folder of any name"
 cp -- "$archive" "$root/root/archive.tar.gz"
@@ -58,8 +61,8 @@ goal 60 "from the archive to the first report"
 
 begin_again "the package"
 cp -- "$package" "$root/root/pkmopt.deb"
-inside apt-get update -q >/dev/null
-installed --download-only ./pkmopt.deb >/dev/null 2>&1
+quietly inside apt-get update -q
+quietly installed --download-only ./pkmopt.deb
 step "apt install ./pkmopt.deb, what it needs being downloaded" installed ./pkmopt.deb
 step "pkmopt new mechanism" inside pkmopt new mechanism my-delta --output my-delta.toml
 step "pkmopt new study" inside pkmopt new study my-delta.toml --output my-study.toml
@@ -71,15 +74,17 @@ inside test -s my-study.html
 goal 120 "from the package to the first report"
 
 echo "== what comes with it"
-installed man-db bash-completion >/dev/null 2>&1
+quietly installed man-db bash-completion
 cp -- "$root/etc/skel/.bashrc" "$root/root/"  # as a user's, with completion on
 step "man pkmopt-run" inside sh -c 'man pkmopt-run | grep -q instruction-set'
-step "pkmopt rep<TAB>" grep -q 'pkmopt report --help' <(typed 'pkmopt rep\t--help')
-step "pkmopt run my-st<TAB>" grep -q 'pkmopt run my-study.toml' <(typed 'cd; pkmopt run my-st\t--help')
+step "pkmopt rep<TAB>" offered 'pkmopt report --help' 'pkmopt rep\t--help'
+step "pkmopt run my-st<TAB>" offered 'pkmopt run my-study.toml' 'cd\npkmopt run my-st\t--help'
 step "a script of the studies'" inside /usr/share/pkmopt/experiments/2t1r-p-hybrid/motion-curves.sh curves
 
 mapfile -t suggested < <(dpkg-deb --field "$package" Suggests | tr ',' '\n')
-installed g++ cmake make pkg-config ${suggested[*]} >/dev/null 2>&1
-cp -r tests/packaging/external "$root/root/"
-step "a program with a mechanism of its own" inside sh -c 'cmake -S external -B build && cmake --build build --target scara'
-step "its study" inside build/scara run external/scara.toml
+quietly installed g++ cmake make pkg-config ${suggested[*]}
+cp -r --parents tests/packaging/external tests/own_mechanisms "$root/root/"
+step "a program with a mechanism of its own" inside sh -c \
+  'cmake -S tests/packaging/external -B build && cmake --build build --target scara'
+step "its study" inside build/scara run tests/packaging/external/scara.toml
+exit $late
