@@ -1,49 +1,90 @@
 #!/usr/bin/env bash
-# A stranger's path on a bare Debian 12, in a folder made by debootstrap, each step timed. As root, with a network.
-#   bare_machine.sh [FOLDER]  where to make it (default: a temporary one, removed afterwards)
+# A stranger's path on a bare Debian 12, in root folders made by debootstrap, each step timed. As root, with a network.
+# Of the packages in packages/, which are made where there are none.
+#   bare_machine.sh [FOLDER]  keeps the bare root folder there for the next time
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 source experiments/debian-packages.sh
 pkm_install_missing debootstrap
 
-root=${1:-}
-if [[ -z $root ]]; then
-  root=$(mktemp -d)
-  trap 'umount -q "$root/proc" "$root/dev" || true; rm -rf --one-file-system "$root"' EXIT
-fi
-experiments/package.sh >/dev/null
-package=$(ls packages/pkmopt_*.deb) archive=$(ls packages/pkmopt-*.tar.gz)
+work=$(mktemp -d)
+root=$work/root bare=${1:-$work/bare}
+leave() { if mountpoint -q "$root/proc"; then umount "$root/proc"; fi; }
+trap 'leave; rm -rf --one-file-system "$work"' EXIT
 
-inside() { chroot "$root" /usr/bin/env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root LANG=C.UTF-8 "$@"; }
-total=0
+begin_again() {  # begin_again TITLE: in a root folder where nothing is installed
+  leave
+  rm -rf --one-file-system "$root"
+  cp -a --reflink=auto -- "$bare" "$root"
+  mount -t proc proc "$root/proc"
+  total=0
+  echo "== $1"
+}
+inside() { chroot "$root" /usr/bin/env -i -C /root PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root LANG=C.UTF-8 "$@"; }
+installed() { inside apt-get install -q --yes --no-install-recommends "$@"; }
+quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log"; echo "failed: $*"; exit 1; }; }
+late=0
 step() {  # step NAME COMMAND...
   local name=$1 begin=${EPOCHREALTIME/./}
   shift
-  "$@" >"$root/log" 2>&1 || { cat "$root/log"; echo "failed: $name"; exit 1; }
+  quietly "$@"
   local took=$((${EPOCHREALTIME/./} - begin))
   total=$((total + took))
   printf '%8.2f s  %s\n' "$((took / 10000))e-2" "$name"
 }
-begin_again() {
-  total=0
-  echo "== $1"
+goal() {  # goal SECONDS WHAT
+  printf '%8.2f s  in all: %s (goal: %d)\n' "$((total / 10000))e-2" "$2" "$1"
+  ((total < $1 * 1000000)) || late=1
+}
+# offered LINE TYPED: a terminal shows LINE where somebody types this into bash, \t being the tabulator
+offered() {
+  { sleep 1; printf "$2"'\nexit\n'; } |
+    script -qec "chroot '$root' /usr/bin/env -i HOME=/root TERM=dumb LANG=C.UTF-8 /bin/bash -i" /dev/null |
+    tee /dev/stderr | grep "$1"
 }
 
-[[ -x $root/usr/bin/apt-get ]] || debootstrap --variant=minbase bookworm "$root" >/dev/null
-mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
-cp -- "$package" "$archive" "$root/root/"
-inside apt-get update -q >/dev/null
-inside apt-get install -q --yes --download-only --no-install-recommends "/root/${package##*/}" >/dev/null 2>&1
+ls packages/pkmopt* >/dev/null 2>&1 || quietly experiments/package.sh
+package=$(ls packages/pkmopt_*.deb) archive=$(ls packages/pkmopt-*.tar.gz)
+[[ -x $bare/usr/bin/apt-get ]] || quietly debootstrap --variant=minbase bookworm "$bare"
 
-begin_again "the archive, where nothing is installed"
-step "unpack" inside tar -xzf "/root/${archive##*/}" -C /root
-step "the paper's study" inside sh -c 'cd /root && /root/pkmopt-*/bin/pkmopt run /root/pkmopt-*/share/pkmopt/experiments/4ppa-2par/paper-problem.toml --output archive.h5 --force'
+begin_again "the archive, where nothing is installed, in a folder of any name"
+cp -- "$archive" "$root/root/archive.tar.gz"
+inside mkdir -p "/opt/some where"
+step "unpack" inside tar -xzf archive.tar.gz -C "/opt/some where" --strip-components=1
+step "the paper's study" inside "/opt/some where/bin/pkmopt" run --output paper.h5 \
+  "/opt/some where/share/pkmopt/experiments/4ppa-2par/paper-problem.toml"
+step "its report" inside "/opt/some where/bin/pkmopt" report paper.h5
+step "a proof" inside "/opt/some where/bin/pkmopt" certify --proof proof.txt --gap 0.2 \
+  "/opt/some where/share/pkmopt/experiments/mechanisms/orthoglide.toml"
+step "its check" inside "/opt/some where/bin/pkmopt-check-proof" proof.txt
+goal 60 "from the archive to the first report"
 
-begin_again "the package (already downloaded: what it asks for)"
-step "apt install ./pkmopt.deb" inside apt-get install -q --yes --no-install-recommends "/root/${package##*/}"
-step "pkmopt new mechanism" inside sh -c 'cd /root && pkmopt new mechanism my-delta --output my-delta.toml --force'
-step "pkmopt new study" inside sh -c 'cd /root && pkmopt new study my-delta.toml --output my-study.toml --force'
-step "pkmopt run" inside sh -c 'cd /root && pkmopt run my-study.toml --force'
-step "pkmopt report" inside sh -c 'cd /root && pkmopt report my-study.h5 --force && test -s my-study.html'
-printf '%8.2f s  in all (goal: 120)\n' "$((total / 10000))e-2"
-((total < 120000000))
+begin_again "the package"
+cp -- "$package" "$root/root/pkmopt.deb"
+quietly inside apt-get update -q
+quietly installed --download-only ./pkmopt.deb
+step "apt install ./pkmopt.deb, what it needs being downloaded" installed ./pkmopt.deb
+step "pkmopt new mechanism" inside pkmopt new mechanism my-delta --output my-delta.toml
+step "pkmopt new study" inside pkmopt new study my-delta.toml --output my-study.toml
+step "pkmopt check" inside pkmopt check my-study.toml
+step "pkmopt run" inside pkmopt run my-study.toml
+goal 60 "from the package to the end of the first study"
+step "pkmopt report" inside pkmopt report my-study.h5
+inside test -s my-study.html
+goal 120 "from the package to the first report"
+
+echo "== what comes with it"
+quietly installed man-db bash-completion
+cp -- "$root/etc/skel/.bashrc" "$root/root/"  # as a user's, with completion on
+step "man pkmopt-run" inside sh -c 'man pkmopt-run | grep -q instruction-set'
+step "pkmopt rep<TAB>" offered 'pkmopt report --help' 'pkmopt rep\t--help'
+step "pkmopt run my-st<TAB>" offered 'pkmopt run my-study.toml' 'cd\npkmopt run my-st\t--help'
+step "a script of the studies'" inside /usr/share/pkmopt/experiments/2t1r-p-hybrid/motion-curves.sh curves
+
+mapfile -t suggested < <(dpkg-deb --field "$package" Suggests | tr ',' '\n')
+quietly installed g++ cmake make pkg-config ${suggested[*]}
+cp -r --parents tests/packaging/external tests/own_mechanisms "$root/root/"
+step "a program with a mechanism of its own" inside sh -c \
+  'cmake -S tests/packaging/external -B build && cmake --build build --target scara'
+step "its study" inside build/scara run tests/packaging/external/scara.toml
+exit $late

@@ -1,0 +1,90 @@
+# What `cmake --install` brings, and the packages that experiments/package.sh makes of it: one for Debian, whose libraries
+# it asks for, and an archive that brings them.
+if(NOT PKM_BUNDLE)  # for a compiler and libraries other than ours, the library is built from source
+  include(CMakePackageConfigHelpers)
+  set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pkmopt)
+  write_basic_package_version_file(pkmopt-config-version.cmake COMPATIBILITY SameMinorVersion)
+  # The folder is added to users' include paths, so that their #include lines read like ours.
+  set(libraries pkmopt)
+  if(PKM_PROGRAM)
+    list(APPEND libraries pkmopt_program)
+  endif()
+  install(TARGETS ${libraries} EXPORT pkmopt-targets
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pkmopt)
+  install(EXPORT pkmopt-targets NAMESPACE pkmopt:: DESTINATION ${package_folder})
+  configure_file(engine/pkmopt-config.cmake.in pkmopt-config.cmake @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/pkmopt-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/pkmopt-config-version.cmake
+          DESTINATION ${package_folder})
+endif()
+
+set(studies ${CMAKE_INSTALL_DATADIR}/pkmopt)
+install(DIRECTORY experiments DESTINATION ${studies} FILES_MATCHING
+  REGEX "\\.(toml|md|svg|png)$"
+  REGEX "\\.(sh|sbatch)$" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
+    GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE
+  PATTERN experiments/*.sh EXCLUDE PATTERN pictures/*.sh EXCLUDE PATTERN app EXCLUDE)
+
+# The pages, which lead to each other and to the studies as in the repository.
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN _static EXCLUDE)
+file(RELATIVE_PATH from_pages /${CMAKE_INSTALL_DOCDIR} /${studies}/experiments)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/pages)
+file(CREATE_LINK ${from_pages} ${PROJECT_BINARY_DIR}/pages/experiments SYMBOLIC)
+install(FILES ${PROJECT_BINARY_DIR}/pages/experiments DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Who wrote what is part of the program.
+foreach(part libhdf5-dev libcli11-dev nlohmann-json3-dev libeigen3-dev librandom123-dev)
+  install(FILES /usr/share/doc/${part}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences RENAME ${part} OPTIONAL)
+endforeach()
+if(PKM_HAS_PAGE)
+  cmake_path(GET PKM_PLOTLY PARENT_PATH plotly)
+  install(FILES ${plotly}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences RENAME plotly.js)
+endif()
+
+if(NOT PKM_PROGRAM)
+  return()
+endif()
+set(programs pkmopt_app pkmopt_check_proof)
+if(NOT PKM_BUNDLE)
+  install(TARGETS ${programs} RUNTIME)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # what Debian calls it
+  set(CPACK_GENERATOR DEB)
+else()
+  set(CPACK_GENERATOR TGZ)
+  set(beside ${CMAKE_INSTALL_LIBDIR}/pkmopt)
+  set_target_properties(${programs} PROPERTIES INSTALL_RPATH $ORIGIN/../${beside})
+  foreach(program IN LISTS programs)  # found by the libraries' own libraries, too
+    target_link_options(${program} PRIVATE LINKER:--disable-new-dtags)
+  endforeach()
+  install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET pkmopt_libraries RUNTIME)
+  install(RUNTIME_DEPENDENCY_SET pkmopt_libraries DESTINATION ${beside}
+    PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|ld-linux.*)\\.so")  # the system's own
+  # Who wrote these: of the Debian packages that they are from.
+  install(CODE "set(beside ${beside})\nset(licences ${CMAKE_INSTALL_DOCDIR}/licences)")
+  install(CODE [[
+    set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
+    file(GLOB libraries RELATIVE ${prefix}/${beside} ${prefix}/${beside}/*)
+    foreach(library IN LISTS libraries)
+      execute_process(COMMAND dpkg-query --search *-linux-gnu*/${library} OUTPUT_VARIABLE found ERROR_QUIET)
+      string(REGEX MATCHALL "(^|\n)[^:\n]+" packages "${found}")
+      foreach(package IN LISTS packages)
+        string(STRIP "${package}" package)
+        configure_file(/usr/share/doc/${package}/copyright ${prefix}/${licences}/${package} COPYONLY)
+      endforeach()
+    endforeach()]])
+endif()
+
+set(CPACK_PACKAGE_CONTACT "the pkmopt authors")
+set(CPACK_PACKAGE_DESCRIPTION "For a parallel robot, pkmopt finds its workspace, its best dimensions, its
+coupling and its forces, with exact derivatives where there are closed forms.
+The robot is built in or described by a file.")
+set(CPACK_PACKAGE_VENDOR pkmopt)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, man-db, libeigen3-dev, libhdf5-dev, libnlopt-dev, \
+coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev")
+include(CPack)

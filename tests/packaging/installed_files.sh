@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# installed_files.sh PREFIX MANIFEST: everything a user looks for has been installed, and nothing that only builders need.
+set -euo pipefail
+prefix=$1 manifest=$2
+failures=0
+fail() { printf '%s\n' "$*" >&2; failures=1; }
+installed() { grep -Eq -- "^$prefix/$1\$" "$manifest" || fail "not installed: $1"; }
+
+commands=$("$prefix/bin/pkmopt" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p')
+(($(wc -w <<< "$commands") > 15)) || fail "few commands: $commands"
+for command in $commands; do installed "share/man/man1/pkmopt-$command\.1\.gz"; done
+for file in bin/pkmopt bin/pkmopt-check-proof 'lib[^/]*(/.*)?/libpkmopt\.a' 'lib[^/]*(/.*)?/libpkmopt_program\.a' \
+  'lib[^/]*(/.*)?/cmake/pkmopt/pkmopt-config\.cmake' include/pkmopt/engine/mechanism/mechanism.hpp \
+  include/pkmopt/experiments/app/program.hpp share/man/man1/pkmopt{,-check-proof}\\.1\\.gz share/bash-completion/completions/pkmopt \
+  share/zsh/vendor-completions/_pkmopt share/fish/vendor_completions.d/pkmopt.fish \
+  share/doc/pkmopt/{README.md,CHANGELOG.md,LICENSE,docs/install.md,docs/tutorials/cluster.md,licences/libhdf5-dev} \
+  share/pkmopt/experiments/{4ppa-2par/paper-problem.toml,mechanisms/linear-delta.toml,slurm/study.sbatch}; do
+  installed "$file"
+done
+for script in "$prefix"/share/pkmopt/experiments/{3crr-r-cru/{force-curves,coupling-maps},2t1r-p-hybrid/motion-curves}.sh; do
+  [[ -x $script ]] || fail "not there to be run: $script"
+done
+! grep -E '\.(cpp|in|h5)$|CMakeLists|/(debian-packages|package|quickstart)\.sh$|experiments/app/[^p]' "$manifest" ||
+  fail "installed, and of no use there"
+
+# Where the first page leads: to pages, studies and pictures.
+cd -- "$prefix/share/doc/pkmopt"
+links=$(grep -oE '(\]\(|src=")(docs|experiments)/[^)#"]*\.(md|toml|svg|png)' README.md | sed 's/^.*[("]//')
+(($(wc -l <<< "$links") > 5)) || fail "few links in README.md: $links"
+for link in $links; do [[ -e $link ]] || fail "README.md leads nowhere: $link"; done
+exit $failures
