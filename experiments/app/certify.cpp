@@ -158,7 +158,7 @@ void add_certify(CLI::App& app, Session& session) {
   add_option(command, "--box NAME=FROM:TO", arguments.box,
              "Ranges of the swept coordinates, whose poses are to be certified")
       ->allow_extra_args(false);
-  add_option(command, "--proof FILE", arguments.proof, "Write the proof, which pkmopt-check-proof checks");
+  add_option(command, "-o,--proof FILE", arguments.proof, "Write the proof, which pkmopt-check-proof checks");
   command.add_flag("--force", arguments.force, "Overwrite an existing proof");
   add_integer(command, "--boxes N", arguments.boxes, 1, 100000000,
               "Boxes at which to end in any case; default 4000000");

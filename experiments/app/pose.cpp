@@ -46,7 +46,7 @@ void tell_joints(const Target& target, const std::string& mode, const MotionSamp
   const MechanismInfo& info = target.info();
   std::vector<Row> rows;
   for (std::size_t i = 0; report.joints && i < info.joints.size(); ++i)
-    rows.push_back({info.joints[i].name, number((*report.joints)[i], info.joints[i].unit)});
+    rows.push_back({info.joints[i].name, position((*report.joints)[i], info.joints[i].unit)});
   if (const Velocities* const velocities = target.mechanism->velocities()) {
     for (const char* key : {"H", "joint_speeds", "joint_accelerations"}) out.json[key] = nullptr;
     if (const auto influence = velocities->influence(target.parameters, at.pose, mode)) {
@@ -97,8 +97,8 @@ void tell_chain(const AuxiliaryChain& names, const ChainAt& at, Printout& out) {
                        {"gradient", found(vector_json(chain.influence.gradient))},
                        {"hessian", found(matrix_json(chain.influence.hessian))}};
   if (chain.turns)
-    out.section("auxiliary chain", {{in, number(at.input.angle, "rad")},
-                                    {name, number(turning.angle, "rad")},
+    out.section("auxiliary chain", {{in, position(at.input.angle, "rad")},
+                                    {name, position(turning.angle, "rad")},
                                     {"speed", number(turning.speed, "rad/s")},
                                     {"acceleration", number(turning.acceleration, "rad/s^2")}});
   else

@@ -197,7 +197,7 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
 }
 
 void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning) {
-  add_option(command, "--csv FILE", output.csv, meaning);
+  add_option(command, "-o,--csv FILE", output.csv, meaning);
   command.add_flag("--force", output.force, "Overwrite the file if it exists");
 }
 

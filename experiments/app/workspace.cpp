@@ -92,7 +92,7 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
     const auto& [coordinate, name, unit, value, upper, cells] = workspace.held[i];
     const std::string& why = workspace.held_note[i];
     json["held"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
-    out.head.push_back({name, number(value, unit), why});
+    out.head.push_back({name, position(value, unit), why});
   }
   if (workspace.held.size() == 1) json["held"] = Json(json["held"][0]);
 
@@ -107,7 +107,7 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
     if (extents)
       std::ranges::transform((*extents)[i], feasible.begin(), [&](double end) { return beyond_rounding(end, size); });
     const auto range = [&axis](const std::array<double, 2>& ends) {
-      return number(ends[0], axis.unit) + " .. " + number(ends[1], axis.unit);
+      return position(ends[0], axis.unit) + " .. " + position(ends[1], axis.unit);
     };
     json["axes"].push_back({{"name", axis.name},
                             {"unit", axis.unit},
@@ -139,7 +139,7 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
                                   {"meaning", field.meaning}};
     if (range && field.name != "feasible")
       rows.push_back(
-          {field.name, number(range->least, field.unit), number(range->greatest, field.unit), field.meaning});
+          {field.name, position(range->least, field.unit), position(range->greatest, field.unit), field.meaning});
   }
   out.section("fields (least and greatest value)", rows);
 }
@@ -188,6 +188,9 @@ void add_workspace(CLI::App& app, Session& session) {
   add_workspace_outputs(command, arguments);
   add_option(command, "--csv FILE", arguments.csv, "Write a row per cell to this file");
   add_option(command, "--html FILE", arguments.html, "Write a page with plots of the design to this file");
+  add_output_by_ending(
+      command,
+      {{".csv", &arguments.csv}, {".html", &arguments.html}, {".stl", &arguments.stl}, {".vtkhdf", &arguments.vtk}});
   add_threads(command, arguments.threads);
 }
 
