@@ -31,7 +31,7 @@ SurveyPlan plan_of(const Target& target, const CouplingArguments& arguments) {
   SurveyPlan plan = target.plan();
   for (HeldCoordinate& held : plan.held)
     if (held.kind == Kind::listed) held = {held.coordinate, Kind::value, held.values.front()};
-  set_grid(plan, info, arguments, kUsualCells, kMostCells);
+  set_grid(plan, target, arguments, kUsualCells, kMostCells);
   if (arguments.phi.empty()) return plan;
   const std::vector<std::string> held = coordinate_names(info, sweep_of(info, plan).held);
   if (std::ranges::find(held, "phi") == held.end())
