@@ -18,6 +18,26 @@ bool positive_below(const std::array<double, 3>& c, int roots) {
   return roots > 0 ? c[1] < 0 : c[0] >= 0;
 }
 
+/// Whether two conics that meet at a place touch there, but for rounding.
+bool touch(const Conic& P, const Conic& Q, double t, double s) {
+  const auto gradient = [&](const Conic& of) {
+    return std::array{of.c[1] + 2 * t * of.c[3] + s * of.c[4], of.c[2] + t * of.c[4] + 2 * s * of.c[5]};
+  };
+  const auto [pt, ps] = gradient(P);
+  const auto [qt, qs] = gradient(Q);
+  return std::fabs(pt * qs - ps * qt) <= 1e-5 * std::hypot(pt, ps) * std::hypot(qt, qs);
+}
+
+/// Conics that touch cross beside that place, twice or not at all, as rounding has it. An upright surface that passes
+/// through it, as those do that tell which of the two counts, says where one takes over from the other.
+void drop_touching(std::vector<SectionRoom::Corner>& corners) {
+  std::erase_if(corners, [&](const SectionRoom::Corner& corner) {
+    return corner.touches && std::ranges::any_of(corners, [&](const SectionRoom::Corner& other) {
+             return (other.label & kKind) == kUpright && std::fabs(other.t - corner.t) < 1e-6;
+           });
+  });
+}
+
 }  // namespace
 
 bool is_upright(std::uint32_t corner) { return (corner & kKind) <= kUpright; }
@@ -36,7 +56,9 @@ void Section::add_corner(double t, double s, Signs of, std::uint32_t label, Sect
   }
   for (const Signs one_of : plan_.formula.any)
     if ((maybe & one_of) == 0) return;
-  room.corners.push_back({t, label});
+  const bool crosses = (label & kKind) == kCrossing;
+  room.corners.push_back(
+      {t, label, crosses && touch(room.conics[label & 255U], room.conics[(label & ~kKind) >> 8U], t, s)});
 }
 
 void Section::find_corners(SectionRoom& room) const {
@@ -67,6 +89,7 @@ void Section::find_corners(SectionRoom& room) const {
         add_corner(points[n].t, points[n].s, bit(k) | bit(l), crossing(l, k), room);
     }
   }
+  drop_touching(room.corners);
 }
 
 void Section::find_column(double t, const double* registers, SectionRoom& room) const {
