@@ -113,28 +113,15 @@ class DescribedVoxels final : public VoxelSurveyor {
     if (inertia_) inertia_->start(room.inputs, room.inertia);
   }
 
-  std::array<double, 2> range_of(std::span<const double> parameters, std::size_t coordinate) const {
-    if (const auto range = e_.range(parameters, coordinate)) return *range;
-    throw std::invalid_argument("mechanism " + mechanism_.info().name + " has no [survey] box for " +
-                                mechanism_.info().coordinates[coordinate].name + "; give a box");
-  }
   VoxelGrid grid_of(std::span<const double> parameters) const {
-    Box box;
-    box.fill({0, 1});
-    if (voxels_.box) {
-      box = *voxels_.box;
-    } else {
-      for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
-        box[axis] = range_of(parameters, static_cast<std::size_t>(sweep_.swept[axis]));
-    }
-    return {voxels_.cells, box};
+    return {voxels_.cells, e_.survey_box(parameters, voxels_.box, sweep_.swept)};
   }
   void integrated(std::span<const double> parameters, std::vector<HeldCells>& all) const {
     all.clear();
     for (const int coordinate : sweep_.held) {
       const HeldCoordinate held = how_held(plan_, coordinate);
       if (held.kind != Kind::integrated) continue;
-      const auto [lower, upper] = range_of(parameters, static_cast<std::size_t>(coordinate));
+      const auto [lower, upper] = e_.needed_range(parameters, static_cast<std::size_t>(coordinate));
       all.push_back(
           {static_cast<std::size_t>(coordinate), lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
     }
@@ -147,7 +134,7 @@ class DescribedVoxels final : public VoxelSurveyor {
       const auto at = static_cast<std::size_t>(coordinate);
       const HeldCoordinate held = how_held(plan_, coordinate);
       const bool sums = held.kind == Kind::integrated;
-      const auto range = sums ? range_of(parameters, at) : std::array{0.0, 0.0};
+      const auto range = sums ? e_.needed_range(parameters, at) : std::array{0.0, 0.0};
       inputs[e_.model.inputs.coordinate(at)] =
           sums ? range[0] + 0.5 * (range[1] - range[0]) / static_cast<double>(held.cells)
                : held_value(mechanism_, parameters, plan_, coordinate);
