@@ -64,6 +64,9 @@ const Ability& needed(const Ability* ability, const std::string& command, const 
   return *ability;
 }
 
+/// The gap of certain bounds that an option asks for.
+double parse_gap(const std::string& text, const std::string& option);
+
 /// One design of a mechanism, and the study that it comes from, if it does: the study's baseline, else its parameters,
 /// else the mechanism's defaults, unless a study file's design is chosen; then what --set names.
 struct Target : ChosenDesign {
