@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/graph/derivative.hpp"
+#include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/pose_conditions.hpp"
 #include "engine/survey/bounds/pose_box.hpp"
 #include "engine/survey/bounds/proof.hpp"
@@ -12,6 +13,10 @@ namespace pkm::described {
 namespace {
 
 using bounds::Conditions, bounds::Ranges;
+
+constexpr const char* kNoClearanceOfBoxes =
+    "has no certain bounds under a clearance (clearance_min), because the distance of two links is no formula of the "
+    "pose; take voxels, or leave the clearance out";
 
 /// The graph's inputs for a design, with the held coordinates where they are held.
 std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
@@ -51,6 +56,7 @@ Ranges ranges_of(const Mechanism& mechanism, const Evaluation& e, std::span<cons
 
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
                           const SurveyPlan& plan, std::size_t mode, const BoundsOptions& options) {
+  refuse_clearance(e.model, plan.limits, kNoClearanceOfBoxes);
   const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
   const Ranges given = ranges_of(mechanism, e, parameters, plan);
   for (std::size_t i = 0; i < swept.size(); ++i)
@@ -102,7 +108,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
     statement.positions.push_back(e.model.inputs.coordinate(coordinate));
   }
   for (std::size_t i = 0; i < info.parameters.size(); ++i) statement.input_names[i] = info.parameters[i].name;
-  for (std::size_t i = 0; i < info.limits.size(); ++i)
+  for (std::size_t i = 0; i < e.model.inputs.limits; ++i)
     statement.input_names[e.model.inputs.limit(i)] = "limit " + info.limits[i].name;
   for (std::size_t i = 0; i < info.coordinates.size(); ++i)
     statement.input_names[e.model.inputs.coordinate(i)] = info.coordinates[i].name;
@@ -148,6 +154,7 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
 BoxCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const SurveyPlan& plan,
                            std::size_t mode, std::span<const std::array<double, 2>> ranges,
                            const BoundsOptions& options) {
+  refuse_clearance(e.model, plan.limits, kNoClearanceOfBoxes);
   const std::vector<Interval> design(parameters.begin(), parameters.end());
   std::vector<Interval> inputs(e.model.inputs.count());
   e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
