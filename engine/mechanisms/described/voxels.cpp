@@ -182,8 +182,8 @@ class DescribedVoxels final : public VoxelSurveyor {
   CellTally find_cells(const VoxelGrid& grid, std::size_t slice, bool want_bits, Room& room) const {
     if (!clearance_) return test_.test(grid, slice, want_bits, room.cells);
     test_.test(grid, slice, true, room.cells);
-    const auto [slices, columns, cells] = test_.shape(grid);
-    const std::size_t length = CellTest::words(cells) * 64;
+    const std::array<std::size_t, 3> shape = test_.shape(grid);
+    const std::size_t columns = shape[1], cells = shape[2], length = CellTest::words(cells) * 64;
     std::vector<std::uint64_t>& bits = room.cells.bits;
     const auto look = [&] {
       clearance_->finish(room.clearance, [&](std::size_t k) {
