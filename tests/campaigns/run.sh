@@ -20,5 +20,6 @@ step env PKM_BOUNDED_DESIGNS=1000 "$root/build/ci/tests/pkm_tests" --gtest_filte
 step env PKM_POWER_STATES=10000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*PowerOfTheDrives*'
 step ./disk.py "$program" "$disk"
 step ./soak.py "$program" --evaluations 10000000 --runs 200
+step ./same_front.py "$program"
 step ./fuzz.sh --runs "${1:-1000000}"
 exit $found
