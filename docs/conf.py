@@ -47,6 +47,7 @@ PAGES = {
     "README.md": "index",
     "engine/storage/README.md": "reference/study-file",
     "experiments/README.md": "reference/studies",
+    "experiments/README.md#clearance": "theory/clearance#clearance-of-links",
     "experiments/README.md#the-hybrid-robot": "theory/2t1r-p-hybrid#the-paper-and-this-program",
     "experiments/README.md#workspaces-and-tables-for-other-programs": "reference/exports",
     "experiments/catalogue.md": "reference/catalogue/index",

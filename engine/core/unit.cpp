@@ -43,6 +43,7 @@ constexpr Symbol kSymbols[] = {
     {"mrad", {kAngle, 1, 1e3}},
     {"rad", {kAngle, 1, 1}},
     {"deg", {kAngle, kHalfTurn, 180}},
+    {"\u00b0", {kAngle, kHalfTurn, 180}},
     {"us", {kTime, 1, 1e6}},
     {"ms", {kTime, 1, 1e3}},
     {"s", {kTime, 1, 1}},
@@ -60,7 +61,10 @@ constexpr Symbol kSymbols[] = {
     {"rpm", {kAngularSpeed, kHalfTurn, 30}},
 };
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
+/// Also each byte of a letter beyond ASCII, such as the sign for degrees.
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80;
+}
 
 /// Reads "kg m^2/s" symbol by symbol; `use` sees each with its power. False when the text is no product of known units.
 template <class Use>

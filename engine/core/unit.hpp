@@ -1,4 +1,4 @@
-// Quantities with units, as users write them: "200 mm", "30deg", "0.5", "1e-3 m^2 rad".
+// Quantities with units, as users write them: "200 mm", "30deg", "30°", "0.5", "1e-3 m^2 rad".
 //
 // The program computes in SI and radians; other units exist only where text comes in. A unit is a product of symbols
 // with whole powers ("kg m^2", "m/s", "N m"). The conversion is one multiplication and one division of the number

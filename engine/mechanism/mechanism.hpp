@@ -26,7 +26,7 @@ struct LimitInfo {
                         ///< nominal value; where no threshold is given, the parameter of the design holds
   double lower = 0;     ///< allowed range of a given threshold
   double upper = 0;
-  std::string group;       ///< the constraint that owns it: "interference" or "singularity-margin"
+  std::string group;       ///< the constraint that owns it: "interference", "singularity-margin" or "clearance"
   std::string derivation;  ///< formula from the parameters, "" when there is none
   std::string meaning;
 };

@@ -140,4 +140,26 @@ S distance_of_bounds(const Bounds<S>& a, const Bounds<S>& b) {
   return root_or_zero(sum);
 }
 
+/// Two of several links, which have to keep clear of each other.
+struct LinkPair {
+  std::size_t first, second;
+
+  bool operator==(const LinkPair&) const = default;
+};
+
+/// Whether no pair is nearer than `least` [m]: it stops at the first that is.
+/// @param box  room for as many as there are capsules
+template <class Capsules, class Pairs, class Boxes>
+bool keep_clear(const Capsules& all, const Pairs& pairs, double least, Boxes& box) {
+  for (std::size_t i = 0; i < all.size(); ++i) box[i] = bounds_of(all[i].axis);
+  for (const LinkPair& pair : pairs) {
+    const Capsule<double>&a = all[pair.first], &b = all[pair.second];
+    // boxes of axes that are farther apart than rounding could matter need no closer look
+    constexpr double kRounding = 1e-9;
+    if (distance_of_bounds(box[pair.first], box[pair.second]) - (a.radius + b.radius) > least + kRounding) continue;
+    if (capsule_distance(a, b) < least) return false;
+  }
+  return true;
+}
+
 }  // namespace pkm

@@ -190,19 +190,31 @@ std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, con
   return cells;
 }
 
-std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,
-                                                const std::vector<Assignable>& known) {
+std::vector<std::optional<std::array<double, 2>>> parse_some_ranges(const std::vector<std::string>& lists,
+                                                                    const std::string& option,
+                                                                    const std::vector<Assignable>& known) {
   const auto texts = assigned_texts(lists, option, "name=from:to", known);
-  expect_all(texts, option, known);
-  std::vector<std::array<double, 2>> ranges;
+  std::vector<std::optional<std::array<double, 2>>> ranges(known.size());
   for (std::size_t i = 0; i < known.size(); ++i) {
-    const auto ends = split(*texts[i], ':');
+    if (!texts[i]) continue;
+    std::string text = *texts[i];
+    if (const auto dots = text.find(".."); dots != std::string::npos) text.replace(dots, 2, ":");  // as we print it
+    const auto ends = split(text, ':');
     const std::string found = known[i].name + "=" + *texts[i];
     if (ends.size() != 2) throw ConfigError(place_of(option), found, "name=from:to");
-    ranges.push_back({parse_value(ends[0], option, known[i]), parse_value(ends[1], option, known[i])});
-    if (!(ranges.back()[0] < ranges.back()[1]))
-      throw ConfigError(place_of(option), found, "a range whose first end is the lower one");
+    const std::array range = {parse_value(ends[0], option, known[i]), parse_value(ends[1], option, known[i])};
+    if (!(range[0] < range[1])) throw ConfigError(place_of(option), found, "a range whose first end is the lower one");
+    ranges[i] = range;
   }
+  return ranges;
+}
+
+std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,
+                                                const std::vector<Assignable>& known) {
+  const auto given = parse_some_ranges(lists, option, known);
+  expect_all(given, option, known);
+  std::vector<std::array<double, 2>> ranges;
+  for (const auto& range : given) ranges.push_back(*range);
   return ranges;
 }
 

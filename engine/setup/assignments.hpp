@@ -58,7 +58,13 @@ std::vector<double> parse_values(const std::string& text, const std::string& opt
 /// Numbers of cells of `--cells x=20,z=20`, or of `--cells 40` along each, in the order of `names`.
 std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, const std::vector<std::string>& names);
 
-/// Ranges [SI] of comma-separated `name=from:to` lists, in the order of `known`; all must be given.
+/// Ranges [SI] of comma-separated `name=from:to` or `name=from..to` lists, in the order of `known`; absent where a name
+/// is not given.
+std::vector<std::optional<std::array<double, 2>>> parse_some_ranges(const std::vector<std::string>& lists,
+                                                                    const std::string& option,
+                                                                    const std::vector<Assignable>& known);
+
+/// The same, when every name must be given.
 std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,
                                                 const std::vector<Assignable>& known);
 

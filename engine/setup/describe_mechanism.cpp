@@ -116,6 +116,7 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
   tell(mechanism.columns(), "exact workspace by columns",
        "workspace.method = \"columns\", with derivatives of the volume", mechanism.why_no_columns());
+  tell(mechanism.bounds(), "certain bounds of the workspace", "pkmopt certify, by intervals", "");
   tell(!mechanism.info().characteristic_length.empty(), "conditioning", "",
        "[platform] characteristic_length is missing, and the freedoms are of both kinds");
   tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
@@ -123,6 +124,10 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
        "as many joints as coordinates are needed");
   tell(mechanism.size(), "workspace-ratio", "", "[platform] size is missing");
   tell(mechanism.design_tests(), "tests of the design", "", "there is no [[design]]");
+  const bool clear = mechanism.links() && !mechanism.links()->joined().empty();
+  tell(clear, "clearance of links",
+       "constraint clearance or limit clearance_min: of poses, voxels, task-workspace, motions; not columns or bounds",
+       "there are no two links, of limbs with a radius or by [[link]], that could meet");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
   const Refusal no_forces = no_joint_forces(mechanism);
   tell(!no_forces, "forces and coupling", "", no_forces ? no_forces->c_str() : "");
@@ -171,6 +176,11 @@ std::string describe_mechanism(const Mechanism& mechanism) {
     for (const DesignMarginInfo& test : tests->list()) rows.push_back({test.name, test.unit, test.meaning});
     out << titled("tests of the design", rows);
   }
+  const auto joined = mechanism.links() ? mechanism.links()->joined() : std::vector<JoinedLinks>();
+  std::vector<std::vector<std::string>> links;
+  for (const auto& [link, others] : joined)
+    links.push_back({link, others.empty() ? "all others" : "all but " + names_text(others)});
+  out << titled("links, and those that they keep clear of", links);
   write_nominal_pose(out, mechanism, nominal);
   write_abilities(out, mechanism);
   return out.str();

@@ -83,6 +83,8 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft);
 void refuse_idle_signs(const ConfigValue& root, MechanismDraft& draft);
 /// [[link]]. @return  the links as [[body]] names them
 std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft);
+/// The limit of the clearance, behind all others, where links have to keep clear of each other.
+void add_clearance(MechanismDraft& draft);
 /// [survey]
 void read_survey(const ConfigValue& root, MechanismDraft& draft);
 /// All combinations of the signs, the file's first.

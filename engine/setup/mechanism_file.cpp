@@ -73,6 +73,9 @@ void read_parameters(const ConfigValue& root, const std::vector<LimbParameter>& 
     }
     table.expect_table("a table { default = .., min = .., max = .., meaning = .. }")
         .allow({"default", "min", "max", "meaning", "unit"});
+    if (name == described::kClearanceLimit)
+      throw table.refusal(
+          "clearance_min is the name of the limit of the links' clearance; call the parameter otherwise");
     Parameter p;
     p.name = name;
     p.unit = unit_of(table);
@@ -200,6 +203,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   read_survey(root, draft);
   draft.scope.note_domains();
   list_modes(draft);
+  add_clearance(draft);
   return described::make_mechanism(std::move(draft.model));
 }
 

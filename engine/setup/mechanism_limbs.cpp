@@ -338,7 +338,8 @@ class LimbReader {
     const Term r = draft_.scope.of_design(*radius, "m", name);
     const auto link = [&](const std::string& what, const std::string& part, const Vector3& from, const Vector3& to) {
       const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
-      draft_.model.links.push_back({what + " of " + name, part, nodes(from), nodes(to), r.node()});
+      const std::string& group = part == kPlatformPart ? part : name;
+      draft_.model.links.push_back({what + " of " + name, part, nodes(from), nodes(to), r.node(), {group}});
     };
     if (drive_ == "crank") link("crank", name, at.A, limb.C);
     if (table_.has("links")) link("first link", name, limb.S, limb.C);

@@ -17,6 +17,10 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft) {
     LimitInfo limit;
     limit.name = table.at("name", "the limit's name").text("the limit's name");
     const Parameter* const parameter = find_named(model.info.parameters, limit.name);
+    if (limit.name == described::kClearanceLimit)
+      throw table.find("name")->refusal(
+          "clearance_min is the limit of the links' clearance, which is there wherever "
+          "links have to keep clear of each other");
     if (find_named(model.info.limits, limit.name))
       throw table.find("name")->refusal("there is already a limit called '" + limit.name + "'");
     for (const OwnParameter& own : draft.own)

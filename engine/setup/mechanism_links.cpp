@@ -1,6 +1,7 @@
-// [[link]]: what is drawn beside the limbs' own links.
+// [[link]]: what is drawn beside the limbs' own links; the clearance of all links.
 
 #include "engine/core/catalogue.hpp"
+#include "engine/mechanisms/described/clearance.hpp"
 #include "engine/setup/mechanism_draft.hpp"
 #include "engine/setup/sections.hpp"
 
@@ -29,19 +30,36 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
                   to = read_point(table.at("to", "a point"), name, draft);
     const Term radius = draft.scope.of_design(table.at("radius", "the link's radius"), "m", name);
     std::string part = kFramePart;
+    std::vector<std::string> in, copies;  // groups; `arm` is also each of its copies
     if (const auto group = table.find("group")) {
       constexpr const char* kExpected = "a name or a list of names";
       const auto groups = group->is_list() ? group->elements(kExpected) : std::vector{*group};
       if (groups.empty()) throw group->error(kExpected);
-      for (const ConfigValue& each : groups) each.text(kExpected);
-      part = groups.front().text(kExpected);
+      for (const ConfigValue& each : groups) {
+        in.push_back(each.text(kExpected));
+        for (const NamedLimb& limb : draft.limbs)
+          if (limb.group == in.back() && limb.name != in.back()) copies.push_back(limb.name);
+      }
+      part = in.front();
+      in.insert(in.end(), copies.begin(), copies.end());
     }
     const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
-    draft.model.links.push_back({name, part, nodes(from), nodes(to), radius.node()});
+    draft.model.links.push_back({name, part, nodes(from), nodes(to), radius.node(), in});
     add_link_body(table, name, from, to, draft);
     links.push_back({.name = name, .from = from, .to = to, .line = to - from});
   }
   return links;
+}
+
+void add_clearance(MechanismDraft& draft) {
+  described::Model& model = draft.model;
+  model.link_pairs = described::pairs_to_keep_clear(model.graph, model.links);
+  if (model.link_pairs.empty()) return;
+  model.clearance_limit = model.info.limits.size();
+  model.info.limits.push_back({described::kClearanceLimit, "m", kNoClearance, kNoClearance, 100, "clearance", "",
+                               "least distance of links that are not joined; < 0: they may overlap that far"});
+  model.derived.emplace_back();
+  model.replaced.emplace_back();
 }
 
 }  // namespace pkm

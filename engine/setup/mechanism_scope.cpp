@@ -85,7 +85,7 @@ double MechanismScope::at_default(const Term& term) const {
   const graph::Program program(model_.graph, {&node, 1});
   std::vector<double> inputs(model_.inputs.count(), 1), registers;
   for (std::size_t i = 0; i < model_.info.parameters.size(); ++i) inputs[i] = model_.info.parameters[i].nominal;
-  for (std::size_t i = 0; i < model_.info.limits.size(); ++i)
+  for (std::size_t i = 0; i < model_.inputs.limits; ++i)
     inputs[model_.inputs.limit(i)] = model_.info.limits[i].inactive;
   for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)  // nothing special about this pose
     inputs[model_.inputs.coordinate(i)] = 0.37 + 0.11 * static_cast<double>(i);

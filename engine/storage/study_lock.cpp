@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "engine/core/error.hpp"
 #include "engine/storage/safe_file.hpp"
@@ -40,7 +41,7 @@ bool is_lock_file(int fd) {
   return text.starts_with(kLockMark) || kLockMark.starts_with(text);  // a full disk may have kept it from its mark
 }
 
-std::string holder(int fd) {
+std::string holder_of(int fd) {
   const std::string text = text_of(fd);
   return text.starts_with(kLockMark) ? "process " + text.substr(kLockMark.size()) : "another process";
 }
@@ -63,7 +64,7 @@ bool still_named(int fd, const std::string& path) {
 
 StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(study_path) + ".lock") {
   if (switched_off()) return;
-  for (;;) {
+  for (bool again = true;;) {
     const int fd = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
     if (fd < 0 ? errno == ELOOP : !is_lock_file(fd)) {
       if (fd >= 0) ::close(fd);
@@ -75,9 +76,13 @@ StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(stu
                          ")");
     if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
-      const std::string by = holder(fd);
+      const std::string by = holder_of(fd);
       ::close(fd);
       if (error == EINTR) continue;
+      if (error == EWOULDBLOCK && std::exchange(again, false)) {  // one that only asks holds it for some microseconds
+        ::usleep(10000);
+        continue;
+      }
       if (error == EWOULDBLOCK) throw StorageError(study_path + ": in use by " + by + " (it holds " + lock_path_ + ")");
       throw StorageError(study_path + ": cannot be locked (" + std::strerror(error) +
                          "); on a file system without locks set PKMOPT_LOCK=off");
@@ -91,6 +96,18 @@ StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(stu
   // The name of the holder serves messages only, so failing to write it (a full disk) does no harm.
   const std::string name = (std::string(kLockMark) + own_name()).substr(0, kMostBytes);
   if (::ftruncate(fd_, 0) == 0) static_cast<void>(!::pwrite(fd_, name.data(), name.size(), 0));
+}
+
+std::optional<std::string> StudyLock::holder(const std::string& study_path) {
+  if (switched_off()) return "another process, perhaps (PKMOPT_LOCK=off),";
+  const std::string lock = link_target(study_path) + ".lock";
+  const int fd = ::open(lock.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) return {};
+  std::optional<std::string> holder;
+  // A lock of ours, if we get one, ends with the descriptor.
+  if (is_lock_file(fd) && ::flock(fd, LOCK_SH | LOCK_NB) != 0) holder = holder_of(fd);
+  ::close(fd);
+  return holder;
 }
 
 bool StudyLock::held() const { return fd_ < 0 || still_named(fd_, lock_path_); }

@@ -5,6 +5,7 @@
 // that pkmopt has made is taken for one: it begins with our mark, or is empty.
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace pkm {
@@ -19,6 +20,9 @@ class StudyLock {
   ~StudyLock();
   StudyLock(const StudyLock&) = delete;
   StudyLock& operator=(const StudyLock&) = delete;
+
+  /// Which process works on a study: "process 12 on host"; none where no process holds its lock, as after a kill.
+  static std::optional<std::string> holder(const std::string& study_path);
 
   /// False once the lock file was removed or replaced: another process may have locked the study.
   bool held() const;

@@ -19,7 +19,8 @@ std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::
 
 std::string axes_text(const Axes& axes, std::span<const double> values) {
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < axes.size(); ++i) texts.push_back(axes[i].name + " = " + number(values[i], axes[i].unit));
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    texts.push_back(axes[i].name + " = " + position(values[i], axes[i].unit));
   return join(texts);
 }
 

@@ -16,7 +16,7 @@ namespace pkm {
 namespace {
 
 struct CertifyArguments : DesignArguments, ModeArguments {
-  std::string gap, proof;
+  std::string gap = "1e-2", proof;
   std::vector<std::string> box;
   std::int64_t boxes = 4000000;
   int threads = 0;
@@ -99,8 +99,7 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   const MechanismInfo& info = target.info();
   const CertainBounds& bounds =
       needed(target.mechanism->bounds(), "certify", "formulas that can be computed over intervals", info);
-  const double gap = arguments.gap.empty() ? 1e-2 : parse_number(arguments.gap, "--gap", "1");
-  if (!(gap > 0 && gap < 2)) throw ConfigError({"", 0, "--gap"}, arguments.gap, "a number between 0 and 2");
+  const double gap = parse_gap(arguments.gap, "--gap");
   if (!arguments.box.empty() && !arguments.proof.empty())
     throw ConfigError({"", 0, "--proof"}, "--box", "a volume: proofs are of volumes");
   const Existing existing = if_forced(arguments.force);
@@ -158,7 +157,7 @@ void add_certify(CLI::App& app, Session& session) {
   add_option(command, "--box NAME=FROM:TO", arguments.box,
              "Ranges of the swept coordinates, whose poses are to be certified")
       ->allow_extra_args(false);
-  add_option(command, "--proof FILE", arguments.proof, "Write the proof, which pkmopt-check-proof checks");
+  add_option(command, "-o,--proof FILE", arguments.proof, "Write the proof, which pkmopt-check-proof checks");
   command.add_flag("--force", arguments.force, "Overwrite an existing proof");
   add_integer(command, "--boxes N", arguments.boxes, 1, 100000000,
               "Boxes at which to end in any case; default 4000000");

@@ -10,7 +10,7 @@
 #include "engine/study/probe.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
-#include "experiments/app/commands.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/target.hpp"
 
@@ -129,9 +129,13 @@ void check_study(const Study& study, const CheckArguments& arguments, Session& s
   std::cout << describe(study);
   for (const Reason& reason : against) std::cout << "\ncontradiction: " << reason.sentence << '\n';
   std::cout << probe_text(tried);
+  std::vector<std::string> words = {"run", arguments.file};
+  for (const std::string& word : arguments.changes.arguments()) words.push_back(word);
+  if (against.empty()) std::cout << '\n' << next_step(session, words);
 }
 
 void check(const CheckArguments& arguments, Session& session) {
+  expect_toml(arguments.file, "show", session);
   const MechanismOrStudy found = load_mechanism_or_study(arguments.file, session.catalogues, arguments.changes);
   if (const Study* const study = std::get_if<Study>(&found)) return check_study(*study, arguments, session);
   if (!arguments.changes.empty())
@@ -140,7 +144,8 @@ void check(const CheckArguments& arguments, Session& session) {
   if (arguments.json)
     print_json(mechanism_json(mechanism, session.catalogues));
   else
-    std::cout << describe_mechanism(mechanism);
+    std::cout << describe_mechanism(mechanism) << '\n'
+              << next_step(session, {"new", "study", arguments.file, "-o", "study.toml"});
 }
 
 }  // namespace

@@ -49,7 +49,6 @@ std::vector<std::string> option_names(const CLI::App& app) {
 void check_subcommand(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto known = subcommand_names(app);
   const std::string expected = "one of " + join(known) + " (see '" + app.get_name() + " --help')";
-  if (arguments.empty()) throw ConfigError({}, "no command", expected);
   const std::string& first = arguments.front();
   if (first.starts_with('-') || std::ranges::find(known, first) != known.end()) return;
   throw ConfigError({}, "the unknown command '" + first + "'", expected, nearest_name(first, known));

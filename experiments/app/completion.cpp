@@ -23,7 +23,7 @@ Values values_of(const std::string& command, const std::string& type, const Sess
   if (type == "SET") return {{kInstructionSets.begin(), kInstructionSets.end()}, ""};
   if (type == "SHELL") return {shells(), ""};
   if (type.starts_with("FILE") && !type.ends_with(".toml")) return {{}, "*"};
-  if (type == "DIR") return {{}, "*"};
+  if (type.starts_with("DIR")) return {{}, "*"};
   if (type.starts_with("F.h5")) return {{}, "h5"};
   if (type.starts_with("MECHANISM|")) {
     Values values{{}, "toml"};
@@ -84,7 +84,8 @@ _)" << name << R"(() {
     for (const DeclaredOption& option : command.options)
       if (!option.type.empty()) {
         std::string& all = options[offer(values_of(command.name, option.type, session))];
-        all += (all.empty() ? "" : "|") + in_quotes(command.name + " " + option.name);
+        for (const std::string& name : {option.name, option.letter})
+          if (!name.empty()) all += (all.empty() ? "" : "|") + in_quotes(command.name + " " + name);
       }
     for (const auto& [values, names_of_options] : options)
       std::cout << "  " << names_of_options << ") " << values << "; return ;;\n";
@@ -121,11 +122,13 @@ void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& sess
   for (const DeclaredCommand& command : commands) {
     std::cout << "  " << command.name << ") _arguments";
     for (const DeclaredOption& option : command.options)
-      std::cout << " \\\n    "
-                << in_quotes("*" + option.name + "[" + in_brackets(option.meaning) + "]" +
-                             (option.type.empty()
-                                  ? ""
-                                  : ":" + in_brackets(option.type) + ":" + action(command.name, option.type)));
+      for (const std::string& name : {option.name, option.letter})
+        if (!name.empty())
+          std::cout << " \\\n    "
+                    << in_quotes("*" + name + "[" + in_brackets(option.meaning) + "]" +
+                                 (option.type.empty()
+                                      ? ""
+                                      : ":" + in_brackets(option.type) + ":" + action(command.name, option.type)));
     for (const DeclaredOption& argument : command.arguments)
       std::cout << " \\\n    "
                 << in_quotes("*:" + in_brackets(argument.type) + ":" + action(command.name, argument.type));
@@ -153,6 +156,7 @@ void print_fish(const std::vector<DeclaredCommand>& commands, const Session& ses
     for (const DeclaredOption& option : command.options) {
       const bool any_file = values_of(command.name, option.type, session).extension == "*";
       std::cout << here << " -l " << option.name.substr(2)
+                << (option.letter.empty() ? "" : " -s " + option.letter.substr(1))
                 << (option.type.empty() ? ""
                     : any_file          ? " -r -F"
                                         : " -r -f")

@@ -31,7 +31,7 @@ SurveyPlan plan_of(const Target& target, const CouplingArguments& arguments) {
   SurveyPlan plan = target.plan();
   for (HeldCoordinate& held : plan.held)
     if (held.kind == Kind::listed) held = {held.coordinate, Kind::value, held.values.front()};
-  set_grid(plan, info, arguments, kUsualCells, kMostCells);
+  set_grid(plan, target, arguments, kUsualCells, kMostCells);
   if (arguments.phi.empty()) return plan;
   const std::vector<std::string> held = coordinate_names(info, sweep_of(info, plan).held);
   if (std::ranges::find(held, "phi") == held.end())
@@ -126,7 +126,7 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
     const auto [json_of_one, rows_of_one] = statistics(info, found);
     each.push_back(json_of_one);
     each.back()["phi"] = phi;
-    out.section(title("phi = " + number(phi, find_named(info.coordinates, "phi")->unit), found), rows_of_one);
+    out.section(title("phi = " + position(phi, find_named(info.coordinates, "phi")->unit), found), rows_of_one);
   }
   if (each.size() != 1) out.section(title(each.empty() ? "coupling indices" : "all of them", all), rows);
   if (!arguments.csv.empty()) write_table(arguments, table_of(info, all));

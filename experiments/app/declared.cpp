@@ -8,6 +8,7 @@ namespace {
 DeclaredOption declared(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   DeclaredOption result{.name = "",
+                        .letter = "",
                         .type = type.substr(0, type.find_first_of(":=")),
                         .meaning = option.get_description(),
                         .required = option.get_required()};
@@ -16,6 +17,7 @@ DeclaredOption declared(const CLI::Option& option) {
     result.name = result.type;
   } else {
     result.name = "--" + option.get_lnames().front();
+    if (!option.get_snames().empty()) result.letter = "-" + option.get_snames().front();
   }
   return result;
 }

@@ -10,8 +10,9 @@ namespace pkm {
 
 /// An option or an argument.
 struct DeclaredOption {
-  std::string name;  ///< "--output"; of an argument its type
-  std::string type;  ///< what its value is: "F.h5"; "": it takes none
+  std::string name;    ///< "--output"; of an argument its type
+  std::string letter;  ///< "-o"; "": none
+  std::string type;    ///< what its value is: "F.h5"; "": it takes none
   std::string meaning;
   bool required = false;
 };

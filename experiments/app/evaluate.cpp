@@ -2,6 +2,7 @@
 
 #include "engine/core/team.hpp"
 #include "engine/setup/assignments.hpp"
+#include "engine/study/stop_request.hpp"
 #include "engine/survey/survey_set.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
@@ -16,6 +17,7 @@ constexpr std::int64_t kBareCells = 40;
 
 struct EvaluateArguments : DesignArguments {
   int threads = 0;
+  std::string certain;
 };
 
 /// The problem of a bare mechanism: exact columns where it has them, unless cells are given, else voxels, and every
@@ -79,6 +81,34 @@ void tell_workspace(const DesignProblem& problem, const Survey<double>& survey, 
   out.section("workspace", rows);
 }
 
+/// Bounds of the exact volume that rounding and sampling cannot make wrong.
+/// @param gap  to which they are computed
+/// @return what is wrong; "": nothing
+std::string tell_bounds(const DesignProblem& problem, const DesignReport& report, double gap, Printout& out) {
+  const ProblemParts& parts = problem.parts();
+  const MechanismInfo& info = parts.mechanism->info();
+  const StopRequest stop;
+  VolumeBounds bounds;
+  try {
+    bounds = parts.mechanism->bounds()->volume(report.parameters, parts.plan, parts.demand.mode,
+                                               {.gap = gap, .stop = [] { return StopRequest::signal() != 0; }});
+  } catch (const std::invalid_argument& reason) {
+    throw ConfigError({"", 0, "--certain"}, reason.what());
+  }
+  // what is rounded in the closed forms counts beside the estimate
+  const double volume = report.survey.volume, error = (report.survey.error + 1e-9) * volume;
+  const bool holds = bounds.lower <= volume + error && bounds.upper >= volume - error;
+  const std::string unit = volume_unit(info, parts.plan);
+  out.json["certain"] = {
+      {"lower", bounds.lower}, {"upper", bounds.upper}, {"unit", unit}, {"gap", bounds.gap()}, {"holds_volume", holds}};
+  out.section("certain bounds of the volume", {{"at least", number(bounds.lower, unit)},
+                                               {"at most", number(bounds.upper, unit)},
+                                               {"gap", number(bounds.gap()) + ", asked for " + number(gap)}});
+  if (holds) return "";
+  return "the exact volume, " + number(volume, unit) + ", lies outside of its certain bounds: columns have " +
+         (volume < bounds.lower ? "overlooked" : "added") + " a part of this workspace";
+}
+
 /// The constraints that do not hold, as "no: ...".
 std::string verdict(const DesignProblem& problem, const DesignReport& report) {
   if (report.status == Status::feasible) return "yes";
@@ -92,6 +122,13 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
                      Printout& out) {
   const auto problem =
       target.study ? target.study->problem : default_problem(target, catalogues, arguments.changes.cells);
+  const bool certain = !arguments.certain.empty();
+  const double gap = certain ? parse_gap(arguments.certain, "--certain") : 0;
+  if (certain) {
+    needed(target.mechanism->bounds(), "--certain", "formulas that can be computed over intervals", target.info());
+    if (problem->parts().plan.voxels())
+      throw ConfigError({"", 0, "--certain"}, "voxels", "workspace.method = \"columns\", whose exact volume it checks");
+  }
   DesignReport report;
   with_team(arguments.threads, [&] { report = problem->report(target.parameters); });
   const bool failed = report.status == Status::failed;
@@ -115,6 +152,8 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   tell("parameters", "parameters", target.info().parameters, report.parameters, nothing);
   out.json["workspace"] = nullptr;
   if (!failed) tell_workspace(*problem, report.survey, out);
+  std::string wrong = failed ? "the evaluation failed: " + report.reason : "";
+  if (certain && !failed) with_team(arguments.threads, [&] { wrong = tell_bounds(*problem, report, gap, out); });
   tell("objectives", "objectives", problem->objectives(), report.objectives,
        [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; });
   tell("constraints", "constraints (margins: >= 0 holds)", problem->margins(), report.margins,
@@ -124,7 +163,7 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   const NamedValues facts = target.mechanism->facts(report.parameters, problem->parts().plan.limits);
   out.json["facts"] = values_by_name(facts);
   out.section("facts", rows_of(facts));
-  return failed ? "the evaluation failed: " + report.reason : "";
+  return wrong;
 }
 
 }  // namespace
@@ -139,6 +178,8 @@ void add_evaluate(CLI::App& app, Session& session) {
         return evaluate(session.catalogues, target, given, out);
       });
   add_cells_option(command, arguments.changes.cells, "Cells of the study's voxels, or of a bare mechanism's");
+  add_option(command, "--certain GAP", arguments.certain,
+             "Check the exact volume of columns against certain bounds of this gap, as 'pkmopt certify' has them");
   add_threads(command, arguments.threads);
 }
 

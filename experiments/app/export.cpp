@@ -7,6 +7,7 @@
 #include "engine/report/study_tables.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
@@ -22,7 +23,8 @@ std::string path_of(const std::string& folder, const NamedTable& table) {
   return (std::filesystem::path(folder) / table.file_name).string();
 }
 
-void export_study(const Catalogues& catalogues, const ExportArguments& arguments) {
+void export_study(const Session& session, const ExportArguments& arguments) {
+  expect_study_file(arguments.from, "workspace", session);
   if (!arguments.any() && arguments.csv.empty())
     throw ConfigError({"", 0, "export"}, "nothing to write", "at least one of --vtk, --csv, --stl");
   if (const char* const option = given_option(arguments.choice); option && !arguments.any())
@@ -35,7 +37,7 @@ void export_study(const Catalogues& catalogues, const ExportArguments& arguments
   for (const NamedTable& table : tables) files.push_back(path_of(arguments.csv, table));
   std::optional<Target> target;
   if (arguments.any()) {
-    target = find_target(catalogues, arguments);
+    target = find_target(session.catalogues, arguments);
     expect_few_cells(target->plan());
     const auto more = files_of(arguments, *target);
     files.insert(files.end(), more.begin(), more.end());
@@ -64,10 +66,11 @@ void add_export(CLI::App& app, Session& session) {
       "The workspace is evaluated anew, as the study in the file says, for the best design (of a trade-off the\n"
       "compromise) unless another is named. 'pkmopt workspace --from F.h5' does so on other cells.\n"
       "Example: pkmopt export paper-problem.h5 --vtk best.vtkhdf --csv tables --stl .",
-      [&session](const ExportArguments& given) { export_study(session.catalogues, given); });
+      [&session](const ExportArguments& given) { export_study(session, given); });
   add_option(command, "file F.h5", arguments.from, "The study file")->required();
   add_workspace_outputs(command, arguments);
   add_option(command, "--csv DIR", arguments.csv, "Write the study's tables into this folder");
+  add_output_by_ending(command, {{".stl", &arguments.stl}, {".vtkhdf", &arguments.vtk}});
   add_choice_options(command, arguments.choice);
   add_threads(command, arguments.threads);
 }

@@ -96,7 +96,9 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
     pose["working_mode"] = text_or_null(assembly.working_mode);
     pose["double_roots"] = assembly.double_roots;
     Row& row = rows.emplace_back();
-    for (const double value : assembly.pose) row.push_back(number(value));
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      row.push_back(coordinates[i].turns() ? position(assembly.pose[i], coordinates[i].unit)
+                                           : number(assembly.pose[i]));
     row.push_back(assembly.mode);
     for (const auto& root : assembly.double_roots) row.push_back("double in " + root);
     if (arguments.moves()) {

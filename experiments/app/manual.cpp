@@ -36,7 +36,8 @@ void print_heading(std::ostream& out, const std::string& page, const std::string
 
 void print_options(std::ostream& out, const std::vector<DeclaredOption>& options) {
   for (const DeclaredOption& option : options) {
-    out << ".TP\n.B " << escaped(option.name) << (option.type.empty() || option.type == option.name ? "" : " ")
+    out << ".TP\n.B " << escaped((option.letter.empty() ? "" : option.letter + ", ") + option.name)
+        << (option.type.empty() || option.type == option.name ? "" : " ")
         << (option.type == option.name ? "" : escaped(option.type)) << '\n'
         << escaped(option.meaning) << (option.required ? " (required)" : "") << '\n';
   }
@@ -122,7 +123,7 @@ void add_manual(CLI::App& app, Session& session) {
           write_pages(arguments.into, commands, session.program);
       });
   auto* const one = add_option(command, "COMMAND", a.command, "Of which command (default: of the program)");
-  add_option(command, "--into DIR", a.into, "Write all pages into this folder")->excludes(one);
+  add_option(command, "-o,--into DIR", a.into, "Write all pages into this folder")->excludes(one);
 }
 
 }  // namespace pkm

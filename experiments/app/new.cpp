@@ -8,6 +8,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -162,7 +163,7 @@ void write_new(const NewArguments& arguments, const Session& session) {
     return;
   }
   write_file(arguments.output, text, if_forced(arguments.force));
-  std::cout << "wrote " << arguments.output << '\n';
+  std::cout << "wrote " << arguments.output << '\n' << next_step(session, {study ? "run" : "check", arguments.output});
 }
 
 }  // namespace

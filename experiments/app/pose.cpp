@@ -3,15 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/model/singular.hpp"
 #include "engine/setup/assignments.hpp"
+#include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/target.hpp"
+#include "experiments/app/cad.hpp"
+#include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {
 namespace {
 
 struct PoseArguments : DesignArguments, MotionArguments {
   std::string theta, gamma, zeta;
+  std::vector<std::string> joint_error;
+  std::string stl, dxf;
+  bool force = false;
 };
 
 double chain_angle(const Mechanism& mechanism, const std::string& text, const std::string& option) {
@@ -46,7 +52,7 @@ void tell_joints(const Target& target, const std::string& mode, const MotionSamp
   const MechanismInfo& info = target.info();
   std::vector<Row> rows;
   for (std::size_t i = 0; report.joints && i < info.joints.size(); ++i)
-    rows.push_back({info.joints[i].name, number((*report.joints)[i], info.joints[i].unit)});
+    rows.push_back({info.joints[i].name, position((*report.joints)[i], info.joints[i].unit)});
   if (const Velocities* const velocities = target.mechanism->velocities()) {
     for (const char* key : {"H", "joint_speeds", "joint_accelerations"}) out.json[key] = nullptr;
     if (const auto influence = velocities->influence(target.parameters, at.pose, mode)) {
@@ -64,6 +70,82 @@ void tell_joints(const Target& target, const std::string& mode, const MotionSamp
     }
   }
   out.section("joints", rows);
+}
+
+/// Writes the files of the links that are asked for.
+void write_links(const Target& target, const std::string& mode, const Pose<double>& pose,
+                 const PoseArguments& arguments, Printout& out) {
+  const Existing existing = if_forced(arguments.force);
+  check_outputs({arguments.stl, arguments.dxf}, target.files, existing);
+  if (arguments.stl.empty() && arguments.dxf.empty()) return;
+  const MechanismInfo& info = target.info();
+  const std::vector<PlacedLink> links =
+      needed(target.mechanism->links(), "a file of links", "links", info).place(target.parameters, pose, mode);
+  if (links.empty()) return;  // the pose does not assemble, which is told
+  const std::string title = "links of " + info.name + ", " + target.words;
+  const auto write = [&](const std::string& file, const std::string& bytes) {
+    write_file(file, bytes, existing);
+    out.json["files"].push_back(file);
+    out.text += "\nwrote " + file + '\n';
+  };
+  if (!arguments.stl.empty()) write(arguments.stl, links_stl(links, title));
+  if (!arguments.dxf.empty()) write(arguments.dxf, links_dxf(links));
+}
+
+/// Errors of the joints that --joint-error gives: one for all, or by name.
+std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<std::string>& lists) {
+  const std::string option = "--joint-error";
+  std::vector<double> errors;
+  if (lists.size() == 1 && lists[0].find('=') == std::string::npos)
+    for (const AxisInfo& joint : info.joints) errors.push_back(parse_number(lists[0], option, joint.unit));
+  else
+    errors = parse_some_assignments(lists, option, assignable_axes(info.joints));
+  for (const double error : errors)
+    if (error < 0) throw ConfigError({"", 0, option}, shortest(error), "an error >= 0");
+  return errors;
+}
+
+/// What errors of the joints within +- theirs do to the platform, to first order: the worst that each coordinate can
+/// have, and the longest translation, which is at a corner of the box of errors.
+void tell_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
+                     const std::vector<std::string>& lists, Printout& out) {
+  const MechanismInfo& info = target.info();
+  const Velocities& velocities =
+      needed(target.mechanism->velocities(), "--joint-error", "influence coefficients", info);
+  if (info.joints.size() != info.coordinates.size())
+    throw ConfigError({"", 0, "--joint-error"}, "mechanism " + info.name + " has not as many joints as coordinates");
+  const std::vector<double> errors = joint_errors(info, lists);
+  out.json["joint_error"] = values_by_name(info.joints, errors);
+  out.json["tool_error"] = nullptr;
+  const auto influence = velocities.influence(target.parameters, at.pose, mode);
+  if (!influence || is_singular(influence->G)) {
+    out.text += "\nerror of the tool: does not exist, the pose is singular\n";
+    return;
+  }
+  const AxisMatrix<double> of_joints = reversed(*influence).G;
+  const auto with_micrometres = [](double error) {
+    return number(error, "m") + " (" + formatted("%.6g", 1e6 * error) + " um)";
+  };
+  std::vector<Row> rows;
+  std::vector<double> worst(errors.size(), 0);
+  for (std::size_t i = 0; i < worst.size(); ++i) {
+    for (std::size_t j = 0; j < errors.size(); ++j) worst[i] += std::fabs(of_joints(i, j)) * errors[j];
+    const AxisInfo& axis = info.coordinates[i];
+    rows.push_back({axis.name, axis.turns() ? position(worst[i], axis.unit) : with_micrometres(worst[i])});
+  }
+  double longest = 0;
+  for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
+    double square = 0;
+    for (std::size_t i = 0; i < worst.size(); ++i) {
+      double move = 0;
+      for (std::size_t j = 0; j < errors.size(); ++j) move += (corner >> j & 1 ? 1 : -1) * of_joints(i, j) * errors[j];
+      if (!info.coordinates[i].turns()) square += move * move;
+    }
+    longest = std::max(longest, std::sqrt(square));
+  }
+  rows.push_back({"translation", with_micrometres(longest)});
+  out.json["tool_error"] = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", longest}};
+  out.section("greatest error of the tool, for errors of the joints up to " + axes_text(info.joints, errors), rows);
 }
 
 /// Matrices that the pose has, where it has them.
@@ -97,8 +179,8 @@ void tell_chain(const AuxiliaryChain& names, const ChainAt& at, Printout& out) {
                        {"gradient", found(vector_json(chain.influence.gradient))},
                        {"hessian", found(matrix_json(chain.influence.hessian))}};
   if (chain.turns)
-    out.section("auxiliary chain", {{in, number(at.input.angle, "rad")},
-                                    {name, number(turning.angle, "rad")},
+    out.section("auxiliary chain", {{in, position(at.input.angle, "rad")},
+                                    {name, position(turning.angle, "rad")},
                                     {"speed", number(turning.speed, "rad/s")},
                                     {"acceleration", number(turning.acceleration, "rad/s^2")}});
   else
@@ -127,6 +209,7 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
                {"det_Jq", json_or_null(report.det_Jq)},
                {"det_G", json_or_null(report.det_G)}});
   tell_joints(target, mode, at, report, out);
+  if (!arguments.joint_error.empty()) tell_tool_error(target, mode, at, arguments.joint_error, out);
   if (report.assembles) print_jacobians(report, out);
 
   std::vector<Row> indices, margins;
@@ -150,6 +233,7 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
     margins.push_back({name, number(value), std::isnan(value) ? "" : value >= 0 ? "holds" : "broken"});
   json["margins"] = values_by_name(report.margins);
   out.section("margins (>= 0 holds)", margins);
+  write_links(target, mode, at.pose, arguments, out);
   return no_assembly(mode, report);
 }
 
@@ -167,6 +251,13 @@ void add_pose(CLI::App& app, Session& session) {
   add_list_option(command, "--velocity", arguments.velocity,
                   "Rates of the coordinates, and of an auxiliary chain's input; 0 where not given");
   add_list_option(command, "--acceleration", arguments.acceleration, "Accelerations of the same");
+  add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
+             "Errors of the joints, as 10um of all, or by name: gives the tool's, to first order")
+      ->allow_extra_args(false);
+  add_option(command, "--stl FILE", arguments.stl, "Write the links' surfaces to this file, as binary STL in m");
+  add_option(command, "--dxf FILE", arguments.dxf, "Write the links' axes to this file, as DXF in m");
+  add_output_by_ending(command, {{".dxf", &arguments.dxf}, {".stl", &arguments.stl}});
+  command.add_flag("--force", arguments.force, "Overwrite files that exist");
   add_option(command, "--theta ANGLE", arguments.theta, "Input angle of an auxiliary chain; default 0");
   add_option(command, "--gamma ANGLE", arguments.gamma, "Its output angle instead: the input follows");
   add_option(command, "--zeta ANGLE", arguments.zeta, "Phase of its forks; default 0");

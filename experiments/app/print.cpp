@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <numbers>
 
 #include "engine/core/printable.hpp"
 
@@ -21,6 +22,11 @@ std::string number(double value, std::string_view unit) {
   std::string text = formatted("%.12g", value);
   if (unit != "1" && !unit.empty()) text += " " + std::string(unit);
   return text;
+}
+
+std::string position(double value, std::string_view unit) {
+  const bool turns = unit == "rad" && !std::isnan(value);
+  return number(value, unit) + (turns ? " (" + formatted("%.6g", value * 180 / std::numbers::pi) + " deg)" : "");
 }
 
 void print_json(const Json& json) {

@@ -21,6 +21,8 @@ using Row = std::vector<std::string>;
 
 /// A number with its unit, 12 significant digits; "not computed" for NaN.
 std::string number(double value, std::string_view unit = "1");
+/// The same of a coordinate or a joint, which in degrees is easier to read: "0.349065850399 rad (20 deg)".
+std::string position(double value, std::string_view unit);
 
 /// As std::printf has it; "-" for NaN.
 std::string formatted(const char* format, double value);

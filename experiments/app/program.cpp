@@ -84,7 +84,23 @@ void add(const Command& command, CLI::App& app, Session& session) {
   if (command.evaluates) add_instruction_set(*app.get_subcommand(std::string(command.name)));
 }
 
+/// What is said where no command is named.
+constexpr const char* kFirstSteps =
+    "Commands to begin with:\n"
+    "  pkmopt list                                the mechanisms, objectives, constraints and optimisers there are\n"
+    "  pkmopt new study 4ppa-2par -o study.toml   a study to begin with\n"
+    "  pkmopt check study.toml                    what is understood of it\n"
+    "  pkmopt run study.toml                      the best design, into study.h5\n"
+    "  pkmopt report study.h5                     what was found, as a page with plots\n"
+    "  pkmopt workspace 4ppa-2par                 the workspace of one design\n"
+    "'pkmopt --help' lists all commands, 'pkmopt COMMAND --help' tells more of one.\n";
+
 void run(const std::vector<std::string>& arguments, Session& session) {
+  if (arguments.empty()) {
+    std::cerr << kProgramMeaning << '\n' << with_name(kFirstSteps, session.program);
+    session.exit_code = kBadInput;
+    return;
+  }
   CLI::App app(kProgramMeaning, session.program);
   app.set_version_flag("--version", program_words() + "\ninstruction set: " + std::string(name_of(instruction_set())) +
                                         " of " + join({kInstructionSets.begin(), kInstructionSets.end()}));
@@ -93,8 +109,7 @@ void run(const std::vector<std::string>& arguments, Session& session) {
   app.require_subcommand(1);
   app.footer(kProgramNotes);
   // To declare all commands takes longer than to carry out most of them: where one is named, the others are left out.
-  const auto named =
-      arguments.empty() ? std::end(kCommands) : std::ranges::find(kCommands, arguments[0], &Command::name);
+  const auto named = std::ranges::find(kCommands, arguments[0], &Command::name);
   if (named != std::end(kCommands))
     add(*named, app, session);
   else

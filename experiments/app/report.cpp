@@ -8,6 +8,7 @@
 #include "engine/report/html_page.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
@@ -38,6 +39,7 @@ PageStudy page_study(const std::string& file, const Session& session) {
 }
 
 void report(const ReportArguments& arguments, const Session& session) {
+  for (const std::string& file : arguments.files) expect_study_file(file, "run", session);
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
   check_outputs({output}, arguments.files, if_forced(arguments.force));

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "engine/report/standing.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
 
@@ -16,6 +17,7 @@ struct ResumeArguments {
 };
 
 void resume(const ResumeArguments& arguments, Session& session) {
+  expect_study_file(arguments.file, "run", session);
   const RunOptions options = run_options(arguments.common, session);
   const auto& extension = arguments.extension;
   HeldStudy held(arguments.file);

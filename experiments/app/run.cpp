@@ -11,6 +11,7 @@
 #include "engine/core/ranks.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/study/stop_request.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"
@@ -52,6 +53,8 @@ double seconds_of_one(const Study& study, Detail detail) {
   }
   return longest;
 }
+
+constexpr int kMostCompared = 4;  // studies in the report that is proposed
 
 /// What the evaluations will cost at most, from timed ones.
 void print_estimate(const Study& study, int seeds, int threads_of_rank) {
@@ -265,6 +268,11 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
                 << reasons_text(table.verdict->reasons);
     conclude(table.verdict, arguments.common, session);
   }
+  if (session.exit_code != kStoppedEarly && !arguments.common.quiet) {
+    std::vector<std::string> words = {"report"};
+    for (int i = 0; i < std::min(arguments.seeds, kMostCompared); ++i) words.push_back(file_of(i));
+    std::cout << next_step(session, words);
+  }
   if (session.exit_code == kStoppedEarly) {
     std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study);
     for (const std::string& word : arguments.changes.arguments()) std::cout << ' ' << quoted(word);
@@ -274,6 +282,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
 }
 
 void run(const RunArguments& arguments, Session& session) {
+  expect_toml(arguments.study, "resume", session);
   Study study = load_study_toml(arguments.study, session.catalogues, arguments.changes);
   if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;

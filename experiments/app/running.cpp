@@ -1,14 +1,12 @@
 #include "experiments/app/running.hpp"
 
-#include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <iostream>
 
 #include "engine/core/ranks.hpp"
 #include "engine/core/team.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/report/standing.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/version.hpp"
@@ -53,14 +51,6 @@ std::unique_ptr<Progress> make_progress(const RunningArguments& arguments) {
   return std::make_unique<ScreenProgress>(stderr);
 }
 
-std::string quoted(const std::string& word) {
-  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-./+=,:@%", c); };
-  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 RunEnd end_of_run(const std::function<RunOutcome()>& run) {
   try {
     return {run()};
@@ -83,7 +73,7 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
   if (!outcome.stopped.empty()) {
     // Also when quiet: it must not be missed.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
-    if (!end.unwritten) std::cout << "; go on with: " << session.program << " resume " << quoted(file);
+    if (!end.unwritten) std::cout << "; go on with: " << command_text(session, {"resume", file});
     std::cout << '\n';
     session.exit_code = kStoppedEarly;
   } else if (!arguments.quiet) {
@@ -97,7 +87,7 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
                   100 * outcome.parallel_efficiency, outcome.team.c_str(), exchange.c_str(),
                   100 * outcome.checkpoint_share);
     std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
-    if (!end.unwritten) std::cout << "written to " << file << '\n';
+    if (!end.unwritten) std::cout << "written to " << file << '\n' << next_step(session, {"report", file});
   }
   if (end.unwritten) {
     std::cout << std::flush;

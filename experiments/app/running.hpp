@@ -30,8 +30,6 @@ RunOptions run_options(const RunningArguments& arguments, const Session& session
 /// A bar or lines on stderr; nothing when quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
-/// A word for a shell: quoted where it needs to be.
-std::string quoted(const std::string& word);
 /// How a run ended, also where what it found could not be written.
 struct RunEnd {
   RunOutcome outcome;

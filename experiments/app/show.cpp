@@ -5,8 +5,9 @@
 
 #include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
+#include "engine/storage/study_lock.hpp"
 #include "engine/study/run_study.hpp"
-#include "experiments/app/commands.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/summary.hpp"
 
 namespace pkm {
@@ -44,37 +45,48 @@ std::string history(const StudyContents& contents) {
   return text;
 }
 
+struct ShowArguments {
+  std::string file;
+  bool json = false;
+};
+
+/// A study that was killed left the word that it is running: it is, while a process holds its lock.
+std::string standing(StudyContents& contents, const ShowArguments& arguments, const Session& session) {
+  if (contents.state == StudyState::finished) return "";
+  const auto holder = StudyLock::holder(arguments.file);
+  if (contents.state == StudyState::running && holder) return *holder + " works on it\n";
+  contents.state = StudyState::interrupted;
+  return "it was interrupted; go on with: " + command_text(session, {"resume", arguments.file}) + '\n';
+}
+
 /// References are in the study's text only, and a verdict's reasons partly; a file whose text this program no longer
 /// reads is shown without them.
-void show(const StudyContents& contents, bool json, const Catalogues& catalogues) {
+void show(const ShowArguments& arguments, const Session& session) {
+  expect_study_file(arguments.file, "check", session);
+  StudyContents contents = read_study(arguments.file);
+  const std::string state = standing(contents, arguments, session);
   Study study;
   std::string note;
   try {
-    study = study_of(contents, catalogues);
+    study = study_of(contents, session.catalogues);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     note = "note: this program cannot read the study's text, so references are left out (" + message_of(error) + ")\n";
   }
   const auto verdict = verdict_on(contents, study.problem.get());
-  if (json)
+  if (arguments.json)
     print_json(summary_json(contents, verdict));
   else
-    std::cout << summary_text(contents, study, verdict) << history(contents) << note;
+    std::cout << summary_text(contents, study, verdict) << history(contents) << note << state;
 }
-
-struct ShowArguments {
-  std::string file;
-  bool json = false;
-};
 
 }  // namespace
 
 void add_show(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ShowArguments>(
       app, "show", "Shows what a study found: best design, margins, history in brief.",
-      "Example: pkmopt show paper-problem.h5",
-      [&session](const ShowArguments& given) { show(read_study(given.file), given.json, session.catalogues); });
+      "Example: pkmopt show paper-problem.h5", [&session](const ShowArguments& given) { show(given, session); });
   add_option(command, "file F.h5", arguments.file, "The study file")->required();
   command.add_flag("--json", arguments.json, "One JSON object, numbers in full precision");
 }

@@ -153,6 +153,12 @@ void add_mode_options(CLI::App& command, ModeArguments& arguments) {
              "Branch of the assembly that a pose must be on, for mechanisms that have several; default: the first");
 }
 
+double parse_gap(const std::string& text, const std::string& option) {
+  const double gap = parse_number(text, option, "1");
+  if (!(gap > 0 && gap < 2)) throw ConfigError({"", 0, option}, text, "a number between 0 and 2");
+  return gap;
+}
+
 std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments) {
   const auto& [mode, branch] = arguments;
   const SourcePlace place{"", 0, "--branch"};
@@ -197,7 +203,7 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments) {
 }
 
 void add_table_output(CLI::App& command, TableOutput& output, const std::string& meaning) {
-  add_option(command, "--csv FILE", output.csv, meaning);
+  add_option(command, "-o,--csv FILE", output.csv, meaning);
   command.add_flag("--force", output.force, "Overwrite the file if it exists");
 }
 

@@ -8,7 +8,7 @@
 
 #include "engine/report/chosen_design.hpp"
 #include "engine/report/csv_table.hpp"
-#include "experiments/app/commands.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
 
 namespace pkm {
@@ -64,6 +64,9 @@ const Ability& needed(const Ability* ability, const std::string& command, const 
   return *ability;
 }
 
+/// The gap of certain bounds that an option asks for.
+double parse_gap(const std::string& text, const std::string& option);
+
 /// One design of a mechanism, and the study that it comes from, if it does: the study's baseline, else its parameters,
 /// else the mechanism's defaults, unless a study file's design is chosen; then what --set names.
 struct Target : ChosenDesign {
@@ -102,12 +105,14 @@ void add_design_arguments(CLI::App& command, DesignArguments& arguments);
 template <class Arguments, class Look>
 std::pair<CLI::App&, Arguments&> add_design_command(CLI::App& app, Session& session, const std::string& name,
                                                     const std::string& meaning, const std::string& footer, Look look) {
-  const auto added = add_command<Arguments>(app, name, meaning, footer, [&session, look](const Arguments& arguments) {
-    Printout out{.for_programs = arguments.json};
-    const std::string wrong = look(find_target(session.catalogues, arguments), arguments, out);
-    out.print();
-    if (!wrong.empty()) throw std::runtime_error(wrong);
-  });
+  const auto added =
+      add_command<Arguments>(app, name, meaning, footer, [&session, look, name](const Arguments& arguments) {
+        expect_toml(arguments.target, name + " --from", session);
+        Printout out{.for_programs = arguments.json};
+        const std::string wrong = look(find_target(session.catalogues, arguments), arguments, out);
+        out.print();
+        if (!wrong.empty()) throw std::runtime_error(wrong);
+      });
   add_design_arguments(added.first, added.second);
   return added;
 }

@@ -1,14 +1,17 @@
 // `pkmopt workspace`: the workspace of one design, cell by cell, in short or as files for other programs.
 
+#include <numbers>
+
 #include "engine/core/team.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/report/workspace_export.hpp"
-#include "engine/setup/assignments.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/running.hpp"
+#include "experiments/app/section.hpp"
+#include "experiments/app/slices.hpp"
 #include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
@@ -16,47 +19,47 @@ namespace pkm {
 namespace {
 
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs {
-  std::vector<std::string> held;
-  std::string csv, html;
+  std::vector<std::string> held, cut;
+  std::string csv, html, svg;
   int threads = 0;
 };
 
-/// Holds the coordinates that --held names at their values. Others that the study holds stay as they are where its
-/// sweep serves; where another does, the study's box and cells are of other axes.
-void set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists) {
-  const SourcePlace place{"", 0, "--held"};
-  const auto values = parse_assignments(lists, place.key, assignable_axes(info.coordinates));
-  std::vector<int> known;
-  bool several = false;
-  for (const Sweep& sweep : info.sweeps) {
-    several = several || sweep.held.size() > 1;
-    for (const int held : sweep.held)
-      if (std::ranges::find(known, held) == known.end()) known.push_back(held);
+/// Feasible cells lie at an end of a range that is given.
+bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges_given) {
+  const VoxelGrid grid = workspace.grid();
+  for (const std::size_t cell : workspace.feasible_cells()) {
+    auto rest = static_cast<std::int64_t>(cell);
+    for (std::size_t i = 3; i-- > 0; rest /= grid.cells[i]) {
+      const std::int64_t k = rest % grid.cells[i];
+      if (i < workspace.axes.size() && ranges_given[i] && (k == 0 || k == grid.cells[i] - 1)) return true;
+    }
   }
-  std::vector<HeldCoordinate> given;
-  for (int i = 0; i < std::ssize(values); ++i) {
-    const auto& value = values[static_cast<std::size_t>(i)];
-    if (value && std::ranges::find(known, i) == known.end())
-      throw ConfigError(place, coordinate_names(info, {i})[0],
-                        "a coordinate that surveys can hold: " + join(coordinate_names(info, known)));
-    if (value) given.push_back({i, HeldCoordinate::Kind::value, *value});
-  }
-  const auto serves = [&given](const Sweep& sweep) {
-    return std::ranges::all_of(
-        given, [&](const auto& held) { return std::ranges::find(sweep.held, held.coordinate) != sweep.held.end(); });
-  };
-  if (std::ranges::none_of(info.sweeps, serves))
-    throw ConfigError(
-        place, join(lists),
-        several ? "coordinates that one survey can hold, with their values" : "one coordinate with its value");
-  if (!serves(sweep_of(info, plan))) {
-    plan.held.clear();
-    plan.swept.clear();
-    plan.method = ColumnOptions();
-  }
-  for (const HeldCoordinate& held : plan.held)
-    if (std::ranges::find(given, held.coordinate, &HeldCoordinate::coordinate) == given.end()) given.push_back(held);
-  plan.held = given;
+  return false;
+}
+
+/// Throws ConfigError where a workspace is not one over two coordinates.
+void expect_plane(const WorkspaceFields& workspace) {
+  std::vector<std::string> names;
+  for (const WorkspaceAxis& axis : workspace.axes) names.push_back(axis.name);
+  if (names.size() != 2)
+    throw ConfigError({"", 0, "--svg"}, "a workspace over " + join(names),
+                      names.size() > 2 ? "a slice of it, such as that of --cut " + names.back() + "=0"
+                                       : "a workspace over two coordinates");
+}
+
+/// A picture of a workspace over two coordinates.
+std::string section_picture(const Target& target, const WorkspaceFields& workspace, Printout& out) {
+  const Section section = section_of(workspace, PoseMargin(*target.mechanism, target.parameters, target.limits));
+  const std::string& unit = workspace.volume_unit;
+  out.say("area", section.area, number(section.area, unit) + ", within the outline that is drawn");
+  std::vector<std::string> held;
+  for (const WorkspaceAxis& axis : workspace.held)
+    held.push_back(axis.name + " = " +
+                   (axis.unit == "rad" ? formatted("%.6g deg", axis.lower * 180 / std::numbers::pi)
+                                       : formatted("%.6g mm", 1e3 * axis.lower)));
+  std::vector<std::string> lines = {title_of(target), "area " + formatted("%.4g", section.area) + " " + unit};
+  if (!held.empty()) lines.insert(lines.begin() + 1, join(held));
+  return svg_picture(section, lines);
 }
 
 /// Least and greatest value of each axis at which a cell is feasible: the cells' outer faces. Absent: none is.
@@ -92,7 +95,7 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
     const auto& [coordinate, name, unit, value, upper, cells] = workspace.held[i];
     const std::string& why = workspace.held_note[i];
     json["held"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
-    out.head.push_back({name, number(value, unit), why});
+    out.head.push_back({name, position(value, unit), why});
   }
   if (workspace.held.size() == 1) json["held"] = Json(json["held"][0]);
 
@@ -107,7 +110,7 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
     if (extents)
       std::ranges::transform((*extents)[i], feasible.begin(), [&](double end) { return beyond_rounding(end, size); });
     const auto range = [&axis](const std::array<double, 2>& ends) {
-      return number(ends[0], axis.unit) + " .. " + number(ends[1], axis.unit);
+      return position(ends[0], axis.unit) + " .. " + position(ends[1], axis.unit);
     };
     json["axes"].push_back({{"name", axis.name},
                             {"unit", axis.unit},
@@ -139,24 +142,32 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
                                   {"meaning", field.meaning}};
     if (range && field.name != "feasible")
       rows.push_back(
-          {field.name, number(range->least, field.unit), number(range->greatest, field.unit), field.meaning});
+          {field.name, position(range->least, field.unit), position(range->greatest, field.unit), field.meaning});
   }
   out.section("fields (least and greatest value)", rows);
 }
 
 std::string workspace(const Target& target, const WorkspaceArguments& arguments, Printout& out) {
   std::vector<std::string> files = files_of(arguments, target);
-  for (const std::string& file : {arguments.csv, arguments.html})
+  for (const std::string& file : {arguments.csv, arguments.html, arguments.svg})
     if (!file.empty()) files.push_back(file);
   const Existing existing = if_forced(arguments.force);
   check_outputs(files, target.files, existing);
   if (!arguments.html.empty()) page_parts();  // or say at once that there are none
   with_team(arguments.threads, [&] {
     SurveyPlan plan = target.plan();
-    if (!arguments.held.empty()) set_held(plan, target.info(), arguments.held);
-    set_grid(plan, target.info(), arguments, kPictureCells, kMostCells);
+    Slices slices;
+    if (!arguments.held.empty()) slices = set_held(plan, target.info(), arguments.held);
+    add_cuts(slices, plan, target.info(), arguments.cut);
+    if (!slices.empty() && !arguments.html.empty())
+      throw ConfigError({"", 0, "--html"}, "a slice of a workspace", "a whole one; --svg draws slices");
+    auto ranges_given = set_grid(plan, target, arguments, kPictureCells, kMostCells);
+    cut(plan, target, slices, ranges_given);
     const std::string mode = known_mode(target.info(), arguments);
-    const WorkspaceFields found = fields_of(target, plan, mode);
+    WorkspaceFields found = fields_of(target, plan, mode);
+    found.touches_box = touches(found, ranges_given);
+    flatten(found, target.info(), slices);
+    if (!arguments.svg.empty()) expect_plane(found);
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {
@@ -165,6 +176,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
     tell_workspace(target, found, out);
+    if (!arguments.svg.empty()) write_file(arguments.svg, section_picture(target, found, out), existing);
   });
   out.json["files"] = files;
   for (const std::string& file : files) out.text += "wrote " + file + '\n';
@@ -179,15 +191,23 @@ void add_workspace(CLI::App& app, Session& session) {
       "Cells count where their centre is feasible under the study's limits; a bare mechanism has none. Files are in "
       "SI:\n"
       "an axis of angles is in rad beside others in m.\n"
-      "Example: pkmopt workspace 3crr-r-cru --held phi=30deg --vtk phi-30.vtkhdf",
+      "Example: pkmopt workspace 4ppa-2par --cut theta=20deg -o section.svg",
       workspace);
   add_grid_options(command, arguments, kPictureCells);
   add_list_option(command, "--held", arguments.held,
                   "Coordinates that are not swept; default: the study's, else the design's middle");
+  add_list_option(command, "--cut", arguments.cut, "Swept coordinates of which only this slice is looked at");
   add_option(command, "--mode MODE", arguments.mode, "Working mode of the coupling indices; default: the first");
   add_workspace_outputs(command, arguments);
   add_option(command, "--csv FILE", arguments.csv, "Write a row per cell to this file");
   add_option(command, "--html FILE", arguments.html, "Write a page with plots of the design to this file");
+  add_option(command, "--svg FILE", arguments.svg,
+             "Draw a workspace over two coordinates, such as a slice, to this file");
+  add_output_by_ending(command, {{".csv", &arguments.csv},
+                                 {".html", &arguments.html},
+                                 {".stl", &arguments.stl},
+                                 {".svg", &arguments.svg},
+                                 {".vtkhdf", &arguments.vtk}});
   add_threads(command, arguments.threads);
 }
 

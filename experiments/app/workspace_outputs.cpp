@@ -1,5 +1,6 @@
 #include "experiments/app/workspace_outputs.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -11,16 +12,16 @@ namespace pkm {
 namespace {
 
 std::string stl_path(const WorkspaceOutputs& outputs, const Target& target) {
+  if (outputs.stl.ends_with(".stl")) return outputs.stl;
   return (std::filesystem::path(outputs.stl) / (target.info().name + "-" + target.file_name + ".stl")).string();
 }
 
-/// "workspace of 4ppa-2par, the best design of study wide"
+}  // namespace
+
 std::string title_of(const Target& target) {
   return "workspace of " + target.info().name + ", " + target.words +
          (target.study ? " of study " + target.study->name : "");
 }
-
-}  // namespace
 
 void make_folder(const std::string& folder) {
   std::error_code error;
@@ -31,8 +32,29 @@ void make_folder(const std::string& folder) {
 void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs) {
   add_option(command, "--vtk F.vtkhdf", outputs.vtk,
              "Write all fields of the workspace's cells to this file, for ParaView");
-  add_option(command, "--stl DIR", outputs.stl, "Write the workspace's surface into this folder, as binary STL");
+  add_option(command, "--stl DIR|FILE", outputs.stl,
+             "Write the workspace's surface into this folder, or to a file F.stl, as binary STL");
   command.add_flag("--force", outputs.force, "Overwrite files that exist");
+}
+
+void add_output_by_ending(CLI::App& command, const std::vector<std::pair<std::string, std::string*>>& files) {
+  std::vector<std::string> endings;
+  for (const auto& [ending, file] : files) endings.push_back(ending);
+  const auto sort = [files, endings](const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      const auto kind = std::ranges::find_if(files, [&name](const auto& of) { return name.ends_with(of.first); });
+      if (kind == files.end())
+        throw ConfigError({"", 0, "-o"}, "'" + name + "'", "a file that ends in one of " + join(endings));
+      if (!kind->second->empty())
+        throw ConfigError({"", 0, "-o"}, "'" + name + "' beside '" + *kind->second + "'", "one file of a kind");
+      *kind->second = name;
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "-o,--output", sort, "Write this file, of the kind that its ending says: " + join(endings))
+      ->type_name("FILE")
+      ->allow_extra_args(false);
 }
 
 std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target& target) {
@@ -69,8 +91,9 @@ void write_workspace(const WorkspaceOutputs& outputs, const Target& target, cons
   const PoseMargin margin(*target.mechanism, target.parameters, target.limits);
   const Isosurface surface = isosurface(workspace, &margin);
   if (surface.triangles.empty()) throw std::runtime_error("the workspace has no surface: no cell is feasible");
-  make_folder(outputs.stl);
-  write_file(stl_path(outputs, target), stl_file(surface, title), existing);
+  const std::string path = stl_path(outputs, target);
+  if (path != outputs.stl) make_folder(outputs.stl);
+  write_file(path, stl_file(surface, title), existing);
 }
 
 }  // namespace pkm

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/report/workspace_fields.hpp"
@@ -12,9 +13,12 @@ namespace pkm {
 /// Makes a folder, and those it lies in, if it is not there. Throws StorageError.
 void make_folder(const std::string& folder);
 
+/// "workspace of 4ppa-2par, the best design of study wide"
+std::string title_of(const Target& target);
+
 struct WorkspaceOutputs {
   std::string vtk;  ///< file; "": none
-  std::string stl;  ///< folder; "": none
+  std::string stl;  ///< file, F.stl, or folder; "": none
   bool force = false;
 
   bool any() const { return !vtk.empty() || !stl.empty(); }
@@ -22,6 +26,9 @@ struct WorkspaceOutputs {
 
 /// Declares --vtk, --stl and --force.
 void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs);
+
+/// Declares -o: a file, whose ending says which of these it is.
+void add_output_by_ending(CLI::App& command, const std::vector<std::pair<std::string, std::string*>>& files);
 
 /// What they will be for a design.
 std::vector<std::string> files_of(const WorkspaceOutputs& outputs, const Target& target);

@@ -53,6 +53,20 @@ TEST_F(Certify, RefusesInOneSentence) {
   EXPECT_THAT(run({"certify", kMechanisms + "orthoglide.toml", "--box", "x=0:1"}).err, HasSubstr("--box"));
 }
 
+TEST_F(Certify, HoldsTheExactVolumeOfAnEvaluation) {
+  const auto found = run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "1e-2", "--json"});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  const auto json = found.json();
+  EXPECT_EQ(json["certain"]["holds_volume"], true);
+  EXPECT_LE(json["certain"]["gap"], 1e-2);
+  EXPECT_LE(json["certain"]["lower"], json["workspace"]["volume"]);
+  EXPECT_GE(json["certain"]["upper"], json["workspace"]["volume"]);
+  EXPECT_THAT(run({"evaluate", "quadrupteron", "--certain", "1e-2"}).err, HasSubstr("--certain needs formulas"));
+  EXPECT_THAT(run({"evaluate", kMechanisms + "rotary-delta.toml", "--certain", "1e-2"}).err,
+              HasSubstr("whose exact volume it checks"));
+  EXPECT_THAT(run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "2"}).err, HasSubstr("between 0 and 2"));
+}
+
 TEST_F(Certify, DecidesBoxesOfPoses) {
   const std::string file = kMechanisms + "orthoglide.toml";
   const auto inside = run({"certify", file, "--box", "x=-50mm:30mm,y=-50mm:30mm,z=-50mm:30mm", "--json"});

@@ -121,7 +121,7 @@ TEST_F(ChangedStudy, CommandsThatSurveyTakeOneNumberOfCells) {
   };
   EXPECT_LT(cells("clear_z=0.3"), cells("clear_z=0"));
   EXPECT_EQ(run({"workspace", kFiles + "/gough.toml", "--limit", "clear_z=0.1"}), 2);
-  EXPECT_THAT(output_, HasSubstr("--limit: found the unknown name 'clear_z'; expected no name, for there is none"));
+  EXPECT_THAT(output_, HasSubstr("--limit: found the unknown name 'clear_z'; expected one of clearance_min"));
   ASSERT_EQ(run({"pose", delta, "--at", "x=0,y=0,z=-0.45", "--limit", "clear_z=0.6", "--json"}), 0) << output_;
   EXPECT_EQ(json()["feasible"], false);
 }

@@ -32,7 +32,6 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
   std::string mechanisms;
   for (const auto& entry : all_mechanisms()) mechanisms += (mechanisms.empty() ? "" : ", ") + entry->info().name;
   const Refusal refusals[] = {
-      {{}, "found no command; expected " + commands + " (see 'pkmopt --help')"},
       {{"evalute"},
        "found the unknown command 'evalute'; expected " + commands +
            " (see 'pkmopt --help'); did you mean 'evaluate'?"},
@@ -41,8 +40,8 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
-       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --threads, --instruction-set; did "
-       "you mean '--json'?"},
+       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certain, --threads, "
+       "--instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},
@@ -77,6 +76,14 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
     EXPECT_EQ(result.err, "pkmopt: " + refusal.sentence + "\n");
     EXPECT_EQ(result.out, "");
   }
+}
+
+TEST(CliErrors, NoCommandIsExitCodeTwoAndTheFirstSteps) {
+  const auto result = pkmopt({});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("\n  pkmopt new study 4ppa-2par -o study.toml   a study to begin with\n"));
+  EXPECT_THAT(result.err, HasSubstr("'pkmopt --help' lists all commands"));
 }
 
 TEST(CliErrors, AWrongStudyIsNamedWithFileLineAndKey) {

@@ -130,8 +130,8 @@ TEST(CliCoupling, SeveralAnglesAndMistakes) {
   for (const json& one : found["each"]) mean += one["mean"]["worst"].get<double>() / 3;
   EXPECT_NEAR(found["statistics"]["mean"]["worst"], mean, 1e-12) << "all cells are feasible at each angle";
   EXPECT_EQ(found["each"][1]["phi"], 0.0);
-  EXPECT_EQ(pkmopt({"coupling", "quadrupteron", "--box", "x=0:0.1"}).err,
-            "pkmopt: --box: found no value for y, z; expected values for x, y, z\n");
+  EXPECT_EQ(pkmopt({"coupling", "quadrupteron", "--box", "x=0.1:0"}).err,
+            "pkmopt: --box: found x=0.1:0; expected a range whose first end is the lower one\n");
   EXPECT_THAT(pkmopt({"coupling", "quadrupteron", "--phi", "0:1:x"}).err, HasSubstr("from:to:count"));
   EXPECT_EQ(pkmopt({"coupling", "4ppa-2par", "--phi", "0"}).err,
             "pkmopt: --phi: the survey does not hold phi: it holds y\n");

@@ -61,7 +61,7 @@ TEST_F(MechanismFile, AFileToBeginWithIsShortAndChecks) {
     SCOPED_TRACE(mechanism);
     const auto written = run({"new", "study", mechanism, "--output", "new.toml", "--force"});
     EXPECT_EQ(written.err, "");
-    EXPECT_EQ(written.out, "wrote new.toml\n");
+    EXPECT_EQ(written.out, "wrote new.toml\nnext: pkmopt run new.toml\n");
     EXPECT_LE(lines_of(text_of(path("new.toml"))), 15);
     const auto checked = run({"check", "new.toml", "--json"});
     EXPECT_EQ(checked.exit_code, 0) << checked.err;

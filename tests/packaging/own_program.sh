@@ -34,7 +34,7 @@ STUDY
   expect "$joint" list mechanisms "$name"
   expect "workspace-volume: maximise" check "$name.toml"
   expect "finished, 24 evaluations" run "$name.toml" --output "$name.h5"
-  expect "^ *$joint +-?[0-9.e-]+ $unit\$" pose "$name" --at "$pose"
+  expect "^ *$joint +-?[0-9.e-]+ $unit( \(.* deg\))?\$" pose "$name" --at "$pose"
   expect "feasible +yes" trajectory "$name.toml" --motion sway --samples 11 --csv "$name.csv"
   grep -q ",$joint," "$name.csv" || fail "$name.csv has no column $joint"
   expect "feasible cells +[1-9]" workspace "$name" --cells "${swept// /}" --vtk "$name.vtkhdf" --csv "$name-cells.csv"

@@ -45,6 +45,12 @@ class ForwardKinematics {
   }
 };
 
+/// A link, and those that it need not keep clear of.
+struct JoinedLinks {
+  std::string link;
+  std::vector<std::string> others;
+};
+
 /// The mechanism as it is drawn: rails, platform and slides included.
 class Links {
  public:
@@ -53,6 +59,8 @@ class Links {
   /// @param mode  one of MechanismInfo::modes
   virtual std::vector<PlacedLink> place(std::span<const double> parameters, const Pose<double>& pose,
                                         const std::string& mode) const = 0;
+  /// What the clearance of links does not count, for people; empty: it does not say.
+  virtual std::vector<JoinedLinks> joined() const { return {}; }
 };
 
 /// One more input shaft, which turns one more output shaft on the platform while the platform moves.

@@ -50,9 +50,6 @@ Links<S> links(const Geometry<S>& g, const LinkRadii<S>& radius, const Limbs<S>&
   return all;
 }
 
-struct LinkPair {
-  std::size_t first, second;
-};
 inline constexpr std::size_t kLinkPairs = 24 + 36 + 44;
 inline constexpr std::array<LinkPair, kLinkPairs> kPairs = [] {
   std::array<LinkPair, kLinkPairs> pairs{};
@@ -80,18 +77,10 @@ Nearest<S> nearest_links(const Links<S>& all) {
   });
 }
 
-/// Whether no pair is nearer than `least` [m]: as nearest_links says, but it stops at the first pair that is.
+/// Whether no pair is nearer than `least` [m].
 inline bool keep_clear(const Links<double>& all, double least) {
   std::array<Bounds<double>, kLinks> box;
-  for (std::size_t i = 0; i < kLinks; ++i) box[i] = bounds_of(all[i].axis);
-  for (const LinkPair& pair : kPairs) {
-    const Capsule<double>&a = all[pair.first], &b = all[pair.second];
-    // boxes of axes that are farther apart than rounding could matter need no closer look
-    constexpr double kRounding = 1e-9;
-    if (distance_of_bounds(box[pair.first], box[pair.second]) - (a.radius + b.radius) > least + kRounding) continue;
-    if (capsule_distance(a, b) < least) return false;
-  }
-  return true;
+  return pkm::keep_clear(all, kPairs, least, box);
 }
 
 /// "rod 12", "rail 3", "middle platform", "moving platform", "platform".

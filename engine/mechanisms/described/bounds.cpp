@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/graph/derivative.hpp"
+#include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/pose_conditions.hpp"
 #include "engine/survey/bounds/pose_box.hpp"
 #include "engine/survey/bounds/proof.hpp"
@@ -13,6 +14,10 @@ namespace {
 
 using bounds::Conditions, bounds::Ranges;
 
+constexpr const char* kNoClearanceOfBoxes =
+    "has no certain bounds under a clearance (clearance_min), because the distance of two links is no formula of the "
+    "pose; take voxels, or leave the clearance out";
+
 /// The graph's inputs for a design, with the held coordinates where they are held.
 std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
                                 const SurveyPlan& plan, std::size_t mode) {
@@ -20,39 +25,26 @@ std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e,
   std::vector<Interval> inputs(e.model.inputs.count());
   e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
   for (const int coordinate : sweep_of(mechanism.info(), plan).held) {
-    if (how_held(plan, coordinate).kind == HeldCoordinate::Kind::integrated)
-      throw std::invalid_argument("bounds are of one value of " +
-                                  mechanism.info().coordinates[static_cast<std::size_t>(coordinate)].name +
-                                  ", which the survey integrates over: hold it at a value");
+    const HeldCoordinate held = how_held(plan, coordinate);
+    const bool integrated = held.kind == HeldCoordinate::Kind::integrated;
+    if (integrated || (held.kind == HeldCoordinate::Kind::listed && held.values.size() > 1))
+      throw std::invalid_argument(
+          "bounds are of one value of " + mechanism.info().coordinates[static_cast<std::size_t>(coordinate)].name +
+          (integrated ? ", which the survey integrates over" : ", of which the survey has several") +
+          ": hold it at a value");
     inputs[e.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
         held_value(mechanism, parameters, plan, coordinate);
   }
   return inputs;
 }
 
-/// Ranges of the swept coordinates, in their order.
-Ranges ranges_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
-                 const SurveyPlan& plan) {
-  if (plan.box()) return *plan.box();
-  Ranges ranges{};
-  const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
-  for (std::size_t i = 0; i < swept.size(); ++i) {
-    const auto range = e.range(parameters, static_cast<std::size_t>(swept[i]));
-    if (!range)
-      throw std::invalid_argument("mechanism " + mechanism.info().name + " has no [survey] box for " +
-                                  mechanism.info().coordinates[static_cast<std::size_t>(swept[i])].name +
-                                  "; give a box");
-    ranges[i] = *range;
-  }
-  return ranges;
-}
-
 }  // namespace
 
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
                           const SurveyPlan& plan, std::size_t mode, const BoundsOptions& options) {
+  refuse_clearance(e.model, plan.limits, kNoClearanceOfBoxes);
   const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
-  const Ranges given = ranges_of(mechanism, e, parameters, plan);
+  const Ranges given = e.survey_box(parameters, plan.box(), swept);
   for (std::size_t i = 0; i < swept.size(); ++i)
     if (!(given[i][0] < given[i][1])) return {.innermost = swept[i]};
   const std::vector<Interval> inputs = inputs_of(mechanism, e, parameters, plan, mode);
@@ -76,6 +68,10 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
       ranges[i] = given[axis];
     }
     Order order{Conditions(conditions.graph, conditions.all, positions, inputs), ranges, coordinates};
+    if (order.conditions.size() > bounds::kMostConditions)
+      throw std::invalid_argument("bounds are of at most " + std::to_string(bounds::kMostConditions) +
+                                  " conditions, and mechanism " + mechanism.info().name + " has " +
+                                  std::to_string(order.conditions.size()));
     BoundsOptions few = options;
     few.most_boxes = std::min<std::size_t>(options.most_boxes, 1024);
     const VolumeBounds tried = bounds::volume_bounds(order.conditions, order.ranges, few);
@@ -102,7 +98,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
     statement.positions.push_back(e.model.inputs.coordinate(coordinate));
   }
   for (std::size_t i = 0; i < info.parameters.size(); ++i) statement.input_names[i] = info.parameters[i].name;
-  for (std::size_t i = 0; i < info.limits.size(); ++i)
+  for (std::size_t i = 0; i < e.model.inputs.limits; ++i)
     statement.input_names[e.model.inputs.limit(i)] = "limit " + info.limits[i].name;
   for (std::size_t i = 0; i < info.coordinates.size(); ++i)
     statement.input_names[e.model.inputs.coordinate(i)] = info.coordinates[i].name;
@@ -148,6 +144,7 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
 BoxCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const SurveyPlan& plan,
                            std::size_t mode, std::span<const std::array<double, 2>> ranges,
                            const BoundsOptions& options) {
+  refuse_clearance(e.model, plan.limits, kNoClearanceOfBoxes);
   const std::vector<Interval> design(parameters.begin(), parameters.end());
   std::vector<Interval> inputs(e.model.inputs.count());
   e.fill_inputs<Interval>(design, plan.limits, mode, inputs);

@@ -1,6 +1,7 @@
 #include "engine/mechanisms/described/evaluation.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace pkm::described {
 namespace {
@@ -109,6 +110,22 @@ std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> p
              to = of_design<double>(upper[coordinate], parameters);
   if (!from || !to) return {};
   return {{*from, *to}};
+}
+
+std::array<double, 2> Evaluation::needed_range(std::span<const double> parameters, std::size_t coordinate) const {
+  if (const auto known = range(parameters, coordinate)) return *known;
+  throw std::invalid_argument("mechanism " + model.info.name + " has no [survey] box for " +
+                              model.info.coordinates[coordinate].name + "; give a box");
+}
+
+Box Evaluation::survey_box(std::span<const double> parameters, const std::optional<Box>& given,
+                           const std::vector<int>& swept) const {
+  if (given) return *given;
+  Box box;
+  box.fill({0, 1});
+  for (std::size_t axis = 0; axis < swept.size(); ++axis)
+    box[axis] = needed_range(parameters, static_cast<std::size_t>(swept[axis]));
+  return box;
 }
 
 template void Evaluation::thresholds(std::span<const double>, const LimitSpec&, std::span<double>) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/graph/rows.hpp"
+#include "engine/mechanism/plan.hpp"
 #include "engine/mechanisms/described/model.hpp"
 
 namespace pkm::described {
@@ -36,6 +37,11 @@ struct Evaluation {
   std::optional<S> of_design(const graph::Program& program, std::span<const S> parameters) const;
   /// Range of a coordinate that holds the workspace.
   std::optional<std::array<double, 2>> range(std::span<const double> parameters, std::size_t coordinate) const;
+  /// The same; throws std::invalid_argument with a sentence where there is none.
+  std::array<double, 2> needed_range(std::span<const double> parameters, std::size_t coordinate) const;
+  /// Where a survey looks, by its axes: in the box that is given, else in the ranges of the swept coordinates.
+  Box survey_box(std::span<const double> parameters, const std::optional<Box>& given,
+                 const std::vector<int>& swept) const;
 };
 
 /// Calls work(room) with `count` numbers, on the stack where they are not many: for what is computed per design or

@@ -1,7 +1,6 @@
 #include "engine/mechanisms/described/inertia_rows.hpp"
 
 #include "engine/dynamics/pose_dynamics.hpp"
-#include "engine/math/lanes.hpp"
 #include "engine/mechanisms/described/joint_inertia.hpp"
 #include "engine/survey/pose_quantities.hpp"
 
@@ -9,54 +8,44 @@ namespace pkm::described {
 
 using graph::kRow;
 
+namespace {
+
+std::vector<Node> nodes_of(const EquationNodes& equations) {
+  std::vector<Node> nodes = equations.J;
+  nodes.insert(nodes.end(), equations.M_X.begin(), equations.M_X.end());
+  return nodes;
+}
+
+}  // namespace
+
 InertiaRows::InertiaRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
                          const std::vector<double>& rotors)
-    : n_(evaluation.model.inputs.coordinates), rotors_(rotors) {
+    : n_(evaluation.model.inputs.coordinates),
+      rotors_(rotors),
+      rows_(evaluation.model, nodes_of(*evaluation.model.equations), swept, mode) {
   rotors_.resize(n_);
-  const Model& model = evaluation.model;
-  std::vector<std::optional<double>> signs(model.inputs.sign(0));
-  for (const double sign : model.signs[mode]) signs.emplace_back(sign);
-  std::vector<Node> outputs = model.equations->J;
-  outputs.insert(outputs.end(), model.equations->M_X.begin(), model.equations->M_X.end());
-  const graph::Graph graph = with_numbers(model.graph, signs, outputs);
-  Groups moving = 0;
-  for (const int coordinate : swept) moving |= Inputs::coordinate_group(static_cast<std::size_t>(coordinate));
-  program_ = graph::Program(graph, outputs, std::array{~moving, moving});
-  stage_.emplace(program_, 1, program_.outputs());
-  const auto& inputs = program_.stages()[1].inputs;
-  for (std::size_t i = 0; i < inputs.size(); ++i)
-    coordinates_.push_back({inputs[i].position - model.inputs.coordinate(0), stage_->inputs()[i]});
-  for (std::size_t i = 0; i < outputs.size(); ++i)
-    (i < n_ * n_ ? J_ : M_X_).push_back(stage_->operand(program_.outputs()[i]));
+  for (std::size_t i = 0; i < 2 * n_ * n_; ++i) (i < n_ * n_ ? J_ : M_X_).push_back(rows_.operand(i));
 }
 
 void InertiaRows::start(const std::vector<double>& inputs, InertiaRoom& room) const {
-  room.registers.resize(program_.registers());
-  room.rows.resize(stage_->slots() * kRow);
   room.M_q.resize(n_ * n_ * kRow);
   room.indices.resize(n_ * kRow);
   room.found.resize(kRow);
-  room.count = 0;
-  program_.start<double>(room.registers);
-  program_.run<double>(0, inputs, room.registers);
+  rows_.start(inputs, room.poses);
 }
 
 void InertiaRows::add(const Pose<double>& pose, InertiaRoom& room, Survey<double>& to) const {
-  for (const Coordinate& each : coordinates_) room.rows[each.slot * kRow + room.count] = pose[each.number];
-  if (++room.count == kRow) finish(room, to);
+  if (rows_.add(pose, room.poses)) finish(room, to);
 }
 
 void InertiaRows::finish(InertiaRoom& room, Survey<double>& to) const {
-  const std::size_t count = room.count, whole = (count + kLanes - 1) / kLanes * kLanes;
+  const std::size_t count = room.poses.count;
   if (count == 0) return;
-  for (const Coordinate& each : coordinates_)  // lanes beyond the last pose are like it
-    for (std::size_t k = count; k < whole; ++k)
-      room.rows[each.slot * kRow + k] = room.rows[each.slot * kRow + count - 1];
-  stage_->run(room.registers.data(), room.rows.data(), whole);
+  const std::size_t whole = rows_.run(room.poses);
   const InertiaRow row{.J = J_.data(),
                        .M_X = M_X_.data(),
-                       .registers = room.registers.data(),
-                       .rows = room.rows.data(),
+                       .registers = room.poses.registers.data(),
+                       .rows = room.poses.rows.data(),
                        .n = n_,
                        .count = whole,
                        .rotors = rotors_.data(),
@@ -78,18 +67,15 @@ void InertiaRows::finish(InertiaRoom& room, Survey<double>& to) const {
     for (std::size_t i = 0; i < M_q.size(); ++i) M_q[i] = room.M_q[i * kRow + k];
     add_inertia(M_q, to, &kCouplingIndex);
   }
-  room.count = 0;
+  room.poses.count = 0;
 }
 
 AxisMatrix<double> InertiaRows::one_by_one(std::size_t pose, const InertiaRoom& room) const {
-  const auto value = [&](const graph::Operand& of) {
-    return of.row ? room.rows[of.index * kRow + pose] : room.registers[of.index];
-  };
   PoseDynamics<double> d;
   d.J = d.M_X = AxisMatrix<double>(n_, n_);
   for (std::size_t i = 0; i < n_ * n_; ++i) {
-    d.J[i] = value(J_[i]);
-    d.M_X[i] = value(M_X_[i]);
+    d.J[i] = PoseRows::value(J_[i], pose, room.poses);
+    d.M_X[i] = PoseRows::value(M_X_[i], pose, room.poses);
   }
   AxisMatrix<double> M_q = joint_inertia(d);
   for (std::size_t i = 0; i < n_; ++i) M_q(i, i) += rotors_[i];

@@ -1,19 +1,15 @@
-// Inertia at the joints for the samples of a survey, 64 poses at a time: everything that depends on a swept coordinate
-// is computed in rows.
+// Inertia at the joints for the samples of a survey, 64 poses at a time.
 #pragma once
 
-#include <optional>
-
-#include "engine/graph/rows.hpp"
-#include "engine/mechanisms/described/evaluation.hpp"
+#include "engine/mechanisms/described/pose_rows.hpp"
 
 namespace pkm::described {
 
 /// What a worker overwrites.
 struct InertiaRoom {
-  std::vector<double> registers, found;
-  graph::Rows rows, M_q, indices;
-  std::size_t count = 0;  ///< poses that wait
+  PoseRowsRoom poses;
+  std::vector<double> found;
+  graph::Rows M_q, indices;
 };
 
 class InertiaRows {
@@ -32,15 +28,9 @@ class InertiaRows {
  private:
   AxisMatrix<double> one_by_one(std::size_t pose, const InertiaRoom& room) const;
 
-  struct Coordinate {
-    std::size_t number;
-    std::uint32_t slot;
-  };
   std::size_t n_;
   std::vector<double> rotors_;
-  graph::Program program_;
-  std::optional<graph::RowStage> stage_;
-  std::vector<Coordinate> coordinates_;  ///< swept ones that the program uses
+  PoseRows rows_;
   std::vector<graph::Operand> J_, M_X_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "engine/mechanism/both_scalars.hpp"
 #include "engine/mechanisms/described/bounds.hpp"
+#include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/columns/survey.hpp"
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/equations.hpp"
@@ -127,16 +128,14 @@ class DescribedMechanism final : public Mechanism,
     std::vector<double> inputs = e_.inputs(parameters, no_limits(info()), number_of_mode(info(), mode));
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
     if (!assembles_at(e_, inputs)) return {};
-    const std::vector<double> values = outputs_of(e_.links, inputs);
-    if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); })) return {};
+    const std::vector<Capsule<double>> capsules = capsules_at(e_, inputs);
     std::vector<PlacedLink> links;
-    const double* at = values.data();
-    for (const DescribedLink& link : e_.model.links) {
-      links.push_back({link.name, link.part, {{{at[0], at[1], at[2]}, {at[3], at[4], at[5]}}, at[6]}});
-      at += 7;
-    }
+    for (std::size_t i = 0; i < capsules.size(); ++i)
+      links.push_back({e_.model.links[i].name, e_.model.links[i].part, capsules[i]});
     return links;
   }
+
+  std::vector<JoinedLinks> joined() const override { return joined_links(e_.model); }
 
   const std::vector<DesignMarginInfo>& list() const override { return e_.model.tests; }
   void test(std::span<const double> parameters, const LimitSpec& limits, std::span<double> margins) const override {

@@ -38,10 +38,14 @@ struct Result {
   Node node{};
 };
 
+/// The name of the limit of the links' clearance.
+inline constexpr const char* kClearanceLimit = "clearance_min";
+
 struct DescribedLink {
   std::string name, part;
   std::array<Node, 3> from, to;
   Node radius;
+  std::vector<std::string> groups;  ///< links of one group need not keep clear of each other
 };
 
 /// limbs::CrankRange, and the conditions that it stands for in a survey.
@@ -120,6 +124,9 @@ struct Model {
   std::vector<CoveredRange> crank_ranges;
   std::vector<CoveredFolds> folds;
   std::vector<DescribedLink> links;
+  std::vector<LinkPair> link_pairs;            ///< those that have to keep clear
+  std::optional<std::size_t> clearance_limit;  ///< where there are some: its place among the limits, behind those of
+                                               ///< the graph
   std::vector<DesignMarginInfo> tests;
   std::vector<Node> test_nodes;
   std::optional<DescribedSize> size;

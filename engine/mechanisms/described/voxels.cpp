@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "engine/mechanisms/described/cells.hpp"
+#include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/inertia_rows.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
@@ -33,6 +34,8 @@ class DescribedVoxels final : public VoxelSurveyor {
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
     if (demand.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, demand.rotors);
+    if (const auto least = clearance_of(evaluation.model, plan.limits))
+      clearance_.emplace(evaluation, sweep_.swept, mode_, *least);
   }
 
   void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
@@ -60,7 +63,7 @@ class DescribedVoxels final : public VoxelSurveyor {
                   [&](std::size_t piece, Survey<double>& part, std::size_t worker) {
                     Room& room = rooms[worker];
                     if (room.repeat != piece / slices) start(inputs, held, piece / slices, room);
-                    const CellTally tally = test_.test(grid, piece % slices, demand_.needs_samples(), room.cells);
+                    const CellTally tally = find_cells(grid, piece % slices, demand_.needs_samples(), room);
                     part.feasible_cells += tally.cells;
                     part.touches_box = part.touches_box || tally.touches_box;
                     if (demand_.needs_samples()) add_slice(parameters, grid, piece % slices, measure, room, part);
@@ -71,14 +74,14 @@ class DescribedVoxels final : public VoxelSurveyor {
   VoxelMap map(std::span<const double> parameters) const override {
     const VoxelGrid grid = grid_of(parameters);
     VoxelMap map = grid.map();
-    CellRoom room;
+    Room room;
     std::vector<double> inputs;
     fill_inputs(parameters, inputs);
-    test_.start(inputs, room);
+    start(inputs, {}, 0, room);
     const auto [slices, columns, cells] = test_.shape(grid);
     for (std::size_t slice = 0; slice < slices; ++slice) {
-      test_.test(grid, slice, true, room);
-      for_each_cell(room, columns, cells, [&](std::size_t j, std::size_t k) {
+      find_cells(grid, slice, true, room);
+      for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
         const auto cell = test_.cell(slice, j, k);
         map.feasible[static_cast<std::size_t>((cell[0] * map.cells[1] + cell[1]) * map.cells[2] + cell[2])] = 1;
       });
@@ -92,6 +95,8 @@ class DescribedVoxels final : public VoxelSurveyor {
     std::vector<double> inputs;
     CellRoom cells;
     InertiaRoom inertia;
+    ClearanceRows::Room clearance;
+    std::array<std::size_t, graph::kRow> waiting;  ///< bits of the cells whose clearance is looked at next
   };
   struct Rooms {
     std::vector<Room> of;  ///< by worker
@@ -111,30 +116,18 @@ class DescribedVoxels final : public VoxelSurveyor {
     }
     test_.start(room.inputs, room.cells);
     if (inertia_) inertia_->start(room.inputs, room.inertia);
+    if (clearance_) clearance_->start(room.inputs, room.clearance);
   }
 
-  std::array<double, 2> range_of(std::span<const double> parameters, std::size_t coordinate) const {
-    if (const auto range = e_.range(parameters, coordinate)) return *range;
-    throw std::invalid_argument("mechanism " + mechanism_.info().name + " has no [survey] box for " +
-                                mechanism_.info().coordinates[coordinate].name + "; give a box");
-  }
   VoxelGrid grid_of(std::span<const double> parameters) const {
-    Box box;
-    box.fill({0, 1});
-    if (voxels_.box) {
-      box = *voxels_.box;
-    } else {
-      for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
-        box[axis] = range_of(parameters, static_cast<std::size_t>(sweep_.swept[axis]));
-    }
-    return {voxels_.cells, box};
+    return {voxels_.cells, e_.survey_box(parameters, voxels_.box, sweep_.swept)};
   }
   void integrated(std::span<const double> parameters, std::vector<HeldCells>& all) const {
     all.clear();
     for (const int coordinate : sweep_.held) {
       const HeldCoordinate held = how_held(plan_, coordinate);
       if (held.kind != Kind::integrated) continue;
-      const auto [lower, upper] = range_of(parameters, static_cast<std::size_t>(coordinate));
+      const auto [lower, upper] = e_.needed_range(parameters, static_cast<std::size_t>(coordinate));
       all.push_back(
           {static_cast<std::size_t>(coordinate), lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
     }
@@ -147,7 +140,7 @@ class DescribedVoxels final : public VoxelSurveyor {
       const auto at = static_cast<std::size_t>(coordinate);
       const HeldCoordinate held = how_held(plan_, coordinate);
       const bool sums = held.kind == Kind::integrated;
-      const auto range = sums ? range_of(parameters, at) : std::array{0.0, 0.0};
+      const auto range = sums ? e_.needed_range(parameters, at) : std::array{0.0, 0.0};
       inputs[e_.model.inputs.coordinate(at)] =
           sums ? range[0] + 0.5 * (range[1] - range[0]) / static_cast<double>(held.cells)
                : held_value(mechanism_, parameters, plan_, coordinate);
@@ -164,17 +157,45 @@ class DescribedVoxels final : public VoxelSurveyor {
           visit(j, word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
   }
 
+  Pose<double> pose_of(const VoxelGrid& grid, const std::array<std::int64_t, 3>& cell, const Room& room) const {
+    Pose<double> pose(e_.model.inputs.coordinates);
+    std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
+    for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
+      pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid.centre(axis, cell[axis]);
+    return pose;
+  }
+
+  /// The feasible cells of a slice. @param want_bits  whether room.cells.bits are asked for
+  CellTally find_cells(const VoxelGrid& grid, std::size_t slice, bool want_bits, Room& room) const {
+    if (!clearance_) return test_.test(grid, slice, want_bits, room.cells);
+    test_.test(grid, slice, true, room.cells);
+    const std::array<std::size_t, 3> shape = test_.shape(grid);
+    const std::size_t columns = shape[1], cells = shape[2], length = CellTest::words(cells) * 64;
+    std::vector<std::uint64_t>& bits = room.cells.bits;
+    const auto look = [&] {
+      clearance_->finish(room.clearance, [&](std::size_t k) {
+        bits[room.waiting[k] / 64] &= ~(std::uint64_t{1} << room.waiting[k] % 64);
+      });
+    };
+    for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
+      room.waiting[room.clearance.poses.count] = j * length + k;
+      if (clearance_->add(pose_of(grid, test_.cell(slice, j, k), room), room.clearance)) look();
+    });
+    look();
+    CellTally tally;
+    for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
+      ++tally.cells;
+      tally.touches_box = tally.touches_box || k == 0 || k + 1 == cells || test_.at_side(grid, slice, j);
+    });
+    return tally;
+  }
+
   /// Adds the samples of a slice.
   void add_slice(std::span<const double> parameters, const VoxelGrid& grid, std::size_t slice, double measure,
                  Room& room, Survey<double>& to) const {
     const auto [slices, columns, cells] = test_.shape(grid);
     for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
-      const auto cell = test_.cell(slice, j, k);
-      Pose<double> pose(e_.model.inputs.coordinates);
-      std::copy_n(&room.inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
-      for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
-        pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid.centre(axis, cell[axis]);
-      add_sample(parameters, pose, measure, room, to);
+      add_sample(parameters, pose_of(grid, test_.cell(slice, j, k), room), measure, room, to);
     });
     if (inertia_) inertia_->finish(room.inertia, to);
   }
@@ -203,7 +224,8 @@ class DescribedVoxels final : public VoxelSurveyor {
   const Sweep& sweep_;
   std::size_t mode_;
   CellTest test_;
-  std::optional<InertiaRows> inertia_;  ///< where fields of inertia are demanded
+  std::optional<InertiaRows> inertia_;      ///< where fields of inertia are demanded
+  std::optional<ClearanceRows> clearance_;  ///< where a clearance is asked for
 };
 
 }  // namespace

@@ -332,6 +332,8 @@ TEST_P(MechanismContract, AbsurdLimitsLeaveAnEmptyWorkspace) {
   for (const Sweep& sweep : test::sweeps(mechanism()))
     for (SurveyPlan& p : test::plans(mechanism(), sweep, 10)) {
       p.limits = test::absurd_limits(mechanism(), p);
+      if (p.limits.given == no_limits(info()).given)
+        continue;  // columns of a mechanism whose only limit is a clearance
       const auto empty = survey(mechanism(), parameters(), p, test::no_inertia(mechanism()));
       EXPECT_EQ(empty.volume, 0);
       EXPECT_EQ(empty.feasible_cells, 0);

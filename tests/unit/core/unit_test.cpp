@@ -30,6 +30,9 @@ TEST(Unit, ConvertsToTheBitsOfTheNumberInSi) {
       {"1 in", "m", 0.0254},
       {"30deg", "rad", kPi / 6},
       {"-90 deg", "rad", -kPi / 2},
+      {"30°", "rad", kPi / 6},
+      {"-90 °", "rad", -kPi / 2},
+      {"180 °/s", "rad/s", kPi},
       {"180 deg", "rad", kPi},
       {"4 mrad", "rad", 0.004},
       {"2 s", "s", 2},
@@ -58,22 +61,22 @@ TEST(Unit, ConvertsToTheBitsOfTheNumberInSi) {
 
 TEST(Unit, RefusesWhatIsNoQuantityOfTheDimension) {
   const std::pair<const char*, const char*> cases[] = {
-      {"", "m"},      {"mm", "m"},          {"abc", "1"},      {"1 kg", "m"},  {"1 rad", "1"},
-      {"1 m", "m^2"}, {"1 m^2", "m^2 rad"}, {"inf", "m"},      {"nan", "m"},   {"-inf m", "m"},
-      {"1e999", "m"}, {"1 m x", "m"},       {"1 m/", "m"},     {"1 /s", "s"},  {"1,5 m", "m"},
-      {"1 mmm", "m"}, {"0x10 m", "m"},      {"1 m^", "m"},     {"1 m^0", "1"}, {"1 2 m", "m"},
-      {"++1", "m"},   {"+-1", "m"},         {"1e308 km", "m"}, {"5 %", "m"},   {"1 m^99", "m"},
-      {"1 MM", "m"},  {"1 1 m", "m"},       {"1__0", "1"},
+      {"", "m"},       {"mm", "m"},          {"abc", "1"},      {"1 kg", "m"},  {"1 rad", "1"},
+      {"1 m", "m^2"},  {"1 m^2", "m^2 rad"}, {"inf", "m"},      {"nan", "m"},   {"-inf m", "m"},
+      {"1e999", "m"},  {"1 m x", "m"},       {"1 m/", "m"},     {"1 /s", "s"},  {"1,5 m", "m"},
+      {"1 mmm", "m"},  {"0x10 m", "m"},      {"1 m^", "m"},     {"1 m^0", "1"}, {"1 2 m", "m"},
+      {"++1", "m"},    {"+-1", "m"},         {"1e308 km", "m"}, {"5 %", "m"},   {"1 m^99", "m"},
+      {"1 °°", "rad"}, {"1 \xc2", "rad"},    {"1 MM", "m"},     {"1 1 m", "m"}, {"1__0", "1"},
   };
   for (const auto& [text, unit] : cases) EXPECT_FALSE(parse_quantity(text, unit)) << text << " in " << unit;
 }
 
 TEST(Unit, MessagesListTheUnitsOfTheDimension) {
   EXPECT_EQ(quantity_hint("m"), "a number in m, or text with a unit made of um, mm, cm, dm, m, km, in");
-  EXPECT_EQ(quantity_hint("rad"), "a number in rad, or text with a unit made of mrad, rad, deg");
+  EXPECT_EQ(quantity_hint("rad"), "a number in rad, or text with a unit made of mrad, rad, deg, °");
   EXPECT_EQ(quantity_hint("1"), "a number, or text such as \"5 %\"");
   EXPECT_EQ(quantity_hint("rad/s"),
-            "a number in rad/s, or text with a unit made of rpm, mrad, rad, deg, us, ms, s, min, h");
+            "a number in rad/s, or text with a unit made of rpm, mrad, rad, deg, °, us, ms, s, min, h");
 }
 
 TEST(Unit, SaysWhatKindAQuantityIsOf) {

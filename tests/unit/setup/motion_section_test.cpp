@@ -108,7 +108,8 @@ TEST(MotionSection, Messages) {
       {"type = \"points\"\npoints = [{ x = 0, y = 0, z = 0, phi = 0 }]",
        "m.toml:2: points: found [{ x = 0, y = 0, z = 0, phi = 0 }]; expected two points at least"},
       {"type = \"points\"\npoints = [{ x = 0, y = 0, z = 0 }, { x = 1 }]",
-       "m.toml:2: points[1].phi: found nothing; expected a number in rad, or text with a unit made of mrad, rad, deg"},
+       "m.toml:2: points[1].phi: found nothing; expected a number in rad, or text with a unit made of mrad, rad, deg, "
+       "°"},
       {points + "{ x = 1 }]",
        "m.toml:2: points[2]: nothing says how fast to move there; give time = .. or acceleration = .."},
       {points + "{ phi = 1 }]\nacceleration = 3",
@@ -168,7 +169,7 @@ TEST(MotionSection, InputOfAnAuxiliaryChain) {
   EXPECT_EQ(complaint(swing + "theta = 1\n"),
             "m.toml:8: theta: found an unknown key; expected one of type, x, y, z, phi, amplitude, period, cycles");
   EXPECT_EQ(complaint(swing + "theta = [1]\n", with_chain),
-            "m.toml:8: theta: found [1]; expected a number in rad, or text with a unit made of mrad, rad, deg");
+            "m.toml:8: theta: found [1]; expected a number in rad, or text with a unit made of mrad, rad, deg, °");
 }
 
 TEST(MotionSection, AMotionEnds) {

@@ -165,7 +165,7 @@ TEST(ProblemErrors, Constraints) {
           {"[[constraint]]\ntype = \"volume\"\nmin = \"1 m^3\"",
            "s.toml:9: constraint[1].min: found \"1 m^3\"; expected a number in m^2 rad, or text with a unit made of "
            "um, "
-           "mm, cm, dm, m, km, in, mrad, rad, deg"},
+           "mm, cm, dm, m, km, in, mrad, rad, deg, °"},
           {"[[constraint]]\ntype = \"force\"\nmax = 1",
            "s.toml:8: constraint[1].type: force needs bodies, which the mechanism slider does not describe"},
           {"[[constraint]]\ntype = \"gap\"\nangle_max = 0",
@@ -210,7 +210,7 @@ TEST(ProblemErrors, Stages) {
           {(kVolume + "[[stage]]\noptimiser = \"ga\"\ntarget = \"2 m\""),
            "s.toml:9: stage[1].target: found \"2 m\"; expected a number in m^2 rad, or text with a unit made of um, "
            "mm, "
-           "cm, dm, m, km, in, mrad, rad, deg"},
+           "cm, dm, m, km, in, mrad, rad, deg, °"},
           {(kVolume + "[[stage]]\noptimiser = \"broken\""),
            "s.toml:7: stage[1]: elite must be smaller than population"},
           {(two + "[[stage]]\noptimiser = \"ga\""),
@@ -242,7 +242,7 @@ TEST(ProblemErrors, References) {
        {"[[reference]]\nname = \"p\"\nvalues = { volume = \"1 m\" }",
         "s.toml:9: reference[1].values.volume: found \"1 m\"; expected a number in m^2 rad, or text with a unit made "
         "of "
-        "um, mm, cm, dm, m, km, in, mrad, rad, deg"},
+        "um, mm, cm, dm, m, km, in, mrad, rad, deg, °"},
        {"[[reference]]\nname = \"p\"\ndesign = { b = 1 }",
         "s.toml:9: reference[1].design.b: found an unknown variable; expected one of a; did you mean 'a'?"},
        {"[[reference]]\nname = \"p\"\nseconds = -1",

@@ -146,7 +146,7 @@ TEST(StudyErrors, MechanismAndParameters) {
            "mean 'tilt'?"},
           {"parameters = { tilt = \"2 m\" }",
            "s.toml:3: mechanism.parameters.tilt: found \"2 m\"; expected a number in rad, or text with a unit made of "
-           "mrad, rad, deg"},
+           "mrad, rad, deg, °"},
           {"parameters = { tilt = \"90 deg\" }",
            "s.toml:3: mechanism.parameters.tilt: found \"90 deg\"; expected a number in [-1, 1] rad"},
           {"parameters = { a = true }",

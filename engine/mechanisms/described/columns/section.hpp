@@ -28,6 +28,7 @@ struct SectionRoom {
   struct Corner {
     double t;
     std::uint32_t label;
+    bool touches = false;  ///< a crossing of conics that touch there
   };
   struct Span {
     EndLabel lower, upper;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/columns/sections_integral.hpp"
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/inertia_rows.hpp"
@@ -253,6 +254,9 @@ std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluat
 std::unique_ptr<const Surveyor> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,
                                                 const SurveyPlan& plan, const ColumnOptions& columns,
                                                 const Demand& demand) {
+  refuse_clearance(evaluation.model, plan.limits,
+                   "has no column surveys under a clearance (clearance_min), because links that meet end columns where "
+                   "no formula says; take workspace.method = \"voxels\"");
   return std::make_unique<DescribedColumns>(mechanism, evaluation, plan, columns, demand);
 }
 

@@ -159,6 +159,18 @@ TEST(DescribedColumns, SayWhyThereAreNone) {
   }
 }
 
+/// Where a slide's rod is stretched across a limit of the slide, a cylinder and a sphere touch all along the
+/// workspace's edge.
+TEST(DescribedColumns, AreExactWhereSurfacesTouchAllAlong) {
+  const Mechanism& orthoglide = *test::described("orthoglide");
+  const std::vector<double> design = test::design_with(
+      orthoglide.info(), {{"L", 0.2616425143772651}, {"q_min", 0.1514192579692078}, {"q_max", 0.383}});
+  const Survey<double> found = test::survey(orthoglide, design, test::columns(orthoglide.info()));
+  EXPECT_NEAR(found.volume, 0.0131476, 1e-7);
+  EXPECT_LT(found.error, 1e-8);
+  EXPECT_LT(found.columns, 5000);
+}
+
 /// Poses in columns are feasible, and their weights add up to the volume but for the rule's error.
 TEST(DescribedColumns, SampleInsideTheWorkspace) {
   for (const char* const name : {"orthoglide", "3-rrr", "4ppa-2par"}) {

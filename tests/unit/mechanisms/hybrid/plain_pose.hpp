@@ -55,8 +55,8 @@ inline bool feasible(const VoxelDesign& design, double x, double z, double beta)
   if (!design.with_links) return true;
   const SchoenfliesPose<double> pose{x, l.s_min[1], z, beta};
   const auto link = links(g, pose, inverse(g, pose, signs), shaft(g, pose));
-  return std::ranges::all_of(kPairs,
-                             [&](const LinkPair& pair) { return link_distance(link, pair) >= l.clearance_min; });
+  return std::ranges::all_of(
+      kPairs, [&](const hybrid::LinkPair& pair) { return link_distance(link, pair) >= l.clearance_min; });
 }
 
 }  // namespace pkm::testing::hybrid

@@ -1,0 +1,126 @@
+#include "engine/mechanisms/described/clearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace pkm::described {
+namespace {
+
+constexpr std::size_t kNumbers = 7;  ///< of a link: its ends and its radius
+
+template <class ValueOf>
+Capsule<double> capsule_of(const ValueOf& value) {
+  return {{{value(0), value(1), value(2)}, {value(3), value(4), value(5)}}, value(6)};
+}
+
+bool stands_still(const Graph& graph, const DescribedLink& link) {
+  const auto still = [&](Node node) { return (graph[node].groups & ~Inputs::kDesign) == 0; };
+  return std::ranges::all_of(link.from, still) && std::ranges::all_of(link.to, still);
+}
+
+bool share_a_group(const DescribedLink& a, const DescribedLink& b) {
+  return std::ranges::any_of(a.groups,
+                             [&](const std::string& group) { return std::ranges::count(b.groups, group) > 0; });
+}
+
+bool share_a_joint(const DescribedLink& a, const DescribedLink& b) {
+  return a.from == b.from || a.from == b.to || a.to == b.from || a.to == b.to;
+}
+
+std::vector<Node> nodes_of(const std::vector<DescribedLink>& links) {
+  std::vector<Node> nodes;
+  for (const DescribedLink& link : links) {
+    nodes.insert(nodes.end(), link.from.begin(), link.from.end());
+    nodes.insert(nodes.end(), link.to.begin(), link.to.end());
+    nodes.push_back(link.radius);
+  }
+  return nodes;
+}
+
+}  // namespace
+
+std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<DescribedLink>& links) {
+  std::vector<LinkPair> pairs;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    for (std::size_t k = i + 1; k < links.size(); ++k)
+      if (!(stands_still(graph, links[i]) && stands_still(graph, links[k])) && !share_a_group(links[i], links[k]) &&
+          !share_a_joint(links[i], links[k]))
+        pairs.push_back({i, k});
+  return pairs;
+}
+
+std::vector<JoinedLinks> joined_links(const Model& model) {
+  std::vector<JoinedLinks> all;
+  if (model.link_pairs.empty()) return all;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    all.push_back({model.links[i].name, {}});
+    for (std::size_t k = 0; k < model.links.size(); ++k)
+      if (k != i && !std::ranges::count(model.link_pairs, LinkPair{std::min(i, k), std::max(i, k)}))
+        all.back().others.push_back(model.links[k].name);
+  }
+  return all;
+}
+
+std::optional<double> clearance_of(const Model& model, const LimitSpec& limits) {
+  if (!model.clearance_limit) return {};
+  const auto& given = limits.given[*model.clearance_limit];
+  return given && *given > kNoClearance ? given : std::nullopt;
+}
+
+void refuse_clearance(const Model& model, const LimitSpec& limits, const std::string& why) {
+  if (clearance_of(model, limits)) throw std::invalid_argument("mechanism " + model.info.name + " " + why);
+}
+
+std::vector<Capsule<double>> capsules_at(const Evaluation& e, const std::vector<double>& inputs) {
+  const std::vector<double> values = outputs_of(e.links, inputs);
+  std::vector<Capsule<double>> links;
+  if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); })) return links;
+  for (auto at = values.begin(); at != values.end(); at += kNumbers)
+    links.push_back(capsule_of([&](std::size_t i) { return at[static_cast<std::ptrdiff_t>(i)]; }));
+  return links;
+}
+
+std::optional<Nearest<double>> nearest_links(const Evaluation& e, const std::vector<double>& inputs) {
+  if (e.model.link_pairs.empty()) return {};
+  const std::vector<Capsule<double>> links = capsules_at(e, inputs);
+  if (links.empty()) return Nearest<double>{std::nan("")};
+  std::vector<Bounds<double>> box;
+  for (const Capsule<double>& link : links) box.push_back(bounds_of(link.axis));
+  Nearest<double> nearest{std::numeric_limits<double>::infinity()};
+  for (const auto& [first, second] : e.model.link_pairs) {
+    // not nearer than their boxes are
+    const double radii = links[first].radius + links[second].radius;
+    if (distance_of_bounds(box[first], box[second]) - radii > nearest.clearance) continue;
+    const double found = capsule_distance(links[first], links[second]);
+    if (found < nearest.clearance) nearest = {found, first, second};
+  }
+  return nearest;
+}
+
+ClearanceRows::ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
+                             double least)
+    : pairs_(evaluation.model.link_pairs),
+      least_(least),
+      rows_(evaluation.model, nodes_of(evaluation.model.links), swept, mode) {
+  for (std::size_t i = 0; i < kNumbers * evaluation.model.links.size(); ++i) operands_.push_back(rows_.operand(i));
+}
+
+void ClearanceRows::start(const std::vector<double>& inputs, Room& room) const {
+  rows_.start(inputs, room.poses);
+  room.links.resize(operands_.size() / kNumbers);
+  room.box.resize(room.links.size());
+}
+
+bool ClearanceRows::is_clear(std::size_t pose, Room& room) const {
+  bool finite = true;
+  for (std::size_t i = 0; i < room.links.size(); ++i)
+    room.links[i] = capsule_of([&](std::size_t k) {
+      const double value = PoseRows::value(operands_[i * kNumbers + k], pose, room.poses);
+      finite = finite && std::isfinite(value);
+      return value;
+    });
+  return finite && keep_clear(room.links, pairs_, least_, room.box);
+}
+
+}  // namespace pkm::described

@@ -1,0 +1,61 @@
+// Clearance of the links of a description: which have to keep clear of each other, and how far they do.
+#pragma once
+
+#include "engine/mechanisms/described/pose_rows.hpp"
+
+namespace pkm::described {
+
+/// All but links that stand still both, that have a group in common, or that end in the same point: a joint.
+std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<DescribedLink>& links);
+
+/// Of each link, in their order, those that it need not keep clear of; empty where there are no pairs.
+std::vector<JoinedLinks> joined_links(const Model& model);
+
+/// The limit in force; none: nobody asks for a clearance.
+std::optional<double> clearance_of(const Model& model, const LimitSpec& limits);
+
+/// Throws std::invalid_argument where a plan asks for a clearance. @param why  the sentence behind "mechanism .."
+void refuse_clearance(const Model& model, const LimitSpec& limits, const std::string& why);
+
+/// All links of a pose that assembles; empty where the place of one has no value.
+/// @param inputs  of the graph, with the pose
+std::vector<Capsule<double>> capsules_at(const Evaluation& evaluation, const std::vector<double>& inputs);
+
+/// The pair that is nearest; its clearance is not a number where the place of a link has no value. None: no two links
+/// have to keep clear.
+std::optional<Nearest<double>> nearest_links(const Evaluation& evaluation, const std::vector<double>& inputs);
+
+/// A clearance limit in a survey, 64 poses at a time.
+class ClearanceRows {
+ public:
+  struct Room {
+    PoseRowsRoom poses;
+    std::vector<Capsule<double>> links;
+    std::vector<Bounds<double>> box;
+  };
+
+  ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode, double least);
+
+  void start(const std::vector<double>& inputs, Room& room) const;
+  /// @return  whether 64 poses wait
+  bool add(const Pose<double>& pose, Room& room) const { return rows_.add(pose, room.poses); }
+  /// Calls visit(k) for each of the poses that wait, in their order, at which links are too near.
+  template <class Visit>
+  void finish(Room& room, const Visit& visit) const {
+    if (room.poses.count == 0) return;
+    rows_.run(room.poses);
+    for (std::size_t k = 0; k < room.poses.count; ++k)
+      if (!is_clear(k, room)) visit(k);
+    room.poses.count = 0;
+  }
+
+ private:
+  bool is_clear(std::size_t pose, Room& room) const;
+
+  const std::vector<LinkPair>& pairs_;
+  double least_;
+  PoseRows rows_;
+  std::vector<graph::Operand> operands_;  ///< seven of each link
+};
+
+}  // namespace pkm::described

@@ -1,0 +1,47 @@
+// Nodes at the poses of a survey, 64 poses at a time: what depends on a swept coordinate is computed in rows.
+#pragma once
+
+#include <optional>
+
+#include "engine/graph/rows.hpp"
+#include "engine/mechanisms/described/evaluation.hpp"
+
+namespace pkm::described {
+
+/// What a worker overwrites.
+struct PoseRowsRoom {
+  std::vector<double> registers;
+  graph::Rows rows;
+  std::size_t count = 0;  ///< poses that wait
+};
+
+class PoseRows {
+ public:
+  /// @param outputs  nodes of the model's graph
+  PoseRows(const Model& model, std::vector<Node> outputs, const std::vector<int>& swept, std::size_t mode);
+
+  /// Computes what no swept coordinate changes. @param inputs  of the design, with held coordinates
+  void start(const std::vector<double>& inputs, PoseRowsRoom& room) const;
+  /// @return  whether the row is full
+  bool add(const Pose<double>& pose, PoseRowsRoom& room) const;
+  /// Computes the poses that wait, of which there are some; lanes beyond the last pose are like it. The caller sets
+  /// room.count to 0 when it has read them. @return  whole lanes
+  std::size_t run(PoseRowsRoom& room) const;
+
+  /// Where an output is.
+  graph::Operand operand(std::size_t output) const { return stage_->operand(program_.outputs()[output]); }
+  static double value(const graph::Operand& of, std::size_t pose, const PoseRowsRoom& room) {
+    return of.row ? room.rows[of.index * graph::kRow + pose] : room.registers[of.index];
+  }
+
+ private:
+  struct Coordinate {
+    std::size_t number;
+    std::uint32_t slot;
+  };
+  graph::Program program_;
+  std::optional<graph::RowStage> stage_;
+  std::vector<Coordinate> coordinates_;  ///< swept ones that the program uses
+};
+
+}  // namespace pkm::described

@@ -1,0 +1,49 @@
+#include "experiments/app/next_step.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+
+namespace pkm {
+namespace {
+
+/// A file that is not there is told by the attempt to read it.
+bool is_file(const std::string& file, const std::string& ending) {
+  std::error_code unseen;
+  return file.ends_with(ending) && std::filesystem::is_regular_file(file, unseen);
+}
+
+}  // namespace
+
+std::string quoted(const std::string& word) {
+  const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-./+=,:@%", c); };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::string command_text(const Session& session, const std::vector<std::string>& words) {
+  std::string text = session.program;
+  for (const std::string& word : words) text += ' ' + quoted(word);
+  return text;
+}
+
+std::string next_step(const Session& session, const std::vector<std::string>& words) {
+  return "next: " + command_text(session, words) + '\n';
+}
+
+void expect_study_file(const std::string& file, const std::string& instead, const Session& session) {
+  if (is_file(file, ".toml"))
+    throw ConfigError({file, 0, ""}, "a file in TOML", "a study file, F.h5, as '" + session.program + " run' writes it",
+                      session.program + ' ' + instead + ' ' + quoted(file));
+}
+
+void expect_toml(const std::string& file, const std::string& instead, const Session& session) {
+  if (is_file(file, ".h5"))
+    throw ConfigError({file, 0, ""}, "a study file", "a study or a mechanism in TOML",
+                      session.program + ' ' + instead + ' ' + quoted(file));
+}
+
+}  // namespace pkm

@@ -1,0 +1,29 @@
+// A section of a workspace over two coordinates: its outline, and a picture of it.
+//
+// Nodes on a grid are feasible or not; marching squares walk between them, and each point of the outline lies where the
+// least margin of the pose changes its sign, found by halving the step between two nodes.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "engine/report/workspace_fields.hpp"
+
+namespace pkm {
+
+struct Section {
+  using Loop = std::vector<std::array<double, 2>>;
+  std::array<WorkspaceAxis, 2> axes;  ///< across and up
+  std::vector<Loop> loops;            ///< closed: counter-clockwise around what is feasible, clockwise around holes
+  double area = 0;                    ///< in the product of the axes' units
+};
+
+/// @param workspace  of two swept coordinates, whose ranges and held values are taken
+Section section_of(const WorkspaceFields& workspace, const PoseMargin& margin);
+
+/// The section as SVG, lengths in mm and angles in degrees.
+/// @param lines  that stand above it, the title first
+std::string svg_picture(const Section& section, const std::vector<std::string>& lines);
+
+}  // namespace pkm
