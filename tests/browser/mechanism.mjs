@@ -95,11 +95,13 @@ for (const section of ["workspace", "mechanism", "populations", ...(expected.inc
   sliders += await page.moveSliders(section);
 assert.ok(sliders >= 6, `${sliders} sliders`);
 
-// Wide and dark, where the sliders have left it.
-await page.page.setViewportSize({ width: 1920, height: 1080 });
-await page.page.click("#theme");
-const dark = ["summary", "workspace", "mechanism", "convergence"];
-for (const section of dark) await page.draw(section);
-await page.screenshots(folder, "1920-dark", dark);
+// Wide and dark, where the sliders have left it: of one mechanism, because pages are drawn without a graphics card.
+if (name === "3crr-r-cru") {
+  await page.page.setViewportSize({ width: 1920, height: 1080 });
+  await page.page.click("#theme");
+  const dark = ["summary", "workspace", "mechanism", "convergence"];
+  for (const section of dark) await page.draw(section);
+  await page.screenshots(folder, "1920-dark", dark);
+}
 await page.close();
 console.log(`${name}: ${expected.length} sections, ${compared} values as in the file, ${sliders} sliders`);

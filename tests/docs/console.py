@@ -28,6 +28,8 @@ OWN_TO_EACH_RUN = [
     (r"(?<=\d )\([0-9a-f]{12}\S*\)", "(REVISION)"),
     (r"\s+", " "),
 ]
+# What a run says now and then, where it takes long: on a busy machine.
+PROGRESS = re.compile(r"(stage \d+ of \d+: )?\S+ generation \d+, \d+ evaluations, .* left")
 
 
 def comparable(line):
@@ -104,7 +106,7 @@ class Folder:
         done = subprocess.run(["bash", "-c", before + command], cwd=self.path, env=self.environment, text=True,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.code = done.returncode
-        return done.stdout.splitlines()
+        return [line for line in done.stdout.splitlines() if not PROGRESS.fullmatch(line)]
 
 
 def faults_of(page, program, write):
