@@ -92,7 +92,8 @@ echo "a study in several jobs ended as the one in one"
 sed 's/generations = 500/generations = 5/' study.toml > short.toml
 sbatch --quiet --wait --array 1-2 --cpus-per-task 1 --time 10 --output seeds.out "$scripts/seeds.sbatch" short.toml --quiet ||
   fail "the jobs of the seeds failed"
-"$program" run short.toml --seeds 2 --seed 1 --resume | grep -q ", 2 of 2 seeds" || fail "not all seeds have ended"
+"$program" run short.toml --seeds 2 --seed 1 --resume > spread.out || fail "the seeds cannot be read"
+grep -q ", 2 of 2 seeds" spread.out || fail "not all seeds have ended"
 "$program" run short.toml --seeds 2 --seed 1 --output alone.h5 --quiet
 PYTHONPATH=$tests/campaigns /usr/bin/python3 - <<'PY' || fail "seeds by jobs and by one process differ"
 from campaign import digest
