@@ -247,6 +247,10 @@ BENCHMARK_CAPTURE(columns, upright, "linear-delta", false)
     ->Name("described/columns/linear-delta")
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(columns, gough, "gough", false)->Name("described/columns/gough")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, cranks, "rotary-delta", false)
+    ->Name("described/columns/rotary-delta")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, jointed, "par4", false)->Name("described/columns/par4")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(columns, free, "4ppa-2par", false)
     ->Name("described/columns/4ppa-2par")
     ->Unit(benchmark::kMicrosecond);

@@ -11,32 +11,32 @@ namespace {
 constexpr std::size_t kMostCoefficients = 5;  // on the way: squares of degree two
 
 /// A polynomial in z by its coefficients, the lowest first; empty is 0.
-using Polynomial = std::vector<Term>;
+using Terms = std::vector<Term>;
 
 struct Form {
-  Polynomial A, B;
+  Terms A, B;
   Node radicand{};  ///< where B is there: of the root
-  Polynomial Q;     ///< the same as a polynomial
+  Terms Q;          ///< the same as a polynomial
 };
 
-Polynomial trimmed(Polynomial p) {
+Terms trimmed(Terms p) {
   while (!p.empty() && p.back().is(0)) p.pop_back();
   return p;
 }
-Polynomial sum(const Polynomial& p, const Polynomial& q) {
-  Polynomial r = p.size() >= q.size() ? p : q;
-  const Polynomial& shorter = p.size() >= q.size() ? q : p;
+Terms sum(const Terms& p, const Terms& q) {
+  Terms r = p.size() >= q.size() ? p : q;
+  const Terms& shorter = p.size() >= q.size() ? q : p;
   for (std::size_t i = 0; i < shorter.size(); ++i) r[i] = p[i] + q[i];
   return trimmed(r);
 }
-Polynomial negative(Polynomial p) {
+Terms negative(Terms p) {
   for (Term& c : p) c = -c;
   return p;
 }
-std::optional<Polynomial> product(const Polynomial& p, const Polynomial& q) {
-  if (p.empty() || q.empty()) return Polynomial();
+std::optional<Terms> product(const Terms& p, const Terms& q) {
+  if (p.empty() || q.empty()) return Terms();
   if (p.size() + q.size() - 1 > kMostCoefficients) return {};
-  Polynomial r(p.size() + q.size() - 1, Term(p[0].graph(), 0.0));
+  Terms r(p.size() + q.size() - 1, Term(p[0].graph(), 0.0));
   for (std::size_t i = 0; i < p.size(); ++i)
     for (std::size_t j = 0; j < q.size(); ++j) r[i + j] = r[i + j] + p[i] * q[j];
   return trimmed(r);
@@ -66,7 +66,8 @@ bool is_positive(const Graph& graph, Node node) {
 
 class Lowering {
  public:
-  Lowering(Graph& graph, Groups z, bool squares = false) : graph_(graph), z_(z), squares_(squares) {}
+  Lowering(Graph& graph, Groups z, std::size_t degree, bool squares)
+      : graph_(graph), z_(z), degree_(degree), squares_(squares) {}
 
   /// f as a form; none: it is of another kind.
   std::optional<Form> form(Node node) {
@@ -95,7 +96,7 @@ class Lowering {
         const Term divisor(graph_, entry.arguments[1]);
         auto x = form(entry.arguments[0]);
         if (!x) return {};
-        for (Polynomial* p : {&x->A, &x->B})
+        for (Terms* p : {&x->A, &x->B})
           for (Term& c : *p) c = c / divisor;
         return x;
       }
@@ -145,7 +146,7 @@ class Lowering {
       return both(one({f->A}), one({sum(*AA, negative(*BBQ))}));
     if (is_positive(graph_, b.node())) return one({f->A, sum(*BBQ, negative(*AA))});
     if (!squares_) return {};
-    const Polynomial R = sum(*AA, negative(*BBQ));  // of unknown sign is b
+    const Terms R = sum(*AA, negative(*BBQ));  // of unknown sign is b
     return both(both(one({f->A, f->B}), one({f->A, negative(R)})), one({f->B, R}));
   }
 
@@ -264,12 +265,12 @@ class Lowering {
   }
 
   /// One clause of these polynomials.
-  Clauses one(const std::vector<Polynomial>& polynomials) {
+  Clauses one(const std::vector<Terms>& polynomials) {
     Clause clause;
-    for (const Polynomial& p : polynomials) {
-      if (p.size() > 3) return {};
-      const auto c = [&](std::size_t i) { return i < p.size() ? p[i].node() : graph_.number(0); };
-      clause.push_back({{c(0), c(1), c(2)}});
+    for (const Terms& p : polynomials) {
+      if (p.size() > degree_ + 1) return {};
+      clause.emplace_back().c.fill(graph_.number(0));
+      std::ranges::transform(p, clause.back().c.begin(), &Term::node);
     }
     return {{clause}};
   }
@@ -291,17 +292,18 @@ class Lowering {
 
   Graph& graph_;
   Groups z_;
+  std::size_t degree_;
   bool squares_;
 };
 
 }  // namespace
 
-std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z, bool squares) {
-  return Lowering(graph, z, squares).conditions(f);
+std::optional<std::vector<Clause>> lowered(Graph& graph, Node f, Groups z, std::size_t degree, bool squares) {
+  return Lowering(graph, z, degree, squares).conditions(f);
 }
 
 std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z) {
-  const auto form = Lowering(graph, z).form(f);
+  const auto form = Lowering(graph, z, kMostCoefficients - 1, false).form(f);
   if (!form || !form->B.empty()) return {};
   std::vector<Node> coefficients;
   for (const Term& c : form->A) coefficients.push_back(c.node());

@@ -41,19 +41,19 @@ Shape shape_of(const graph::Graph& graph, Node leading) {
 /// do not depend on z to `plain`.
 void simplify(graph::Graph& graph, std::vector<graph::Clause>& clauses, std::vector<Node>& plain) {
   const Node zero = graph.number(0);
-  std::vector<graph::Quadratic> single;
+  std::vector<graph::Polynomial> single;
   for (const graph::Clause& clause : clauses)
     if (clause.size() == 1) single.push_back(clause.front());
   std::erase_if(clauses, [&](const graph::Clause& clause) {
-    return clause.size() == 1 || std::ranges::any_of(clause, [&](const graph::Quadratic& q) {
+    return clause.size() == 1 || std::ranges::any_of(clause, [&](const graph::Polynomial& q) {
              return std::ranges::find(single, q) != single.end();
            });
   });
   std::ranges::sort(clauses);
   clauses.erase(std::unique(clauses.begin(), clauses.end()), clauses.end());
-  std::ranges::sort(single, {}, [](const graph::Quadratic& q) { return std::pair(q.c[1], q.c[2]); });
+  std::ranges::sort(single, {}, [](const graph::Polynomial& q) { return std::pair(q.c[1], q.c[2]); });
   for (std::size_t i = 0; i < single.size();) {
-    graph::Quadratic all = single[i];
+    graph::Polynomial all = single[i];
     for (++i; i < single.size() && single[i].c[1] == all.c[1] && single[i].c[2] == all.c[2]; ++i)
       if (single[i].c[0] != all.c[0])
         all.c[0] = graph.apply(graph::operation("min"), std::array{all.c[0], single[i].c[0]});
@@ -65,11 +65,11 @@ void simplify(graph::Graph& graph, std::vector<graph::Clause>& clauses, std::vec
 }
 
 /// The surfaces of a crank's range along z; none: they are no quadratics, or not along z.
-std::optional<std::array<graph::Quadratic, 4>> surfaces_of(graph::Graph& graph, const CoveredRange& crank, Groups z) {
+std::optional<std::array<graph::Polynomial, 4>> surfaces_of(graph::Graph& graph, const CoveredRange& crank, Groups z) {
   if ((graph[crank.reach].groups & z) == 0 || (graph[crank.half_turn].groups & ~Inputs::kDesign) != 0 ||
       !graph[crank.branch].is_number())
     return {};
-  std::array<graph::Quadratic, 4> surfaces;
+  std::array<graph::Polynomial, 4> surfaces;
   for (std::size_t k = 0; const Node node : {crank.at_min, crank.at_max, crank.after_min, crank.before_max}) {
     const auto found = lowered(graph, node, z);
     if (!found || found->size() != 1 || found->front().size() != 1) return {};
@@ -105,7 +105,7 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
     group = Inputs::coordinate_group(static_cast<std::size_t>(swept[order_[i]]));
     groups[0] &= ~group;
   }
-  std::vector<std::array<graph::Quadratic, 4>> surfaces;
+  std::vector<std::array<graph::Polynomial, 4>> surfaces;
   std::erase_if(ranges, [&](const CoveredRange& crank) {
     const auto found = surfaces_of(graph, crank, groups[kInner]);
     if (!found) return true;
@@ -127,9 +127,9 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
   simplify(graph, clauses, plain);
   outputs = plain;
   for (const graph::Clause& clause : clauses)
-    for (const graph::Quadratic& q : clause) outputs.insert(outputs.end(), q.c.begin(), q.c.end());
+    for (const graph::Polynomial& q : clause) outputs.insert(outputs.end(), q.c.begin(), q.c.begin() + 3);
   for (std::size_t i = 0; i < ranges.size(); ++i) {
-    for (const graph::Quadratic& q : surfaces[i]) outputs.insert(outputs.end(), q.c.begin(), q.c.end());
+    for (const graph::Polynomial& q : surfaces[i]) outputs.insert(outputs.end(), q.c.begin(), q.c.begin() + 3);
     outputs.insert(outputs.end(), {ranges[i].half_turn, ranges[i].reach});
   }
   program_ = Program(graph, outputs, groups);
@@ -158,7 +158,7 @@ CellTest::CellTest(const Evaluation& evaluation, const std::vector<int>& swept, 
   for (const graph::Clause& clause : clauses) {
     Alternatives made;
     std::optional<graph::Operand> constant;  // an alternative that is the same all along
-    for (const graph::Quadratic& q : clause) {
+    for (const graph::Polynomial& q : clause) {
       ColumnCondition condition{.shape = shape_of(graph, q.c[2])};
       for (graph::Operand& c : condition.c) c = middle_->operand(program_.outputs()[output++]);
       if (clause.size() == 2 && !constant && q.c[1] == zero && q.c[2] == zero)

@@ -277,9 +277,10 @@ TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
     const auto voxels = [&](std::int64_t cells) {
       return survey(mechanism(), parameters(), test::voxels(info(), sweep, cells)).volume;
     };
-    const double rounds = sweep.swept.size() == 1 ? 2 : 1;  // a length is whole cells: nothing evens out
-    EXPECT_NEAR(voxels(30) / exact, 1, rounds * 0.05);
-    EXPECT_NEAR(voxels(240) / exact, 1, rounds * 0.005);
+    const double rounds[] = {2, 1.2,
+                             1};  // a length is whole cells: nothing evens out; of an area less than of a volume
+    EXPECT_NEAR(voxels(30) / exact, 1, rounds[sweep.swept.size() - 1] * 0.05);
+    EXPECT_NEAR(voxels(240) / exact, 1, rounds[sweep.swept.size() - 1] * 0.005);
   }
 }
 
@@ -301,7 +302,7 @@ TEST_P(MechanismContract, ColumnsAreCutByABoxOrRefuseIt) {
     EXPECT_NEAR(survey(mechanism(), parameters(), columns).volume / whole, 1, 1e-7);
     box[0][1] = (box[0][0] + box[0][1]) / 2;
     std::get<ColumnOptions>(columns.method).box = box;
-    SurveyPlan voxels = test::voxels(info(), sweep, 60);
+    SurveyPlan voxels = test::voxels(info(), sweep, 90);
     std::get<VoxelOptions>(voxels.method).box = box;
     const double cut = survey(mechanism(), parameters(), columns).volume;
     EXPECT_LT(cut, 0.9 * whole);

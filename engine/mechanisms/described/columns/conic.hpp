@@ -1,9 +1,9 @@
 // Conics P(t, s) = 0 in the square [-1, 1]^2: where they have their extremes and cross, and integrals along their arcs.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <span>
+
+#include "engine/mechanisms/described/columns/polynomial.hpp"
 
 namespace pkm::described {
 
@@ -21,18 +21,6 @@ struct Conic {
   }
   bool is_straight() const { return c[5] == 0; }  ///< along s: one root at most
 };
-
-struct Roots {
-  std::array<double, 2> s{};  ///< the lower one first
-  int count = 0;
-};
-
-/// Of c[0] + c[1] s + c[2] s^2. A root of a line is number 0; where all coefficients are 0 there are none.
-Roots roots_of(const std::array<double, 3>& c);
-
-/// Roots in [-1, 1], in order, of a polynomial of degree four or less, and places where it nearly has two; the number
-/// of them.
-std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots);
 
 struct Point {
   double t, s;

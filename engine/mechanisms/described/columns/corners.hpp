@@ -8,9 +8,6 @@ namespace pkm::described {
 // Kinds of corners, in the order in which one stands for all at its place.
 inline constexpr std::uint32_t kSide = 1U << 28, kPlain = 2U << 28, kUpright = 3U << 28, kCrossing = 4U << 28,
                                kExtreme = 5U << 28, kKind = 15U << 28;
-inline constexpr double kTie = 1e-13;  ///< places that are nearer than this are one
-
-inline Signs bit(std::size_t surface) { return Signs{1} << surface; }
 
 /// Of the corners at a place, the one that ends arcs of a surface; a condition along v ends all of them.
 std::uint32_t corner_of(std::size_t surface, std::size_t first, double t, const SectionRoom& room);

@@ -4,24 +4,13 @@
 
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/conic.hpp"
+#include "engine/mechanisms/described/columns/ends.hpp"
 #include "engine/mechanisms/described/columns/section_plan.hpp"
 
 namespace pkm::described {
 
-/// What a section is bounded by: the corners at which arcs end. Where an arc turns back is none, but for a conic that
-/// is there as a whole. As long as the corners are the same, the area is a smooth function.
-struct Structure {
-  std::uint64_t hash = 0;  ///< in whatever order they are; 0: nothing is feasible
-  std::vector<std::uint32_t>
-      corners;               ///< labels: of a crossing by both arcs, of an upright side by its lower and upper
-  std::uint32_t broken = 0;  ///< of an empty section: 1 + the place of the plain condition that is broken
-};
-
 /// Whether a corner is at an upright side, where it counts once.
 bool is_upright(std::uint32_t corner);
-
-/// An end of a column: surface and root.
-using EndLabel = std::uint32_t;
 
 /// What a section overwrites, in coordinates t, s in [-1, 1] for v and z.
 struct SectionRoom {
@@ -52,7 +41,7 @@ struct SectionRoom {
   std::vector<Corner> corners;
   std::vector<Piece> pieces;
   std::vector<Span> spans, column;
-  std::vector<std::pair<double, EndLabel>> ends;
+  Ends ends;
   std::vector<double> before, now, other_adjoints;
   Structure structure;
 };

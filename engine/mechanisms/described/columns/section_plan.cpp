@@ -8,38 +8,52 @@
 namespace pkm::described {
 namespace {
 
-using NodeConic = std::array<Node, 6>;
-using NodeClause = std::vector<NodeConic>;
+using NodeSurface = std::array<Node, 6>;
+using NodeClause = std::vector<NodeSurface>;
 
 /// Places of z^i v^j among a conic's coefficients.
 constexpr std::size_t kPlace[3][3] = {{0, 1, 3}, {2, 4, 6}, {5, 6, 6}};
 
-/// Clauses of conics in v and z that hold where the condition does.
-class ConicLowering {
+/// Clauses of surfaces that hold where the condition does: conics in v and z, or where there is no v polynomials in z.
+class SurfaceLowering {
  public:
-  ConicLowering(Graph& graph, Groups v, Groups z) : graph_(graph), v_(v), z_(z) {}
+  SurfaceLowering(Graph& graph, Groups v, Groups z) : graph_(graph), v_(v), z_(z) {}
 
   std::optional<std::vector<NodeClause>> conditions(Node node) {
+    if (v_ == 0) return polynomials(node);
     for (const bool z_first : {true, false})
       if (auto clauses = lowered_by(node, z_first)) return clauses;
     return {};
   }
-  /// Of a single polynomial.
-  std::optional<NodeConic> conic(Node node) {
+  /// Of a single one.
+  std::optional<NodeSurface> surface(Node node) {
     const auto found = conditions(node);
     if (!found || found->size() != 1 || found->front().size() != 1) return {};
     return found->front().front();
   }
 
  private:
-  std::optional<std::vector<NodeClause>> lowered_by(Node node, bool z_first) {
-    const auto lower = lowered(graph_, node, z_first ? z_ : v_, true);
+  std::optional<std::vector<NodeClause>> polynomials(Node node) {
+    const auto lower = lowered(graph_, node, z_, 4, true);
     if (!lower) return {};
     std::vector<NodeClause> clauses;
     for (const graph::Clause& clause : *lower) {
       NodeClause& to = clauses.emplace_back();
-      for (const graph::Quadratic& q : clause) {
-        NodeConic& conic = to.emplace_back();
+      for (const graph::Polynomial& p : clause) {
+        to.emplace_back().fill(graph_.number(0));
+        std::ranges::copy(p.c, to.back().begin());
+      }
+    }
+    return clauses;
+  }
+  std::optional<std::vector<NodeClause>> lowered_by(Node node, bool z_first) {
+    const auto lower = lowered(graph_, node, z_first ? z_ : v_, 2, true);
+    if (!lower) return {};
+    std::vector<NodeClause> clauses;
+    for (const graph::Clause& clause : *lower) {
+      NodeClause& to = clauses.emplace_back();
+      for (const graph::Polynomial& q : clause) {
+        NodeSurface& conic = to.emplace_back();
         conic.fill(graph_.number(0));
         for (std::size_t i = 0; i < 3; ++i) {
           const auto part = polynomial(graph_, q.c[i], z_first ? v_ : z_);
@@ -73,7 +87,7 @@ class Planner {
         graph_(known_.graph),
         v_(order.v ? Inputs::coordinate_group(*order.v) : 0),
         z_(Inputs::coordinate_group(order.z)),
-        conics_(graph_, v_, z_) {
+        lowering_(graph_, v_, z_) {
     plan_.order = order;
     take_cranks();
     for (std::size_t i = 0; i < known_.all.size() && plan_.why_not.empty(); ++i)
@@ -85,7 +99,7 @@ class Planner {
   }
 
   SectionPlan finish() {
-    if (conic_nodes_.size() > kMostSurfaces)
+    if (surface_nodes_.size() > kMostSurfaces)
       plan_.why_not = "its sections have more than " + std::to_string(kMostSurfaces) + " surfaces";
     if (!plan_.why_not.empty()) return std::move(plan_);
     std::erase_if(plan_.formula.any, [&](Signs one_of) { return (one_of & plan_.formula.all) != 0; });
@@ -95,7 +109,7 @@ class Planner {
     for (std::size_t i = 1; i < groups.size(); ++i) groups[0] &= ~groups[i];
     groups[0] &= ~z_;
     std::vector<Node> outputs = plain_;
-    for (const NodeConic& conic : conic_nodes_) outputs.insert(outputs.end(), conic.begin(), conic.end());
+    for (const NodeSurface& each : surface_nodes_) outputs.insert(outputs.end(), each.begin(), each.end());
     outputs.insert(outputs.end(), half_turns_.begin(), half_turns_.end());
     for (const auto& ends : ends_) outputs.insert(outputs.end(), ends.begin(), ends.end());
     plan_.program = graph::Program(graph_, outputs, groups);
@@ -105,11 +119,11 @@ class Planner {
     for (std::size_t i = 0; i < plain_.size(); ++i, ++at)
       plan_.plain[static_cast<std::size_t>(std::max(plan_.program.stage_of()[*at], 0))].push_back(*at);
     const auto is_zero = [&](Node node) { return graph_[node].is_number() && graph_[node].number == 0; };
-    for (const NodeConic& conic : conic_nodes_) {
+    for (const NodeSurface& conic : surface_nodes_) {
       Surface& surface = plan_.surfaces.emplace_back();
       std::copy_n(at, 6, surface.coefficients.begin());
       surface.has_z = !is_zero(conic[2]) || !is_zero(conic[4]) || !is_zero(conic[5]);
-      surface.has_v = !is_zero(conic[1]) || !is_zero(conic[3]) || !is_zero(conic[4]);
+      surface.is_steep = v_ == 0 && (!is_zero(conic[3]) || !is_zero(conic[4]));
       at += 6;
     }
     for (CrankSigns& crank : plan_.formula.cranks) crank.half_turn = *at++;
@@ -122,7 +136,7 @@ class Planner {
     if (plan_.why_not.empty()) plan_.why_not = what;
   }
 
-  /// Ranges and folds of cranks whose surfaces are conics, in place of what they cover.
+  /// Ranges and folds of cranks that surfaces tell, in place of what they cover.
   void take_cranks() {
     covered_.assign(known_.all.size(), false);
     std::vector<std::optional<Signs>> reaches(known_.cranks.size());
@@ -152,16 +166,16 @@ class Planner {
     for (std::size_t i = 0; i < known_.all.size(); ++i)
       covered_[i] = covered_[i] || std::ranges::find(conditions, known_.all[i]) != conditions.end();
   }
-  /// One of each surface; none: they are not all conics.
+  /// One of each; none: they are not all surfaces of this kind.
   std::optional<std::vector<Signs>> bits_of(std::initializer_list<Node> surfaces) {
-    std::vector<NodeConic> found;
+    std::vector<NodeSurface> found;
     for (const Node surface : surfaces) {
-      const auto conic = conics_.conic(surface);
-      if (!conic) return {};
-      found.push_back(*conic);
+      const auto one = lowering_.surface(surface);
+      if (!one) return {};
+      found.push_back(*one);
     }
     std::vector<Signs> bits;
-    for (const NodeConic& conic : found) bits.push_back(bit(conic));
+    for (const NodeSurface& conic : found) bits.push_back(bit(conic));
     return bits;
   }
 
@@ -171,7 +185,7 @@ class Planner {
       plain_.push_back(node);
       return;
     }
-    if (auto clauses = conics_.conditions(node)) {
+    if (auto clauses = lowering_.conditions(node)) {
       for (const NodeClause& clause : *clauses) add_clause(clause);
       return;
     }
@@ -180,11 +194,11 @@ class Planner {
     if ((graph_[node].groups & z_) == 0)
       plain_.push_back(node);
     else
-      refuse("'" + name_of_condition(model_, number) + "' is no polynomial of degree two");
+      refuse("'" + name_of_condition(model_, number) + "' is no polynomial of degree " + (v_ == 0 ? "four" : "two"));
   }
 
   void add_clause(const NodeClause& clause) {
-    const auto changes = [&](const NodeConic& conic) {
+    const auto changes = [&](const NodeSurface& conic) {
       return std::any_of(conic.begin() + 1, conic.end(),
                          [&](Node c) { return !graph_[c].is_number() || graph_[c].number != 0; });
     };
@@ -194,7 +208,7 @@ class Planner {
       return;
     }
     Signs bits = 0;
-    for (const NodeConic& conic : clause) bits |= bit(conic);
+    for (const NodeSurface& conic : clause) bits |= bit(conic);
     if (clause.size() == 1)
       plan_.formula.all |= bits;
     else if (std::ranges::find(plan_.formula.any, bits) == plan_.formula.any.end())
@@ -204,20 +218,21 @@ class Planner {
   /// z between its ends.
   void add_box_of_z() {
     const limbs::Term from(graph_, ends_.back()[0]), to(graph_, ends_.back()[1]);
-    NodeConic below{}, above{};
+    const std::size_t place_of_z = v_ == 0 ? 1 : kPlace[1][0];
+    NodeSurface below{}, above{};
     below.fill(graph_.number(0));
     above = below;
     below[0] = (-from).node();
-    below[2] = graph_.number(1);
+    below[place_of_z] = graph_.number(1);
     above[0] = to.node();
-    above[2] = graph_.number(-1);
+    above[place_of_z] = graph_.number(-1);
     plan_.formula.all |= bit(below) | bit(above);
   }
 
-  Signs bit(const NodeConic& conic) {
-    auto at = std::ranges::find(conic_nodes_, conic);
-    if (at == conic_nodes_.end()) at = conic_nodes_.insert(at, conic);
-    const auto number = static_cast<std::size_t>(at - conic_nodes_.begin());
+  Signs bit(const NodeSurface& conic) {
+    auto at = std::ranges::find(surface_nodes_, conic);
+    if (at == surface_nodes_.end()) at = surface_nodes_.insert(at, conic);
+    const auto number = static_cast<std::size_t>(at - surface_nodes_.begin());
     return Signs{1} << (number % kMostSurfaces);
   }
 
@@ -232,11 +247,11 @@ class Planner {
   Conditions known_;
   Graph& graph_;
   Groups v_, z_;
-  ConicLowering conics_;
+  SurfaceLowering lowering_;
   SectionPlan plan_;
   std::vector<bool> covered_;
   std::vector<Node> plain_, half_turns_;
-  std::vector<NodeConic> conic_nodes_;
+  std::vector<NodeSurface> surface_nodes_;
   std::vector<std::array<Node, 2>> ends_;
 };
 

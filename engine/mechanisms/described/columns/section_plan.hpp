@@ -1,5 +1,5 @@
 // What holds in sections of a described workspace: planes (v, z) at fixed outer coordinates, as conics in v and z whose
-// coefficients a program computes.
+// coefficients a program computes; or in lines along z, as polynomials of degree four or less.
 #pragma once
 
 #include <string>
@@ -10,16 +10,17 @@
 
 namespace pkm::described {
 
-/// A conic of the section by its registers; what is the same in every section and place is a number.
+/// A conic of the section, or a polynomial, by its registers; what is the same in every section and place is a number.
 struct Surface {
-  std::array<std::uint32_t, 6> coefficients;  ///< of 1, v, z, v^2, v z, z^2
-  bool has_v, has_z;
+  std::array<std::uint32_t, 6> coefficients;  ///< of 1, v, z, v^2, v z, z^2; without v of 1, z, z^2, z^3, z^4
+  bool has_z;                                 ///< of a conic
+  bool is_steep;                              ///< of a polynomial: of degree three or four
 };
 
 /// Which coordinates are what.
 struct SectionOrder {
   std::vector<std::size_t> outer;  ///< coordinates, the outermost first
-  std::optional<std::size_t> v;
+  std::optional<std::size_t> v;    ///< none: sections are lines
   std::size_t z = 0;
 };
 

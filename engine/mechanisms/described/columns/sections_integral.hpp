@@ -1,11 +1,14 @@
-// The measure of a workspace: its sections' areas integrated over the outer coordinates.
+// The measure of a workspace: its sections' areas, or its columns' lengths, integrated over the outer coordinates.
 //
 // Along an outer coordinate the measure is smooth as long as the sections' structure stays the same. The structure is
 // sampled, each change that is seen is followed to the last bits, and every node of the quadrature is compared with its
 // part: where one has another structure, the part is split there.
 #pragma once
 
+#include <variant>
+
 #include "engine/math/quadrature.hpp"
+#include "engine/mechanisms/described/columns/column.hpp"
 #include "engine/mechanisms/described/columns/section.hpp"
 
 namespace pkm::described {
@@ -48,12 +51,24 @@ struct IntegralRoom {
     std::array<std::vector<SliceBreak>, kDeepest + 1> breaks;  ///< of the range, and of parts by their depth
     Structure structure;
     std::vector<std::uint32_t> corners;
-    double greatest = 0;    ///< slice so far
-    double unresolved = 0;  ///< of the parts that were given up
+    double at = 0;  ///< the coordinate
+    /// Parts of this coordinate at places of the one outside, in their order.
+    struct Seen {
+      double outside;
+      std::vector<std::array<double, 2>> parts;
+    };
+    std::vector<Seen> seen;
+    std::size_t seen_count = 0;
+    std::vector<double> places;  ///< that are looked at first
+    std::vector<Slice> scanned;  ///< there
+    double greatest = 0;         ///< slice so far
+    double unresolved = 0;       ///< of the parts that were given up
   };
   SectionRoom section;
+  ColumnRoom column;
   std::vector<double> registers, adjoints, own;
   std::vector<Level> levels;
+  bool is_scanning = false;  ///< the outermost coordinate is looked at first
   long sections = 0;
   long most = 0;  ///< sections, after which what is not known counts as error
 };
@@ -61,9 +76,14 @@ struct IntegralRoom {
 class SectionsIntegral {
  public:
   /// @param tolerance  relative
-  SectionsIntegral(SectionPlan plan, double tolerance) : section_(std::move(plan)), tolerance_(tolerance) {}
+  SectionsIntegral(SectionPlan plan, double tolerance)
+      : innermost_(plan.order.v ? std::variant<Section, Column>(Section(std::move(plan)))
+                                : std::variant<Section, Column>(Column(std::move(plan)))),
+        tolerance_(tolerance) {}
 
-  const SectionPlan& plan() const { return section_.plan(); }
+  const SectionPlan& plan() const {
+    return std::visit([](const auto& each) -> const SectionPlan& { return each.plan(); }, innermost_);
+  }
   /// @param inputs  of the graph, with held coordinates
   /// @param most    sections, after which what is not known counts as error; 0: more than are usually of use
   Integral<double> measure(std::span<const double> inputs, IntegralRoom& room, long most = 0) const;
@@ -79,14 +99,21 @@ class SectionsIntegral {
  private:
   using Breaks = std::vector<SliceBreak>;
 
-  std::size_t levels() const { return section_.plan().order.outer.size(); }
+  std::size_t levels() const { return plan().order.outer.size(); }
+  bool ends_in_lines() const { return std::holds_alternative<Column>(innermost_); }
   void set(std::size_t level, double at, IntegralRoom& room) const;
   /// With the coordinates before `level` set.
   Slice inside(std::size_t level, Structure& structure, IntegralRoom& room) const;
   Slice slice(std::size_t level, double at, IntegralRoom& room) const;
+  void find_places(std::size_t level, double low, double high, IntegralRoom& room) const;
+  static void add_expected_places(double outside, IntegralRoom::Level& own);
+  static void remember(double outside, IntegralRoom::Level& own);
   Slice integrate(std::size_t level, Structure& structure, IntegralRoom& room) const;
-  void find_breaks(std::size_t level, Slice from, const Slice& to, double whole, Breaks& breaks,
-                   IntegralRoom& room) const;
+  bool jumps(const Slice& low, const Slice& high, std::size_t level, const IntegralRoom& room) const;
+  void look_again(std::size_t level, IntegralRoom& room) const;
+  void find_breaks(std::size_t level, Slice from, Slice& to, double whole, Breaks& breaks, IntegralRoom& room) const;
+  /// Brings two slices of different structures near to each other, to a place where the structure changes.
+  void close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const;
   void find_kind(std::size_t level, SliceBreak& at, double before, double after, IntegralRoom& room) const;
   void add_parts(std::size_t level, const Breaks& breaks, double whole, int depth, IntegralRoom& room) const;
   void add_part(std::size_t level, SlicePart part, double whole, int depth, IntegralRoom& room) const;
@@ -100,8 +127,13 @@ class SectionsIntegral {
   void visit_nodes(std::size_t level, double weight, const GaussRule& outer, const GaussRule& inner,
                    std::vector<double>& place, IntegralRoom& room, const Visit& visit) const {
     if (level == levels()) {
-      section_.for_each_node(outer, inner, room.section,
-                             [&](double v, double z, double own) { visit(place, v, z, weight * own); });
+      if (const auto* const section = std::get_if<Section>(&innermost_))
+        section->for_each_node(outer, inner, room.section,
+                               [&](double v, double z, double own) { visit(place, v, z, weight * own); });
+      else
+        std::get<Column>(innermost_).for_each_node(inner, room.column, [&](double z, double own) {
+          visit(place, 0, z, weight * own);
+        });
       return;
     }
     for (const SlicePart& part : room.levels[level].parts)
@@ -114,7 +146,7 @@ class SectionsIntegral {
       }
   }
 
-  Section section_;
+  std::variant<Section, Column> innermost_;
   double tolerance_;
 };
 

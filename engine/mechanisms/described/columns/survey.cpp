@@ -17,9 +17,9 @@ namespace {
 
 using Kind = HeldCoordinate::Kind;
 
-/// The orders of coordinates in which sections may have closed forms: each pair of swept ones as (v, z), the others
-/// outside, those that are integrated over outermost.
-std::vector<SectionOrder> orders_of(const Sweep& sweep, const SurveyPlan& plan) {
+/// The orders of coordinates in which sections may have closed forms: each pair of swept ones as (v, z), or each as z
+/// alone, the others outside, those that are integrated over outermost.
+std::vector<SectionOrder> orders_of(const Sweep& sweep, const SurveyPlan& plan, bool are_lines) {
   std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
   for (const int coordinate : sweep.held)
     if (how_held(plan, coordinate).kind == Kind::integrated) integrated.push_back(static_cast<std::size_t>(coordinate));
@@ -27,8 +27,12 @@ std::vector<SectionOrder> orders_of(const Sweep& sweep, const SurveyPlan& plan) 
   std::vector<SectionOrder> orders;
   do {
     SectionOrder order{.outer = integrated, .v = {}, .z = swept.back()};
-    if (swept.size() > 1) order.v = swept[swept.size() - 2];
-    if (swept.size() > 2) order.outer.push_back(swept.front());
+    std::span<const std::size_t> outer = std::span(swept).first(swept.size() - 1);
+    if (!are_lines && !outer.empty()) {
+      order.v = outer.back();
+      outer = outer.first(outer.size() - 1);
+    }
+    order.outer.insert(order.outer.end(), outer.begin(), outer.end());
     orders.push_back(order);
   } while (std::ranges::next_permutation(swept).found);
   return orders;
@@ -40,6 +44,29 @@ Ranges box_of(const Sweep& sweep, std::size_t coordinates, const ColumnOptions& 
     for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
       box[static_cast<std::size_t>(sweep.swept[axis])] = (*columns.box)[axis];
   return box;
+}
+
+struct Plans {
+  std::vector<SectionPlan> all;
+  std::string why_not;  ///< where there are none
+};
+
+/// Sections of conics where there are any, else lines. @param most  plans
+Plans plans_of(const Evaluation& evaluation, std::size_t mode, const Sweep& sweep, const SurveyPlan& plan,
+               const Ranges& box, std::size_t most = 100) {
+  Plans plans;
+  for (const bool are_lines : {false, true}) {
+    if (!plans.all.empty()) break;
+    for (const SectionOrder& order : orders_of(sweep, plan, are_lines)) {
+      if (plans.all.size() == most) return plans;
+      SectionPlan made = plan_sections(evaluation, mode, order, box);
+      if (made.why_not.empty())
+        plans.all.push_back(std::move(made));
+      else
+        plans.why_not = made.why_not;
+    }
+  }
+  return plans;
 }
 
 class DescribedColumns final : public WithSlopes<DescribedColumns> {
@@ -58,20 +85,14 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");
     const Ranges box = box_of(sweep_, evaluation.model.inputs.coordinates, columns);
-    std::vector<SectionPlan> plans;
-    std::string why_not;
-    for (const SectionOrder& order : orders_of(sweep_, plan)) {
-      SectionPlan made = plan_sections(evaluation, mode_, order, box);
-      if (made.why_not.empty())
-        plans.push_back(std::move(made));
-      else if (why_not.empty())
-        why_not = made.why_not;
-    }
+    auto [plans, why_not] = plans_of(evaluation, mode_, sweep_, plan, box);
     if (plans.empty())
       throw std::invalid_argument("mechanism " + mechanism.info().name + " has no exact columns: " + why_not +
                                   "; take workspace.method = \"voxels\"");
-    // Derivatives lose digits where the measure has a kink that no structure tells: two more are cheap.
-    integral_.emplace(fastest(std::move(plans)), 0.01 * columns.tolerance);
+    SectionPlan best = fastest(std::move(plans));
+    // Derivatives lose digits where the measure has a kink that no structure tells: with conics two more are cheap.
+    const double tolerance = (best.order.v ? 0.01 : 1) * columns.tolerance;
+    integral_.emplace(std::move(best), tolerance);
     if (demand.needs_inertia()) inertia_.emplace(evaluation, moving(), mode_, demand.rotors);
   }
 
@@ -243,12 +264,8 @@ std::string why_no_columns(const Mechanism& mechanism, const Evaluation& evaluat
   const SurveyPlan usual{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
   const Sweep& sweep = mechanism.info().sweeps.front();
   const std::size_t coordinates = evaluation.model.inputs.coordinates;
-  std::string why_not;
-  for (const SectionOrder& order : orders_of(sweep, usual)) {
-    why_not = plan_sections(evaluation, 0, order, box_of(sweep, coordinates, {})).why_not;
-    if (why_not.empty()) break;
-  }
-  return why_not;
+  const Plans plans = plans_of(evaluation, 0, sweep, usual, box_of(sweep, coordinates, {}), 1);
+  return plans.all.empty() ? plans.why_not : "";
 }
 
 std::unique_ptr<const Surveyor> prepare_columns(const Mechanism& mechanism, const Evaluation& evaluation,

@@ -1,0 +1,54 @@
+// The length of columns whose ends are roots of polynomials of degree four or less: all that the fold of a crank and a
+// rod, a torus, lets one say exactly.
+#pragma once
+
+#include "engine/math/quadrature.hpp"
+#include "engine/mechanisms/described/columns/ends.hpp"
+#include "engine/mechanisms/described/columns/section_plan.hpp"
+
+namespace pkm::described {
+
+/// What a column overwrites. The label of an end is twice its surface, and one more where that falls.
+struct ColumnRoom {
+  struct Piece {
+    std::pair<double, EndLabel> lower, upper;
+  };
+  std::vector<Piece> pieces;
+  Ends ends;         ///< all places where surfaces change their signs and it may matter
+  Ends flat, steep;  ///< of surfaces of degree two or less, in order; of others between two of those
+  Structure structure;
+};
+
+class Column {
+ public:
+  /// @param plan  of a SectionOrder without v
+  explicit Column(SectionPlan plan);
+
+  const SectionPlan& plan() const { return plan_; }
+  /// The length, its structure and its pieces. @param registers  after all stages
+  double measure(std::span<const double> registers, ColumnRoom& room) const;
+  /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
+  void add_slopes(double factor, std::span<const double> registers, std::span<double> adjoints,
+                  const ColumnRoom& room) const;
+  /// Calls visit(z, weight) with nodes inside the column, after measure().
+  template <class Visit>
+  void for_each_node(const GaussRule& along_z, const ColumnRoom& room, const Visit& visit) const {
+    for (const auto& [lower, upper] : room.pieces)
+      for (std::size_t j = 0; j < along_z.node.size(); ++j)
+        visit(lower.first + (upper.first - lower.first) * along_z.node[j],
+              (upper.first - lower.first) * along_z.weight[j]);
+  }
+
+ private:
+  bool find_flat_ends(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
+                      ColumnRoom& room) const;
+  void find_steep_ends(std::span<const double> registers, double from, double to, Signs& signs, ColumnRoom& room) const;
+  double blur(const std::pair<double, EndLabel>& end, std::span<const double> registers) const;
+  void settle(std::span<const double> registers, double tie, ColumnRoom& room) const;
+
+  SectionPlan plan_;
+  Signs steep_ = 0;  ///< surfaces of degree three and four
+  Signs helps_ = 0;  ///< those of them that a formula holds the better with
+};
+
+}  // namespace pkm::described

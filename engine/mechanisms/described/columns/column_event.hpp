@@ -1,0 +1,31 @@
+// Where the structure of columns changes, guessed from their ends: two of them meet there.
+#pragma once
+
+#include "engine/mechanisms/described/columns/ends.hpp"
+
+namespace pkm::described {
+
+/// The distance of two ends is zero at the change: with a sign where they are ends of two surfaces, which go on beyond;
+/// squared where they are both of one, which has them on one side only.
+class ColumnEvent {
+ public:
+  /// @param below, above  Structure::corners on both sides; where they differ by more than two ends nothing is guessed
+  ColumnEvent(std::vector<EndLabel> below, std::vector<EndLabel> above);
+
+  /// What was seen at a place. @param ends  all of them, in order
+  void take(double at, const Ends& ends, const std::vector<EndLabel>& corners);
+  /// A place between two: the next of the secant method, else their middle.
+  double guess(double low, double high, double near);
+
+ private:
+  struct Known {
+    double at, distance;
+  };
+
+  bool is_known_ = false, is_square_ = false;
+  EndLabel p_ = 0, q_ = 0;
+  std::vector<Known> known_;
+  int guesses_ = 0;
+};
+
+}  // namespace pkm::described
