@@ -40,7 +40,8 @@ EndLabel label_of(std::size_t surface, bool falls) { return static_cast<EndLabel
 
 Column::Column(SectionPlan plan) : plan_(std::move(plan)) {
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k)
-    if (plan_.surfaces[k].is_steep) steep_ |= bit(k);
+    if (const Surface& surface = plan_.surfaces[k]; surface.is_steep || surface.is_curve)
+      (surface.is_steep ? steep_ : curves_) |= bit(k);
   helps_ = steep_;
   for (const CrankSigns& crank : plan_.formula.cranks)
     helps_ &= ~(crank.at_min | crank.at_max | crank.after_min | crank.before_max);
@@ -56,7 +57,7 @@ bool Column::find_flat_ends(std::span<const double> registers, Signs& signs, std
   std::array<Roots, kMostSurfaces> roots;
   std::array<bool, kMostSurfaces> is_positive;  // below its roots
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
-    if ((steep_ & bit(k)) != 0) continue;
+    if (((steep_ | curves_) & bit(k)) != 0) continue;
     const auto& at = plan_.surfaces[k].coefficients;
     const std::array<double, 3> c{registers[at[0]], registers[at[1]], registers[at[2]]};
     roots[k] = roots_of(c);
@@ -71,7 +72,7 @@ bool Column::find_flat_ends(std::span<const double> registers, Signs& signs, std
   signs = 0;
   room.flat.clear();
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {
-    if ((steep_ & bit(k)) != 0) continue;
+    if (((steep_ | curves_) & bit(k)) != 0) continue;
     const auto [r, count] = roots[k];
     bool is = is_positive[k];
     std::size_t i = 0;
@@ -80,7 +81,6 @@ bool Column::find_flat_ends(std::span<const double> registers, Signs& signs, std
     for (; i < static_cast<std::size_t>(count) && r[i] < range[1]; ++i, is = !is)
       room.flat.emplace_back(r[i], label_of(k, is));
   }
-  std::sort(room.flat.begin(), room.flat.end());
   return true;
 }
 
@@ -105,6 +105,7 @@ void Column::find_steep_ends(std::span<const double> registers, double from, dou
 double Column::blur(const std::pair<double, EndLabel>& end, std::span<const double> registers) const {
   const Quartic c = coefficients_of(plan_.surfaces[end.second >> 1U], registers);
   const double z = end.first;
+  if ((curves_ & bit(end.second >> 1U)) != 0) return 0;
   double size = 0, power = 1;
   for (const double each : c) {
     size += std::fabs(each * power);
@@ -134,7 +135,7 @@ void Column::settle(std::span<const double> registers, double tie, ColumnRoom& r
         if (other.second < end->second && are_one(*end, other)) *end = other;
 }
 
-double Column::measure(std::span<const double> registers, ColumnRoom& room) const {
+double Column::measure(std::span<double> registers, ColumnRoom& room) const {
   Structure& structure = room.structure;
   structure.hash = 0;
   structure.broken = 0;
@@ -144,6 +145,8 @@ double Column::measure(std::span<const double> registers, ColumnRoom& room) cons
   Signs signs = 0;
   std::array<double, 2> range{};
   if (!find_flat_ends(registers, signs, range, room)) return 0;
+  if (curves_ != 0) find_curve_ends(range, registers, signs, room);
+  std::sort(room.flat.begin(), room.flat.end());
   bool is_in = false;
   std::pair<double, EndLabel> lower{};
   const auto become = [&](bool in, const std::pair<double, EndLabel>& end) {
@@ -197,14 +200,18 @@ double Column::measure(std::span<const double> registers, ColumnRoom& room) cons
   return sum;
 }
 
-void Column::add_slopes(double factor, std::span<const double> registers, std::span<double> adjoints,
+void Column::add_slopes(double factor, std::span<double> registers, std::span<double> adjoints,
                         const ColumnRoom& room) const {
   for (const auto& piece : room.pieces)
     for (const bool is_upper : {false, true}) {
       const auto [z, label] = is_upper ? piece.upper : piece.lower;
       const Surface& surface = plan_.surfaces[label >> 1U];
-      const Quartic c = coefficients_of(surface, registers);
-      double g = (is_upper ? -factor : factor) / slope_of(c, z);
+      const double along = is_upper ? -factor : factor;
+      if (surface.is_curve) {
+        add_slopes_of_curve(surface, z, along, registers, adjoints);
+        continue;
+      }
+      double g = along / slope_of(coefficients_of(surface, registers), z);
       for (std::size_t i = 0; i < kCoefficients; ++i, g *= z) adjoints[surface.coefficients[i]] += g;
     }
 }

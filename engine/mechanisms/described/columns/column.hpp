@@ -1,7 +1,8 @@
-// The length of columns whose ends are roots of polynomials of degree four or less: all that the fold of a crank and a
-// rod, a torus, lets one say exactly.
+// The length of columns whose ends are roots of polynomials of degree four or less, which is all that the fold of a
+// crank and a rod, a torus, lets one say exactly; or roots of any formulas, which intervals isolate.
 #pragma once
 
+#include "engine/math/interval.hpp"
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/ends.hpp"
 #include "engine/mechanisms/described/columns/section_plan.hpp"
@@ -15,7 +16,8 @@ struct ColumnRoom {
   };
   std::vector<Piece> pieces;
   Ends ends;         ///< all places where surfaces change their signs and it may matter
-  Ends flat, steep;  ///< of surfaces of degree two or less, in order; of others between two of those
+  Ends flat, steep;  ///< of surfaces of degree two or less and curves, in order; of others between two of those
+  std::vector<Interval> intervals;  ///< registers
   Structure structure;
 };
 
@@ -25,11 +27,10 @@ class Column {
   explicit Column(SectionPlan plan);
 
   const SectionPlan& plan() const { return plan_; }
-  /// The length, its structure and its pieces. @param registers  after all stages
-  double measure(std::span<const double> registers, ColumnRoom& room) const;
+  /// The length, its structure and its pieces. @param registers  after all stages but that of z
+  double measure(std::span<double> registers, ColumnRoom& room) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
-  void add_slopes(double factor, std::span<const double> registers, std::span<double> adjoints,
-                  const ColumnRoom& room) const;
+  void add_slopes(double factor, std::span<double> registers, std::span<double> adjoints, const ColumnRoom& room) const;
   /// Calls visit(z, weight) with nodes inside the column, after measure().
   template <class Visit>
   void for_each_node(const GaussRule& along_z, const ColumnRoom& room, const Visit& visit) const {
@@ -42,6 +43,14 @@ class Column {
  private:
   bool find_flat_ends(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
                       ColumnRoom& room) const;
+  void set_z(double z, std::span<double> registers) const;
+  void find_curve_ends(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
+                       ColumnRoom& room) const;
+  void isolate(Signs curves, double from, double to, double narrow, std::span<double> registers,
+               ColumnRoom& room) const;
+  void add_slopes_of_curve(const Surface& surface, double z, double factor, std::span<double> registers,
+                           std::span<double> adjoints) const;
+  double root_between(std::size_t curve, double from, double to, std::span<double> registers) const;
   void find_steep_ends(std::span<const double> registers, double from, double to, Signs& signs, ColumnRoom& room) const;
   double blur(const std::pair<double, EndLabel>& end, std::span<const double> registers) const;
   void settle(std::span<const double> registers, double tie, ColumnRoom& room) const;
@@ -49,6 +58,7 @@ class Column {
   SectionPlan plan_;
   Signs steep_ = 0;  ///< surfaces of degree three and four
   Signs helps_ = 0;  ///< those of them that a formula holds the better with
+  Signs curves_ = 0;
 };
 
 }  // namespace pkm::described

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/graph/derivative.hpp"
 #include "engine/graph/lowering.hpp"
 #include "engine/mechanisms/described/conditions.hpp"
 
@@ -81,13 +82,14 @@ bool is_known_to_exist(const Graph& graph, Node node) {
 
 class Planner {
  public:
-  Planner(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, const Ranges& box)
+  Planner(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, bool curves, const Ranges& box)
       : model_(evaluation.model),
         known_(conditions_of(model_, mode)),
         graph_(known_.graph),
         v_(order.v ? Inputs::coordinate_group(*order.v) : 0),
         z_(Inputs::coordinate_group(order.z)),
-        lowering_(graph_, v_, z_) {
+        lowering_(graph_, v_, z_),
+        curves_(curves) {
     plan_.order = order;
     take_cranks();
     for (std::size_t i = 0; i < known_.all.size() && plan_.why_not.empty(); ++i)
@@ -108,6 +110,7 @@ class Planner {
     groups.push_back(v_);
     for (std::size_t i = 1; i < groups.size(); ++i) groups[0] &= ~groups[i];
     groups[0] &= ~z_;
+    if (!curve_nodes_.empty()) groups.push_back(z_);
     std::vector<Node> outputs = plain_;
     for (const NodeSurface& each : surface_nodes_) outputs.insert(outputs.end(), each.begin(), each.end());
     outputs.insert(outputs.end(), half_turns_.begin(), half_turns_.end());
@@ -115,7 +118,7 @@ class Planner {
     plan_.program = graph::Program(graph_, outputs, groups);
 
     const std::uint32_t* at = plan_.program.outputs().data();
-    plan_.plain.resize(groups.size());
+    plan_.plain.resize(plan_.order.outer.size() + 2);
     for (std::size_t i = 0; i < plain_.size(); ++i, ++at)
       plan_.plain[static_cast<std::size_t>(std::max(plan_.program.stage_of()[*at], 0))].push_back(*at);
     const auto is_zero = [&](Node node) { return graph_[node].is_number() && graph_[node].number == 0; };
@@ -123,7 +126,8 @@ class Planner {
       Surface& surface = plan_.surfaces.emplace_back();
       std::copy_n(at, 6, surface.coefficients.begin());
       surface.has_z = !is_zero(conic[2]) || !is_zero(conic[4]) || !is_zero(conic[5]);
-      surface.is_steep = v_ == 0 && (!is_zero(conic[3]) || !is_zero(conic[4]));
+      surface.is_curve = std::ranges::find(curve_nodes_, conic[0]) != curve_nodes_.end();
+      surface.is_steep = v_ == 0 && !surface.is_curve && (!is_zero(conic[3]) || !is_zero(conic[4]));
       at += 6;
     }
     for (CrankSigns& crank : plan_.formula.cranks) crank.half_turn = *at++;
@@ -193,8 +197,20 @@ class Planner {
     if (is_joint && is_known_to_exist(graph_, node)) return;
     if ((graph_[node].groups & z_) == 0)
       plain_.push_back(node);
+    else if (curves_)
+      add_curve(node);
     else
       refuse("'" + name_of_condition(model_, number) + "' is no polynomial of degree " + (v_ == 0 ? "four" : "two"));
+  }
+
+  void add_curve(Node node) {
+    const Node z = graph_.input(model_.inputs.coordinate(plan_.order.z), z_);
+    NodeSurface curve;
+    curve.fill(graph_.number(0));
+    curve[0] = node;
+    curve[1] = graph::derivative(graph_, node, z);
+    curve_nodes_.push_back(node);
+    plan_.formula.all |= bit(curve);
   }
 
   void add_clause(const NodeClause& clause) {
@@ -248,18 +264,19 @@ class Planner {
   Graph& graph_;
   Groups v_, z_;
   SurfaceLowering lowering_;
+  bool curves_;
   SectionPlan plan_;
   std::vector<bool> covered_;
-  std::vector<Node> plain_, half_turns_;
+  std::vector<Node> plain_, half_turns_, curve_nodes_;
   std::vector<NodeSurface> surface_nodes_;
   std::vector<std::array<Node, 2>> ends_;
 };
 
 }  // namespace
 
-SectionPlan plan_sections(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order,
+SectionPlan plan_sections(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, bool curves,
                           const Ranges& box) {
-  return Planner(evaluation, mode, order, box).finish();
+  return Planner(evaluation, mode, order, curves, box).finish();
 }
 
 }  // namespace pkm::described

@@ -1,5 +1,6 @@
 // What holds in sections of a described workspace: planes (v, z) at fixed outer coordinates, as conics in v and z whose
-// coefficients a program computes; or in lines along z, as polynomials of degree four or less.
+// coefficients a program computes; or in lines along z, as polynomials of degree four or less, or as whatever formulas
+// say.
 #pragma once
 
 #include <string>
@@ -12,9 +13,12 @@ namespace pkm::described {
 
 /// A conic of the section, or a polynomial, by its registers; what is the same in every section and place is a number.
 struct Surface {
-  std::array<std::uint32_t, 6> coefficients;  ///< of 1, v, z, v^2, v z, z^2; without v of 1, z, z^2, z^3, z^4
-  bool has_z;                                 ///< of a conic
-  bool is_steep;                              ///< of a polynomial: of degree three or four
+  /// Of 1, v, z, v^2, v z, z^2; without v of 1, z, z^2, z^3, z^4. Of a curve: f(z) and its derivative, which the
+  /// program's last stage computes.
+  std::array<std::uint32_t, 6> coefficients;
+  bool has_z;     ///< of a conic
+  bool is_steep;  ///< of a polynomial: of degree three or four
+  bool is_curve;  ///< no polynomial
 };
 
 /// Which coordinates are what.
@@ -28,7 +32,7 @@ using Ranges = std::vector<std::optional<std::array<double, 2>>>;
 
 struct SectionPlan {
   SectionOrder order;
-  graph::Program program;  ///< stages: the design, each outer coordinate, v
+  graph::Program program;  ///< stages: the design, each outer coordinate, v; where there are curves z
   std::vector<Surface> surfaces;
   Formula formula;
   std::vector<std::vector<std::uint32_t>> plain;    ///< by stage: registers, >= 0 where it holds
@@ -36,7 +40,9 @@ struct SectionPlan {
   std::string why_not;                              ///< not "": these sections have no closed form
 };
 
-/// @param box  by coordinate; where it says nothing, the model's own is taken
-SectionPlan plan_sections(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, const Ranges& box);
+/// @param curves  whether lines may be bounded by what is no polynomial
+/// @param box     by coordinate; where it says nothing, the model's own is taken
+SectionPlan plan_sections(const Evaluation& evaluation, std::size_t mode, const SectionOrder& order, bool curves,
+                          const Ranges& box);
 
 }  // namespace pkm::described

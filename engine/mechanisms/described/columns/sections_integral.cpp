@@ -149,9 +149,10 @@ void SectionsIntegral::look_again(std::size_t level, IntegralRoom& room) const {
 void SectionsIntegral::find_places(std::size_t level, double low, double high, IntegralRoom& room) const {
   IntegralRoom::Level& own = room.levels[level];
   const double whole = high - low;
-  const int samples = levels() == 1 || !ends_in_lines() ? kSamples[levels() > 1 ? 1 : 0]
-                      : level == 0                      ? kSamplesInLines[0]
-                                                        : kSamplesInLines[room.is_scanning ? 1 : 2];
+  const int samples = !ends_in_lines() ? kSamples[levels() > 1 ? 1 : 0]
+                      : levels() == 1  ? kSamplesInLines[1]
+                      : level == 0     ? kSamplesInLines[0]
+                                       : kSamplesInLines[room.is_scanning ? 1 : 2];
   own.places.assign({low + kSettled * whole, high - kSettled * whole});
   for (int i = 0; i < samples; ++i) {
     // not at equal distances, which symmetric mechanisms would have their breaks at
@@ -205,9 +206,9 @@ void SectionsIntegral::remember(double outside, IntegralRoom::Level& own) {
   for (const SlicePart& part : own.parts) at->parts.push_back({part.piece.lower, part.piece.upper});
 }
 
-/// Measures go on where structures change; if not, something was overlooked on one side.
+/// Measures go on where structures change, some like roots; if not, something was overlooked on one side.
 bool SectionsIntegral::jumps(const Slice& low, const Slice& high, std::size_t level, const IntegralRoom& room) const {
-  return ends_in_lines() && level + 1 < levels() && low.broken == 0 && high.broken == 0 &&
+  return ends_in_lines() && low.broken == 0 && high.broken == 0 &&
          std::fabs(low.measure - high.measure) > kJump * room.levels[level].greatest;
 }
 
@@ -217,7 +218,7 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
   for (int more = 0; more < 24 && from.hash != to.hash && room.sections < room.most; ++more) {
     Slice low = from, high = to;
     close_in(level, low, high, whole, room);
-    for (int again = 0; again < 4 && jumps(low, high, level, room); ++again) {
+    for (int again = 0; again < 4 && level + 1 < levels() && jumps(low, high, level, room); ++again) {
       // A part that was overlooked on one side is found there now, and followed further on.
       const bool is_low = low.measure < high.measure;
       const Slice found = slice(level, is_low ? low.at : high.at, room);
@@ -237,6 +238,7 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
     const double beyond = high.at + kSettled * whole * std::ldexp(1.0, 3 * more);
     const Slice after = beyond < to.at ? slice(level, beyond, room) : to;
     SliceBreak found{high.at, true, true, low, after};
+    if (level + 1 < levels() && jumps(low, high, level, room)) found.jump = std::fabs(low.measure - high.measure);
     find_kind(level, found, std::max(from.at, low.at - kSettled * whole), after.at, room);
     breaks.push_back(found);
     from = after;
@@ -244,7 +246,7 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
 }
 
 void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const {
-  const double near = (ends_in_lines() ? kNearInLines : kNear) * (whole + std::fabs(low.at));
+  const double range = whole + std::fabs(low.at), near = (ends_in_lines() ? kNearInLines : kNear) * range;
   std::optional<ColumnEvent> event;
   const auto look = [&](double at) {
     const Slice found = slice(level, at, room);
@@ -259,8 +261,9 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     look(low.at);
     look(high.at);
   }
-  while (high.at - low.at > near) {
-    const double at = event ? event->guess(low.at, high.at, near) : 0.5 * (low.at + high.at);
+  while (high.at - low.at > near || (jumps(low, high, level, room) && high.at - low.at > kNear * range)) {
+    const double at = event ? event->guess(low.at, high.at, high.at - low.at > near ? near : kNear * range)
+                            : 0.5 * (low.at + high.at);
     if (at <= low.at || at >= high.at) break;
     room.is_scanning = level == 0 && high.at - low.at > kFar * whole;
     const Slice next = look(at);
@@ -289,9 +292,7 @@ void SectionsIntegral::add_parts(std::size_t level, const Breaks& breaks, double
   };
   for (std::size_t i = 1; i < breaks.size(); ++i) {
     const SliceBreak &lower = breaks[i - 1], &upper = breaks[i];
-    if (i > 1 && jumps(lower.below, lower.above, level, room))
-      room.levels[level].unresolved +=
-          std::fabs(lower.below.measure - lower.above.measure) * whole / kSamplesInLines[0];
+    room.levels[level].unresolved += lower.jump * whole / kSamplesInLines[0];
     if (lower.above.hash == 0 && upper.below.hash == 0) continue;
     add_part(level,
              {.piece = {lower.at, upper.at, lower.root_above, upper.root_below},
@@ -415,9 +416,7 @@ void SectionsIntegral::add_side(std::size_t level, const SlicePart& part, bool u
   const Closing closing = upper ? part.upper : part.lower;
   if (closing == kChange) return;
   const double at = upper ? part.piece.upper : part.piece.lower, sign = upper ? factor : -factor;
-  const double inwards = (upper ? -1e-7 : 1e-7) * (part.piece.upper - part.piece.lower);
-  const double near = slice(level, at + inwards, room).measure, far = slice(level, at + 2 * inwards, room).measure;
-  const double measure = 2 * near - far;
+  const double measure = (upper ? part.above : part.below).measure;
   if (closing == kBox) {
     room.adjoints[plan().range[level][upper ? 1 : 0]] += sign * measure;
     return;

@@ -51,15 +51,15 @@ struct Plans {
   std::string why_not;  ///< where there are none
 };
 
-/// Sections of conics where there are any, else lines. @param most  plans
+/// Sections of conics where there are any, else lines bounded by polynomials, else lines. @param most  plans
 Plans plans_of(const Evaluation& evaluation, std::size_t mode, const Sweep& sweep, const SurveyPlan& plan,
                const Ranges& box, std::size_t most = 100) {
   Plans plans;
-  for (const bool are_lines : {false, true}) {
+  for (const auto& [are_lines, curves] : {std::pair{false, false}, {true, false}, {true, true}}) {
     if (!plans.all.empty()) break;
     for (const SectionOrder& order : orders_of(sweep, plan, are_lines)) {
       if (plans.all.size() == most) return plans;
-      SectionPlan made = plan_sections(evaluation, mode, order, box);
+      SectionPlan made = plan_sections(evaluation, mode, order, curves, box);
       if (made.why_not.empty())
         plans.all.push_back(std::move(made));
       else
@@ -91,7 +91,7 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
                                   "; take workspace.method = \"voxels\"");
     SectionPlan best = fastest(std::move(plans));
     // Derivatives lose digits where the measure has a kink that no structure tells: with conics two more are cheap.
-    const double tolerance = (best.order.v ? 0.01 : 1) * columns.tolerance;
+    const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
     integral_.emplace(std::move(best), tolerance);
     if (demand.needs_inertia()) inertia_.emplace(evaluation, moving(), mode_, demand.rotors);
   }
@@ -140,7 +140,9 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     double least = 1e7;
     for (std::size_t i = 0; i < plans.size(); ++i) {
       const SectionsIntegral trial(plans[i], kTrial);
-      const auto per_section = static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size());
+      const auto curves = static_cast<std::size_t>(std::ranges::count(plans[i].surfaces, true, &Surface::is_curve));
+      const auto per_section =
+          static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size() + 400 * curves);
       fill_inputs<double>(design, room.inputs);
       trial.measure(room.inputs, room.integral, std::max(1L, static_cast<long>(least / per_section)));
       const double work = static_cast<double>(room.integral.sections) * per_section;
