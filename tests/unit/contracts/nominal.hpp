@@ -85,16 +85,10 @@ inline SurveyPlan columns(const MechanismInfo& info, const ColumnOptions& option
   return columns(info, info.sweeps.front(), options);
 }
 
-/// Whether columns can sweep so: those of files need surfaces of degree two.
+/// Whether columns are looked at: those of files are prepared by trials, and of their other sweeps BoundedColumns takes
+/// some.
 inline bool has_columns(const Mechanism& mechanism, const Sweep& sweep) {
-  if (!mechanism.columns()) return false;
-  if (!is_of_file(mechanism.info())) return true;
-  try {
-    prepare_survey(mechanism, columns(mechanism.info(), sweep), {});
-    return true;
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
+  return mechanism.columns() && (!is_of_file(mechanism.info()) || sweep.swept == mechanism.info().sweeps.front().swept);
 }
 
 /// By voxels, and by columns where the mechanism has them.

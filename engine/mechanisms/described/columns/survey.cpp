@@ -18,7 +18,7 @@ namespace {
 using Kind = HeldCoordinate::Kind;
 
 /// The orders of coordinates in which sections may have closed forms: each pair of swept ones as (v, z), or each as z
-/// alone, the others outside, those that are integrated over outermost.
+/// alone, the others outside (of lines in one order), those that are integrated over outermost.
 std::vector<SectionOrder> orders_of(const Sweep& sweep, const SurveyPlan& plan, bool are_lines) {
   std::vector<std::size_t> swept(sweep.swept.begin(), sweep.swept.end()), integrated;
   for (const int coordinate : sweep.held)
@@ -33,7 +33,7 @@ std::vector<SectionOrder> orders_of(const Sweep& sweep, const SurveyPlan& plan, 
       outer = outer.first(outer.size() - 1);
     }
     order.outer.insert(order.outer.end(), outer.begin(), outer.end());
-    orders.push_back(order);
+    if (!are_lines || std::ranges::is_sorted(outer)) orders.push_back(order);
   } while (std::ranges::next_permutation(swept).found);
   return orders;
 }
@@ -129,9 +129,9 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     return all;
   }
 
-  /// The plan whose survey of the default design, to three digits, takes the fewest sections.
+  /// The plan whose survey of the default design, to a few digits, takes the fewest sections.
   SectionPlan fastest(std::vector<SectionPlan> plans) const {
-    constexpr double kTrial = 1e-3;
+    const double tolerance = plans.front().order.v ? 1e-3 : 1e-2;
     if (plans.size() == 1 || plans.front().order.outer.empty()) return std::move(plans.front());
     std::vector<double> design;
     for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
@@ -139,7 +139,7 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     std::size_t best = 0;
     double least = 1e7;
     for (std::size_t i = 0; i < plans.size(); ++i) {
-      const SectionsIntegral trial(plans[i], kTrial);
+      const SectionsIntegral trial(plans[i], tolerance);
       const auto curves = static_cast<std::size_t>(std::ranges::count(plans[i].surfaces, true, &Surface::is_curve));
       const auto per_section =
           static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size() + 400 * curves);

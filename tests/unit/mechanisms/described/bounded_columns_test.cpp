@@ -16,15 +16,12 @@ class BoundedColumns : public ::testing::TestWithParam<std::string> {
   const Mechanism& file() const { return *test::described(GetParam()); }
   const MechanismInfo& info() const { return file().info(); }
 
-  /// The usual sweep, and others that have columns.
+  /// The usual sweep, and others.
   std::vector<SurveyPlan> plans() const {
+    constexpr std::size_t kOthers = 8;
     std::vector<SurveyPlan> all;
-    for (const Sweep& sweep : info().sweeps) try {
-        prepare_survey(file(), test::columns(info(), sweep), {});
-        all.push_back(test::columns(info(), sweep));
-      } catch (const std::invalid_argument&) {
-        EXPECT_NE(&sweep, &info().sweeps.front());
-      }
+    for (std::size_t i = 0; i < info().sweeps.size() && i <= kOthers; ++i)
+      all.push_back(test::columns(info(), info().sweeps[i]));
     return all;
   }
 
