@@ -3,7 +3,7 @@
 // Files named *_kernel.cpp are compiled once for every instruction set, with the set as PKM_INSTRUCTION_SET. They
 // define function templates over the set and instantiate them for theirs; with_instruction_set() calls the one in use.
 // The bits of results are the same on all: kernels work on kLanes numbers side by side whatever the width of vectors
-// (math/lanes.hpp), and the build forbids contraction.
+// (math/lanes.hpp), and the build forbids contraction. Sanitizers watch the baseline alone, whichever is chosen.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ void use_instruction_set(InstructionSet set);
 ///   with_instruction_set([&]<InstructionSet set> { return tally<set>(columns); })
 template <class Kernel>
 decltype(auto) with_instruction_set(const Kernel& kernel) {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(PKM_SANITIZED)
   switch (instruction_set()) {
     case InstructionSet::avx512:
       return kernel.template operator()<InstructionSet::avx512>();

@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kPose = {"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg"};
+const std::vector<std::string> kPoseCommand = {"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg"};
 
 std::vector<PlacedLink> links() {
   const auto mechanism = all_mechanisms().front();
@@ -36,7 +36,7 @@ double length(const Segment<double>& axis) {
 class CliCad : public ::testing::Test {
  protected:
   std::string written(const std::string& option, const std::string& name) const {
-    auto words = kPose;
+    auto words = kPoseCommand;
     words.insert(words.end(), {option, name});
     const auto result = pkmopt(words, folder_.path());
     EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -96,6 +96,7 @@ std::string with(std::string text, const std::string& behind, const std::string&
 
 TEST_F(Certify, TamperedProofsAreRefused) {
   const std::string proof = proof_of("orthoglide", "0.15");
+  EXPECT_EQ(check("a.proof").exit_code, 0) << "untouched";
   const std::string lower = proof.substr(proof.find("volume ") + 7, 5);
   const std::size_t boxes = proof.find("boxes\n") + 6, last = proof.find("end\n");
   // the first box that has a step of each kind

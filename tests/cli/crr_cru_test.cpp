@@ -16,7 +16,7 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 /// "l_11=...,..." of a golden case.
-std::string design_list(const json& entry) {
+std::string crr_cru_design(const json& entry) {
   const json& p = entry.contains("params") ? entry["params"] : crr_cru_golden()["nominal"];
   std::string text = assignments({"r", "h", "l", "L", "rho_min", "rho_max"},
                                  {p["r"], p["h"], p["l"], p["L"], p["rho_min"], p["rho_max"]}) +
@@ -29,7 +29,7 @@ TEST(CliCrrCru, PoseAndForwardOfGoldenCases) {
   for (std::size_t i = 0; i < crr_cru_golden()["cases"].size(); i += 3) {
     const json& entry = crr_cru_golden()["cases"][i];
     SCOPED_TRACE(entry["id"].dump());
-    const std::string set = design_list(entry);
+    const std::string set = crr_cru_design(entry);
     const std::string mode = mode_text(entry["sigma"]);
     const auto result = pkmopt({"pose", entry["mechanism"], "--at", assignments({"x", "y", "z", "phi"}, entry["X"]),
                                 "--mode", mode, "--set", set, "--json"});

@@ -7,16 +7,16 @@
 namespace pkm::testing {
 namespace {
 
-const std::string kMechanisms = PKM_EXPERIMENTS "/mechanisms";
+const std::string kShipped = PKM_EXPERIMENTS "/mechanisms";
 
 class DescribedStudy : public StudyProgram {};
 
 TEST_F(DescribedStudy, EveryShippedMechanismHasOneThatChecks) {
   int mechanisms = 0;
-  for (const auto& entry : fs::directory_iterator(kMechanisms)) {
+  for (const auto& entry : fs::directory_iterator(kShipped)) {
     if (entry.path().extension() != ".toml") continue;
     ++mechanisms;
-    const std::string study = kMechanisms + "/studies/" + entry.path().filename().string();
+    const std::string study = kShipped + "/studies/" + entry.path().filename().string();
     EXPECT_EQ(run({"check", study}), 0) << output_;
     EXPECT_EQ(output_.find("warning"), std::string::npos) << study << output_;
   }
@@ -24,7 +24,7 @@ TEST_F(DescribedStudy, EveryShippedMechanismHasOneThatChecks) {
 }
 
 TEST_F(DescribedStudy, EndsWithTheSameBitsOnAnyThreadsAndInstructionSetAndAfterKills) {
-  std::ofstream(path("study.toml")) << "[mechanism]\nfile = \"" << kMechanisms << R"(/rotary-delta.toml"
+  std::ofstream(path("study.toml")) << "[mechanism]\nfile = \"" << kShipped << R"(/rotary-delta.toml"
 [variables]
 R   = { min = 0.05, max = 0.4 }
 l_a = { min = 0.1, max = 0.4 }

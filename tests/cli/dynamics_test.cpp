@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kPose = {"x", "y", "z", "phi"};
+const std::vector<std::string> kPoseNames = {"x", "y", "z", "phi"};
 
 TEST(CliDynamics, GoldenCasesWithReactions) {
   int cases = 0;
@@ -25,10 +25,10 @@ TEST(CliDynamics, GoldenCasesWithReactions) {
     SCOPED_TRACE(entry["id"].dump());
     const std::string mode = mode_text(entry["sigma"]);
     const auto result =
-        pkmopt({"dynamics", entry["mechanism"], "--at", assignments(kPose, entry["X"]), "--velocity",
-                assignments(kPose, entry["Xd"]), "--acceleration", assignments(kPose, entry["Xdd"]), "--wrench",
-                assignments({"Fx", "Fy", "Fz"}, entry["F"]), "--wrench", assignments({"Mx", "My", "Mz"}, entry["M"]),
-                "--mode=" + mode, "--reactions", "--json"});
+        pkmopt({"dynamics", entry["mechanism"], "--at", assignments(kPoseNames, entry["X"]), "--velocity",
+                assignments(kPoseNames, entry["Xd"]), "--acceleration", assignments(kPoseNames, entry["Xdd"]),
+                "--wrench", assignments({"Fx", "Fy", "Fz"}, entry["F"]), "--wrench",
+                assignments({"Mx", "My", "Mz"}, entry["M"]), "--mode=" + mode, "--reactions", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json found = result.json();
     double largest = 1;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/cli/crr_cru_golden.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/study_folder.hpp"
 
@@ -17,21 +18,14 @@ using nlohmann::json;
 constexpr double kRoundoff = 1e-13;
 constexpr double kPi = 3.14159265358979323846;
 
-const json& golden() {
+const json& four_ppa_golden() {
   static const json data = json::parse(std::ifstream(PKM_TEST_DATA "/4ppa-2par.json"));
   return data;
 }
 
-/// "name=value,..." with all digits.
-std::string list(const std::vector<std::string>& names, const json& values) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ",") + names[i] + "=" + values[i].dump();
-  return text;
-}
-
-std::string design_list(const json& design) {
-  return list({"a", "b", "l_u", "l_d", "d", "L0"},
-              {design["a"], design["b"], design["lu"], design["ld"], design["d"], design["L0"]});
+std::string four_ppa_design(const json& design) {
+  return assignments({"a", "b", "l_u", "l_d", "d", "L0"},
+                     {design["a"], design["b"], design["lu"], design["ld"], design["d"], design["L0"]});
 }
 
 json pose_json(const std::string& at, const std::string& mode, const std::string& set) {
@@ -52,11 +46,11 @@ double nearest(const json& poses, const json& pose) {
 }
 
 TEST(CliGolden, PoseAndForwardOfEveryCase) {
-  for (const auto& entry : golden()["kinematics"]) {
+  for (const auto& entry : four_ppa_golden()["kinematics"]) {
     SCOPED_TRACE(entry["design"].dump());
     const auto word = [](int mode) { return std::string(mode == 1 ? "lower" : "upper"); };
-    const std::string set = design_list(entry["design"]);
-    const json pose = pose_json(list({"x", "y", "z", "theta"}, entry["pose"]),
+    const std::string set = four_ppa_design(entry["design"]);
+    const json pose = pose_json(assignments({"x", "y", "z", "theta"}, entry["pose"]),
                                 word(entry["modes"][0]) + "," + word(entry["modes"][1]), set);
     const char* const joints[4] = {"q1", "q2", "q3", "q4"};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -75,8 +69,8 @@ TEST(CliGolden, PoseAndForwardOfEveryCase) {
     EXPECT_NEAR(pose["angles"]["alpha_1"], entry["alpha"][0], kRoundoff);
     EXPECT_NEAR(pose["angles"]["beta_2"], entry["beta"][1], kRoundoff);
 
-    const auto forward = pkmopt(
-        {"forward", "4ppa-2par", "--joints", list({"q1", "q2", "q3", "q4"}, entry["q"]), "--set", set, "--json"});
+    const auto forward = pkmopt({"forward", "4ppa-2par", "--joints", assignments({"q1", "q2", "q3", "q4"}, entry["q"]),
+                                 "--set", set, "--json"});
     EXPECT_EQ(forward.exit_code, 0);
     const json poses = forward.json()["poses"];
     EXPECT_EQ(poses.size(), entry["fk_all"].size());
@@ -86,7 +80,7 @@ TEST(CliGolden, PoseAndForwardOfEveryCase) {
 
 TEST(CliGolden, VolumesOfEveryCase) {
   const StudyFolder folder;
-  for (const auto& entry : golden()["workspace"]) {
+  for (const auto& entry : four_ppa_golden()["workspace"]) {
     SCOPED_TRACE(entry["design"].dump());
     std::ostringstream workspace;
     workspace << "y = " << entry["y"].dump() << "\nlimits = {";
@@ -94,7 +88,7 @@ TEST(CliGolden, VolumesOfEveryCase) {
       workspace << (name == "alpha_min" ? " " : ", ") << name << " = " << value.dump();
     const auto evaluate = [&](const std::string& method) {
       const auto file = folder.write("s.toml", study_with("[workspace]\n" + method + "\n" + workspace.str() + " }"));
-      const auto result = pkmopt({"evaluate", file, "--set", design_list(entry["design"]), "--json"});
+      const auto result = pkmopt({"evaluate", file, "--set", four_ppa_design(entry["design"]), "--json"});
       EXPECT_EQ(result.exit_code, 0) << result.err;
       return result.json()["workspace"];
     };

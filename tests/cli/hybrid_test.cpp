@@ -19,15 +19,15 @@ using ::testing::StartsWith;
 const char* const kName = "2t1r-p-hybrid";
 const std::vector<std::string> kCoordinates = {"x", "y", "z", "beta"}, kJoints = {"s1", "s2", "s3", "s4"};
 
-const json& golden() {
+const json& hybrid_golden() {
   static const json data = json::parse(std::ifstream(PKM_TEST_DATA "/2t1r-p-hybrid.json"));
   return data;
 }
 
 /// "a=0.1,...,s_min_1=-0.15,..." of the design that an entry refers to.
-std::string design_list(const json& entry) {
+std::string hybrid_design(const json& entry) {
   const json& fields =
-      entry.contains("design_inline") ? entry["design_inline"] : golden()["designs"][entry["design"].get<int>()];
+      entry.contains("design_inline") ? entry["design_inline"] : hybrid_golden()["designs"][entry["design"].get<int>()];
   std::string text;
   const auto add = [&](const std::string& name, const json& value) {
     text += (text.empty() ? "" : ",") + name + "=" + value.dump();
@@ -52,15 +52,15 @@ void expect_near(const json& found, const json& expected, const std::string& wha
 
 ProgramResult pose(const json& entry, std::vector<std::string> more) {
   std::vector<std::string> command = {
-      "pose", kName, "--at", assignments(kCoordinates, entry["X"]), "--set", design_list(entry), "--json"};
+      "pose", kName, "--at", assignments(kCoordinates, entry["X"]), "--set", hybrid_design(entry), "--json"};
   command.insert(command.end(), more.begin(), more.end());
   return pkmopt(command);
 }
 
 TEST(CliHybrid, MarginsOfGoldenPoses) {
-  const std::vector<std::string> names = golden()["margin_names"];
-  for (std::size_t i = 0; i < golden()["feasibility"].size(); i += 2) {
-    const json& entry = golden()["feasibility"][i];
+  const std::vector<std::string> names = hybrid_golden()["margin_names"];
+  for (std::size_t i = 0; i < hybrid_golden()["feasibility"].size(); i += 2) {
+    const json& entry = hybrid_golden()["feasibility"][i];
     SCOPED_TRACE(entry.dump());
     const auto result = pose(entry, {"--mode", mode_text(entry["wm"]), "--branch", entry["sb"] > 0 ? "+" : "-"});
     const json found = result.json();
@@ -76,8 +76,8 @@ TEST(CliHybrid, MarginsOfGoldenPoses) {
 }
 
 TEST(CliHybrid, InfluenceCoefficientsBothWays) {
-  for (std::size_t i = 0; i < golden()["jac"].size(); i += 3) {
-    const json& entry = golden()["jac"][i];
+  for (std::size_t i = 0; i < hybrid_golden()["jac"].size(); i += 3) {
+    const json& entry = hybrid_golden()["jac"][i];
     SCOPED_TRACE(entry.dump());
     const std::string mode = mode_text(entry["wm"]);
     const json found = pose(entry, {"--mode", mode, "--velocity", assignments(kCoordinates, entry["V"]),
@@ -92,9 +92,9 @@ TEST(CliHybrid, InfluenceCoefficientsBothWays) {
         for (std::size_t k = 0; k < 4; ++k) expect_near(found["H"][r][c][k], entry["H_inv"][r][c][k], "H");
       }
     }
-    const auto forward =
-        pkmopt({"forward", kName, "--set", design_list(entry), "--joints", assignments(kJoints, entry["q"]), "--speeds",
-                assignments(kJoints, entry["qd"]), "--accelerations", assignments(kJoints, entry["qdd"]), "--json"});
+    const auto forward = pkmopt({"forward", kName, "--set", hybrid_design(entry), "--joints",
+                                 assignments(kJoints, entry["q"]), "--speeds", assignments(kJoints, entry["qd"]),
+                                 "--accelerations", assignments(kJoints, entry["qdd"]), "--json"});
     ASSERT_EQ(forward.exit_code, 0) << forward.err;
     const json solutions = forward.json()["poses"];
     int own = 0;
@@ -114,8 +114,8 @@ TEST(CliHybrid, InfluenceCoefficientsBothWays) {
 }
 
 TEST(CliHybrid, AuxiliaryChain) {
-  for (std::size_t i = 0; i < golden()["aux"].size(); i += 3) {
-    const json& entry = golden()["aux"][i];
+  for (std::size_t i = 0; i < hybrid_golden()["aux"].size(); i += 3) {
+    const json& entry = hybrid_golden()["aux"][i];
     SCOPED_TRACE(entry.dump());
     const std::string rate = ",theta=" + entry["thd"].dump(), change = ",theta=" + entry["thdd"].dump();
     const std::vector<std::string> motion = {"--theta",        entry["theta"].dump(),
@@ -140,9 +140,9 @@ TEST(CliHybrid, AuxiliaryChain) {
 }
 
 TEST(CliHybrid, ForwardTellsItsStatus) {
-  for (const json& entry : golden()["fk"]) {
+  for (const json& entry : hybrid_golden()["fk"]) {
     SCOPED_TRACE(entry.dump());
-    const auto result = pkmopt({"forward", kName, "--set", design_list(entry), "--joints",
+    const auto result = pkmopt({"forward", kName, "--set", hybrid_design(entry), "--joints",
                                 assignments(kJoints, entry["q"]), "--speeds", "s1=0.1", "--json"});
     EXPECT_EQ(result.exit_code, entry["status"] == "OK" ? 0 : 1);
     const json found = result.json();
@@ -164,7 +164,7 @@ TEST(CliHybrid, ForwardTellsItsStatus) {
 
 TEST(CliHybrid, TheMotionOfThePaper) {
   const StudyFolder folder;
-  const json& table = golden()["motion"];
+  const json& table = hybrid_golden()["motion"];
   const auto result = pkmopt({"trajectory", kName, "--motion", PKM_EXPERIMENTS "/2t1r-p-hybrid/motions/paper.toml",
                               "--samples", std::to_string(table.size()), "--json", "--csv", "m.csv"},
                              folder.path());

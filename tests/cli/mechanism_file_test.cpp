@@ -24,7 +24,7 @@ std::string text_of(const std::string& file) {
 }
 
 /// Lines that are neither empty nor comments.
-std::int64_t lines_of(const std::string& text) {
+std::int64_t lines_without_comments(const std::string& text) {
   std::istringstream lines(text);
   std::int64_t count = 0;
   for (std::string line; std::getline(lines, line);) count += !line.empty() && line[0] != '#';
@@ -62,7 +62,7 @@ TEST_F(MechanismFile, AFileToBeginWithIsShortAndChecks) {
     const auto written = run({"new", "study", mechanism, "--output", "new.toml", "--force"});
     EXPECT_EQ(written.err, "");
     EXPECT_EQ(written.out, "wrote new.toml\nnext: pkmopt run new.toml\n");
-    EXPECT_LE(lines_of(text_of(path("new.toml"))), 15);
+    EXPECT_LE(lines_without_comments(text_of(path("new.toml"))), 15);
     const auto checked = run({"check", "new.toml", "--json"});
     EXPECT_EQ(checked.exit_code, 0) << checked.err;
     EXPECT_EQ(checked.json()["warnings"].size(), 0u);

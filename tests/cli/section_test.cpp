@@ -109,9 +109,9 @@ TEST_F(CliSection, RangesThatABoxDoesNotNameAreKept) {
 
 TEST_F(CliSection, WhatIsNoPlaneIsNotDrawn) {
   EXPECT_EQ(
-      refusal({"4ppa-2par", "-o", "f.svg"}),
+      refusal({"4ppa-2par", "--cells", "8", "-o", "f.svg"}),
       "pkmopt: --svg: found a workspace over x, z, theta; expected a slice of it, such as that of --cut theta=0\n");
-  EXPECT_EQ(refusal({"4ppa-2par", "--cut", "theta=0,x=0.4", "-o", "f.svg"}),
+  EXPECT_EQ(refusal({"4ppa-2par", "--cells", "8", "--cut", "theta=0,x=0.4", "-o", "f.svg"}),
             "pkmopt: --svg: found a workspace over z; expected a workspace over two coordinates\n");
   EXPECT_EQ(refusal({"4ppa-2par", "--cut", "theta=0", "--html", "f.html"}),
             "pkmopt: --html: found a slice of a workspace; expected a whole one; --svg draws slices\n");

@@ -42,7 +42,7 @@ generations = )" << generations << "\n[[stage]]\noptimiser = \"ga\"\npopulation 
 };
 
 TEST_F(GaProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
-  write_toml(100);
+  write_toml(50);
   kill_at_random(8, 20);
 }
 

@@ -42,9 +42,9 @@ class TradeOffProgram : public StudyProgram {
   }
   static std::string volume_coupling_force() {
     std::string text = experiment("3crr-r-cru/volume-coupling-force.toml");
-    replace(text, "population = 120", "population = 40");
-    replace(text, "generations = 60", "generations = 15");
-    replace(text, "starts = 9", "starts = 3\nevaluations = 60");
+    replace(text, "population = 120", "population = 24");
+    replace(text, "generations = 60", "generations = 8");
+    replace(text, "starts = 9", "starts = 3\nevaluations = 30");
     return text + "[checkpoint]\nevery = 0\n";
   }
   Json show(const std::string& file) {

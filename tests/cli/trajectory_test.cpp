@@ -20,7 +20,7 @@ const std::string kOscillation =
 const std::string kLeaves =
     "type = \"points\"\ntime = 1\npoints = [{ x = 0.2, y = 0.17, z = 0.22, phi = 0 }, { z = 0.6 }]\n";
 
-std::vector<std::string> lines_of(const std::string& path) {
+std::vector<std::string> lines_of_file(const std::string& path) {
   std::ifstream file(path);
   std::vector<std::string> lines;
   for (std::string line; std::getline(file, line);) lines.push_back(line);
@@ -57,7 +57,7 @@ TEST(CliTrajectory, TablesHaveAColumnForEverything) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("peak force [N]"));
   EXPECT_THAT(result.out, HasSubstr("energy per cycle"));
-  const auto lines = lines_of(folder.path() + "/f.csv");
+  const auto lines = lines_of_file(folder.path() + "/f.csv");
   ASSERT_EQ(lines.size(), 12u);
   EXPECT_EQ(lines[0],
             "time,x,y,z,phi,x_speed,y_speed,z_speed,phi_speed,x_acceleration,y_acceleration,z_acceleration,"
@@ -88,11 +88,11 @@ TEST(CliTrajectory, TablesOverwriteNothingUnaskedAndNothingThatIsRead) {
       refusal({"simulate", "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3", "--duration", "1ms", "--step", "1ms"},
               "f.csv"),
       exists);
-  EXPECT_EQ(lines_of(folder.path() + "/f.csv"), std::vector<std::string>{"mine"});
+  EXPECT_EQ(lines_of_file(folder.path() + "/f.csv"), std::vector<std::string>{"mine"});
   std::vector<std::string> forced = trajectory;
   forced.insert(forced.end(), {"--csv", "f.csv", "--force"});
   EXPECT_EQ(pkmopt(forced, folder.path()).exit_code, 0);
-  EXPECT_EQ(lines_of(folder.path() + "/f.csv").size(), 4u);
+  EXPECT_EQ(lines_of_file(folder.path() + "/f.csv").size(), 4u);
 }
 
 TEST(CliTrajectory, InfeasibleSamplesAreMarkedAndMakeItFail) {
@@ -125,8 +125,9 @@ TEST(CliTrajectory, SingularSamplesHaveNoForces) {
                                   "singular to working precision"));
   EXPECT_THAT(told.out, HasSubstr("peak force [N]    -"));
   EXPECT_THAT(told.out, HasSubstr("are not known: the motion has none at t = 1 s (sample 11)"));
-  EXPECT_THAT(lines_of(folder.path() + "/f.csv").back(), ::testing::EndsWith(",0,the Jacobian is singular to working "
-                                                                             "precision,,,,,,,,,"));
+  EXPECT_THAT(lines_of_file(folder.path() + "/f.csv").back(),
+              ::testing::EndsWith(",0,the Jacobian is singular to working "
+                                  "precision,,,,,,,,,"));
   const auto pose =
       pkmopt({"dynamics", "4ppa-2par", "--at", "x=0.35,y=0.8,z=-0.8,theta=90deg", "--json"}, folder.path());
   EXPECT_EQ(pose.exit_code, 1);
@@ -206,7 +207,7 @@ TEST(CliSimulate, EnergyIsBalanced) {
                       last["work_of_wrench"].get<double>();
   EXPECT_NEAR(last["kinetic_energy"].get<double>() - first["kinetic_energy"].get<double>(), work, 1e-10);
   EXPECT_GT(std::fabs(work), 1e-3);
-  EXPECT_EQ(lines_of(folder.path() + "/s.csv").size(), 102u);
+  EXPECT_EQ(lines_of_file(folder.path() + "/s.csv").size(), 102u);
 }
 
 TEST(CliSimulate, EndsWithASentence) {
@@ -217,14 +218,14 @@ TEST(CliSimulate, EndsWithASentence) {
   EXPECT_THAT(falls.err, StartsWith("pkmopt: the simulation ends early: at t = 0."));
 }
 
-const std::string kStudy =
+const std::string kMotionStudy =
     "[mechanism]\ntype = \"3crr-r-cru\"\n[variables]\nl_11 = { min = 0.15, max = 0.2 }\nm = { min = 0.05, max = 0.1 }\n"
     "[workspace]\nnodes = { x = 4, y = 4 }\n[[motion]]\nname = \"swing\"\n" +
     kOscillation;
 
 TEST(CliMotionStudy, ObjectivesAndConstraintsAlongAMotion) {
   const StudyFolder folder;
-  folder.write("s.toml", kStudy +
+  folder.write("s.toml", kMotionStudy +
                              "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\njoint = \"3\"\n"
                              "[[constraint]]\ntype = \"peak-power\"\nmotion = \"swing\"\nmax = \"1 W\"\n"
                              "wrench = { Fz = \"-2 N\" }\n"
@@ -250,22 +251,22 @@ TEST(CliMotionStudy, WrongOnesAreRefused) {
     EXPECT_EQ(result.exit_code, 2) << text;
     return result.err;
   };
-  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swim\"\n"),
+  EXPECT_EQ(complaint(kMotionStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swim\"\n"),
             "pkmopt: s.toml:17: objective[1]: the study has no motion called 'swim'; it has swing; did you mean "
             "'swing'?\n");
-  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\njoint = \"5\"\n"),
+  EXPECT_EQ(complaint(kMotionStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\njoint = \"5\"\n"),
             "pkmopt: s.toml:17: objective[1]: mechanism 3crr-r-cru has 4 joints, so none has the number 5\n");
-  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nwrench = { Fq = 1 }\n"),
+  EXPECT_EQ(complaint(kMotionStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nwrench = { Fq = 1 }\n"),
             "pkmopt: s.toml:20: objective[1].wrench.Fq: found an unknown name; expected one of Fx, Fy, Fz, Mx, My, Mz; "
             "did you mean 'Fx'?\n");
-  EXPECT_EQ(complaint(kStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nmode = \"-,-,+,*\"\n"),
+  EXPECT_EQ(complaint(kMotionStudy + "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\nmode = \"-,-,+,*\"\n"),
             "pkmopt: s.toml:17: objective[1]: mechanism 3crr-r-cru has no working mode '-,-,+,*'; did you mean "
             "'-,-,+,-'?\n");
 }
 
 TEST(CliMotionStudy, ADesignThatCannotFollowSaysWhy) {
   const StudyFolder folder;
-  folder.write("s.toml", kStudy +
+  folder.write("s.toml", kMotionStudy +
                              "[[objective]]\ntype = \"peak-force\"\nmotion = \"swing\"\n[[stage]]\noptimiser = "
                              "\"ga\"\n");
   const auto result = pkmopt({"evaluate", "s.toml", "--set", "l_11=0.01"}, folder.path());

@@ -6,12 +6,12 @@
 namespace pkm {
 namespace {
 
-class InfluenceContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
+class InfluenceContract : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     if (!mechanism().velocities()) GTEST_SKIP() << info().name << " has no influence coefficients";
   }
-  const Mechanism& mechanism() const { return *GetParam(); }
+  const Mechanism& mechanism() const { return *test::mechanism_called(GetParam()); }
   const MechanismInfo& info() const { return mechanism().info(); }
   std::size_t joints() const { return info().joints.size(); }
   std::size_t coordinates() const { return info().coordinates.size(); }
@@ -91,7 +91,7 @@ TEST_P(InfluenceContract, AreAbsentOutOfReach) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, InfluenceContract, testing::ValuesIn(test::mechanisms_and_files()),
-                         [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
+                         [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace
 }  // namespace pkm

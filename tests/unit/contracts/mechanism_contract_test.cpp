@@ -19,9 +19,9 @@ namespace {
 using test::nominal;
 using test::survey;
 
-class MechanismContract : public testing::TestWithParam<std::shared_ptr<const Mechanism>> {
+class MechanismContract : public testing::TestWithParam<std::string> {
  protected:
-  const Mechanism& mechanism() const { return *GetParam(); }
+  const Mechanism& mechanism() const { return *test::mechanism_called(GetParam()); }
   const MechanismInfo& info() const { return mechanism().info(); }
   std::vector<double> parameters() const { return nominal(info()); }
 
@@ -399,7 +399,7 @@ TEST_P(MechanismContract, ExpressionsKnowItsNumbersByDistinctNames) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MechanismContract, testing::ValuesIn(test::mechanisms_and_files()),
-                         [](const auto& mechanism) { return test::test_name(mechanism.param->info().name); });
+                         [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace
 }  // namespace pkm

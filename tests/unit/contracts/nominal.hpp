@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -41,18 +42,29 @@ inline std::vector<std::string> files_of_contracts() {
   return mechanism_files();
 }
 
-/// Those of files besides.
-inline const MechanismList& mechanisms_and_files() {
-  static const MechanismList list = [] {
-    MechanismList all = mechanisms();
-    for (const std::string& name : files_of_contracts()) {
-      std::string text = text_of_mechanism(name);
-      text.insert(text.find('"') + 1, "file-");  // some have the name of a user's
-      all.push_back(read_mechanism_toml(text, name + ".toml"));
-    }
+/// Names of those and of files. Every test's process asks for all of them, so files are not read for it.
+inline std::vector<std::string> mechanisms_and_files() {
+  std::vector<std::string> names;
+  for (const auto& mechanism : mechanisms()) names.push_back(mechanism->info().name);
+  for (const std::string& file : files_of_contracts()) names.push_back("file-" + file);
+  return names;
+}
+
+/// The mechanism of such a name; a file is read once.
+inline const std::shared_ptr<const Mechanism>& mechanism_called(const std::string& name) {
+  static std::map<std::string, std::shared_ptr<const Mechanism>> known = [] {
+    std::map<std::string, std::shared_ptr<const Mechanism>> all;
+    for (const auto& mechanism : mechanisms()) all[mechanism->info().name] = mechanism;
     return all;
   }();
-  return list;
+  auto& mechanism = known[name];
+  if (!mechanism) {
+    const std::string file = name.substr(name.find('-') + 1);
+    std::string text = text_of_mechanism(file);
+    text.insert(text.find('"') + 1, "file-");  // some have the name of a user's
+    mechanism = read_mechanism_toml(text, file + ".toml");
+  }
+  return mechanism;
 }
 
 inline bool is_of_file(const MechanismInfo& info) { return info.name.starts_with("file-"); }

@@ -15,9 +15,9 @@ TEST(InstructionSet, IsTheWidestUnlessAnotherIsChosen) {
       continue;
     }
     use_instruction_set(set);
-    const auto seen = with_instruction_set([]<InstructionSet in_use>() { return in_use; });
+    [[maybe_unused]] const auto seen = with_instruction_set([]<InstructionSet in_use>() { return in_use; });
     EXPECT_EQ(instruction_set(), set);
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(PKM_SANITIZED)
     EXPECT_EQ(seen, set);
 #endif
   }

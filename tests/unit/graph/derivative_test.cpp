@@ -15,7 +15,7 @@
 namespace pkm::graph {
 namespace {
 
-const std::vector<std::string> kNames = {"x", "y"};
+const std::vector<std::string> kPlane = {"x", "y"};
 
 struct Computed {
   double value, first, second;
@@ -25,7 +25,7 @@ struct Computed {
 Computed by_nodes(const std::string& text, double x, double y) {
   Graph graph;
   const Node inputs[2] = {graph.input(0), graph.input(1)};
-  const Node f = read_formula(graph, text, kNames, inputs);
+  const Node f = read_formula(graph, text, kPlane, inputs);
   Rates along(graph);
   along.move(inputs[0], graph.number(0.7));
   along.move(inputs[1], graph.number(-1.3));
@@ -38,7 +38,7 @@ Computed by_nodes(const std::string& text, double x, double y) {
 }
 
 Taylor by_taylor(const std::string& text, double x, double y) {
-  return Formula(text, kNames).value<Taylor>(std::array{Taylor(x, 0.7, 0), Taylor(y, -1.3, 0)});
+  return Formula(text, kPlane).value<Taylor>(std::array{Taylor(x, 0.7, 0), Taylor(y, -1.3, 0)});
 }
 
 TEST(Derivative, EqualsThatOfTaylorNumbersForEveryOperation) {
@@ -92,7 +92,7 @@ TEST(Derivative, ByOneInputLiesInItsInterval) {
         "log10(x*y + 3)"}) {
     Graph graph;
     const std::vector<Node> inputs = {graph.input(0), graph.input(1)};
-    const Node f = read_formula(graph, text, kNames, inputs);
+    const Node f = read_formula(graph, text, kPlane, inputs);
     for (std::size_t by = 0; by < 2; ++by) {
       const Node d = derivative(graph, f, inputs[by]);
       const std::vector<Node> outputs = {f, d};

@@ -10,7 +10,7 @@
 namespace pkm::graph {
 namespace {
 
-const std::vector<std::string> kNames = {"a", "b", "x"};
+const std::vector<std::string> kSymbols = {"a", "b", "x"};
 constexpr Groups kDesign = 1, kX = 2;
 
 /// a and b are of the design, x is not.
@@ -18,7 +18,7 @@ struct Case {
   Graph graph;
   std::vector<Node> inputs = {graph.input(0, kDesign), graph.input(1, kDesign), graph.input(2, kX)};
 
-  Node read(const std::string& text) { return read_formula(graph, text, kNames, inputs); }
+  Node read(const std::string& text) { return read_formula(graph, text, kSymbols, inputs); }
 };
 
 TEST(Graph, ComputesOnceWhatIsWrittenTwice) {

@@ -3,20 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "tests/unit/math/uniform.hpp"
 
 namespace pkm::testing {
 namespace {
-
-class Draw {
- public:
-  double operator()(double lower, double upper) {
-    return lower + (upper - lower) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
-
- private:
-  std::mt19937_64 engine_{1};
-};
 
 double ulps(double found, long double exact) {
   const double nearest = static_cast<double>(exact);
@@ -25,7 +15,7 @@ double ulps(double found, long double exact) {
 }
 
 TEST(Portable, ErrorsStayWithinTheStatedUnits) {
-  Draw draw;
+  Uniform draw(1);
   double sine = 0, cosine = 0, arcs = 0, exponential = 0, logarithm = 0;
   for (int i = 0; i < 200'000; ++i) {
     const double a = draw(-100, 100);

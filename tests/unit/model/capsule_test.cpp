@@ -4,48 +4,41 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/narrowphase/distance.h>
 
 #include "engine/math/dual.hpp"
+#include "tests/unit/math/uniform.hpp"
 
 namespace pkm {
 namespace {
 
-using Vector = Point3<double>;
+using Point = Point3<double>;
 
 constexpr double kRoundoff = 1e-14;  // of coordinates near 1
 
-/// Uniform random numbers, the same on every platform.
-class Uniform {
- public:
-  explicit Uniform(unsigned seed) : engine_(seed) {}
-  double operator()(double lower, double upper) {
-    return lower + (upper - lower) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
-  Vector vector(double size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
+using testing::Uniform;
 
- private:
-  std::mt19937_64 engine_;
-};
+Point random_point(Uniform& uniform, double size) {
+  return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+}
 
-Vector along(const Vector& from, const Vector& direction, double t) {
+Point along(const Point& from, const Point& direction, double t) {
   return {from[0] + t * direction[0], from[1] + t * direction[1], from[2] + t * direction[2]};
 }
 
-double point_to_segment(const Vector& p, const Segment<double>& s) {
-  const Vector u = difference(s.to, s.from);
+double point_to_segment(const Point& p, const Segment<double>& s) {
+  const Point u = difference(s.to, s.from);
   const double uu = dot(u, u), t = uu > 0 ? std::clamp(dot(difference(p, s.from), u) / uu, 0.0, 1.0) : 0.0;
-  const Vector gap = difference(p, along(s.from, u, t));
+  const Point gap = difference(p, along(s.from, u, t));
   return std::sqrt(dot(gap, gap));
 }
 
 /// The distance of a point that walks along `a` to `b` is convex: thirds leave two thirds each time.
 double searched_distance(const Segment<double>& a, const Segment<double>& b) {
   double low = 0, high = 1;
-  const Vector u = difference(a.to, a.from);
+  const Point u = difference(a.to, a.from);
   const auto at = [&](double t) { return point_to_segment(along(a.from, u, t), b); };
   for (int i = 0; i < 200; ++i) {
     const double third = (high - low) / 3;
@@ -57,8 +50,9 @@ double searched_distance(const Segment<double>& a, const Segment<double>& b) {
 /// Random pairs; the kinds beyond 0 are the degenerate ones.
 constexpr int kKinds = 9;
 std::array<Segment<double>, 2> random_pair(int kind, Uniform& uniform) {
-  Segment<double> a{uniform.vector(1), uniform.vector(1)}, b{uniform.vector(1), uniform.vector(1)};
-  const Vector u = difference(a.to, a.from);
+  Segment<double> a{random_point(uniform, 1), random_point(uniform, 1)},
+      b{random_point(uniform, 1), random_point(uniform, 1)};
+  const Point u = difference(a.to, a.from);
   const double tilts[] = {0, 1e-15, 1e-12, 1e-8, 1e-4};
   switch (kind) {
     case 1:  // crossing
@@ -186,7 +180,7 @@ TEST(CapsuleDistance, OverlapIsWhatAShiftHasToUndo) {
     ASSERT_NEAR(depth, radii - gap, kRoundoff);
     double least = 1e9;  // over shifts of that length, one parts them and none does more
     for (int k = 0; k < 200; ++k) {
-      Vector shift = uniform.vector(1);
+      Point shift = random_point(uniform, 1);
       const double size = std::sqrt(dot(shift, shift));
       Segment<double> moved = q;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -205,10 +199,10 @@ TEST(SegmentDistance, DerivativesEqualDifferences) {
   for (int i = 0; i < 500; ++i) {
     const auto pair = random_pair(0, uniform);
     const Segment<double>&a = pair[0], &b = pair[1];
-    const Segment<double> direction{uniform.vector(1), uniform.vector(1)};
+    const Segment<double> direction{random_point(uniform, 1), random_point(uniform, 1)};
     const auto at = [&](auto step) {
       using S = decltype(step);
-      const auto moved = [&](const Vector& p, const Vector& d) {
+      const auto moved = [&](const Point& p, const Point& d) {
         return Point3<S>{S(p[0]) + step * d[0], S(p[1]) + step * d[1], S(p[2]) + step * d[2]};
       };
       return segment_distance<S>({moved(a.from, direction.from), moved(a.to, direction.to)},
@@ -230,7 +224,7 @@ TEST(Bounds, NoTwoPointsAreNearerThanTheirBoxes) {
     const auto [a, b] = random_pair(i % kKinds, uniform);
     const auto [c, d] = random_pair(i % kKinds, uniform);
     const auto shifted = [&](Segment<double> s) {
-      for (Vector* end : {&s.from, &s.to}) (*end)[static_cast<std::size_t>(i % 3)] += 2.5;
+      for (Point* end : {&s.from, &s.to}) (*end)[static_cast<std::size_t>(i % 3)] += 2.5;
       return s;
     };
     const double apart = distance_of_bounds(joined(bounds_of(a), b), joined(bounds_of(shifted(c)), shifted(d)));

@@ -1,26 +1,16 @@
 // Expressions of the program's own catalogues that are wrong, with the message verbatim.
 #include <gtest/gtest.h>
 
-#include "constraints/all.hpp"
-#include "engine/core/error.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/setup/study.hpp"
-#include "objectives/all.hpp"
+#include "tests/unit/setup/real_studies.hpp"
 
-namespace pkm {
+namespace pkm::testing {
 namespace {
 
-std::string message_of(const std::string& entry) {
-  try {
-    read_study_toml(
-        "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.4 }\n[[stage]]\noptimiser = "
-        "\"ga\"\n" +
-            entry,
-        "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+std::string entry_complaint(const std::string& entry) {
+  return real_complaint(
+      "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.4 }\n[[stage]]\noptimiser = "
+      "\"ga\"\n" +
+      entry);
 }
 
 const std::string kKnown =
@@ -72,7 +62,7 @@ TEST(ExpressionErrors, Objectives) {
       {"expression = \"conditioning_min\"\nsharpness = 100", "accepted"},
       {"expression = \"a\"\nunit = \"N m/rad\"", "accepted"},
   };
-  for (const auto& [text, message] : cases) EXPECT_EQ(message_of(kObjective + text), message) << text;
+  for (const auto& [text, message] : cases) EXPECT_EQ(entry_complaint(kObjective + text), message) << text;
 }
 
 TEST(ExpressionErrors, Constraints) {
@@ -103,8 +93,8 @@ TEST(ExpressionErrors, Constraints) {
       {"expression = \"conditioning_min\"\ncharacteristic_length = 0.1\n[[report]]\ntype = \"conditioning\"",
        "s.toml:13: report[1]: conditioning is asked for with two different characteristic lengths; a study has one"},
   };
-  for (const auto& [text, message] : cases) EXPECT_EQ(message_of(head + text), message) << text;
+  for (const auto& [text, message] : cases) EXPECT_EQ(entry_complaint(head + text), message) << text;
 }
 
 }  // namespace
-}  // namespace pkm
+}  // namespace pkm::testing

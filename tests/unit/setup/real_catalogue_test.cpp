@@ -2,64 +2,50 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "constraints/all.hpp"
-#include "engine/core/error.hpp"
 #include "engine/math/portable.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/setup/study.hpp"
 #include "engine/survey/survey_set.hpp"
-#include "objectives/all.hpp"
+#include "tests/unit/setup/real_studies.hpp"
 
-namespace pkm {
+namespace pkm::testing {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const std::string kHead =
+const std::string kFourPpa =
     "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.4 }\nb = { min = 0.7, max = 0.9 }\n"
     "[[objective]]\ntype = \"workspace-volume\"\n";                 // lines 1 to 7
-const std::string kStage = "[[stage]]\noptimiser = \"ga\"\n";       // lines 8, 9
+const std::string kGa = "[[stage]]\noptimiser = \"ga\"\n";          // lines 8, 9
 const std::string kLinear = "[[constraint]]\ntype = \"linear\"\n";  // lines 10, 11
 
-Study read(const std::string& more) {
-  return read_study_toml(kHead + kStage + more, "s.toml",
-                         {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
-}
+Study read_more(const std::string& more) { return read_real(kFourPpa + kGa + more); }
 
-std::string message_of(const std::string& more) {
-  try {
-    read(more);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+std::string complaint_of(const std::string& more) { return real_complaint(kFourPpa + kGa + more); }
 
 TEST(RealCatalogue, GaSpellsOutDefaultsThatDependOnTheVariables) {
-  const Study study = read("");
+  const Study study = read_more("");
   const Options& options = study.stages[0].options;
   EXPECT_EQ(options.integer("population"), 20);
   EXPECT_EQ(options.number("mutation_probability"), 0.1) << "a fifth of 1 / 2 variables";
   EXPECT_THAT(describe(study), HasSubstr("population             20"));
-  EXPECT_EQ(read("crossover = \"sbx\"\n").stages[0].options.number("mutation_probability"), 0.5);
-  EXPECT_EQ(read("population = 8\n").stages[0].options.integer("population"), 8);
+  EXPECT_EQ(read_more("crossover = \"sbx\"\n").stages[0].options.number("mutation_probability"), 0.5);
+  EXPECT_EQ(read_more("population = 8\n").stages[0].options.integer("population"), 8);
 }
 
 TEST(RealCatalogue, LinearBoundIsInTheUnitOfItsParameters) {
-  const Study study = read(kLinear + "coefficients = { a = 1, b = -1 }\nbound = \"-200 mm\"\n");
+  const Study study = read_more(kLinear + "coefficients = { a = 1, b = -1 }\nbound = \"-200 mm\"\n");
   EXPECT_EQ(study.constraints[0].options.number("bound"), -0.2);
   EXPECT_EQ(study.problem->margins()[0].unit, "m");
-  EXPECT_EQ(message_of(kLinear + "coefficients = { a = 1 }\nbound = \"1 rad\"\n"),
+  EXPECT_EQ(complaint_of(kLinear + "coefficients = { a = 1 }\nbound = \"1 rad\"\n"),
             "s.toml:13: constraint[1].bound: found \"1 rad\"; expected a number in m, or text with a unit made of um, "
             "mm, cm, dm, m, km, in");
 }
 
 TEST(RealCatalogue, LinearNamesParameters) {
-  EXPECT_EQ(message_of(kLinear + "coefficients = {}\n"),
+  EXPECT_EQ(complaint_of(kLinear + "coefficients = {}\n"),
             "s.toml:10: constraint[1]: coefficients = {} relates nothing; name at least one parameter");
   EXPECT_EQ(
-      message_of(kLinear + "coefficients = { l_x = 1 }\nbound = \"1 m\"\n"),
+      complaint_of(kLinear + "coefficients = { l_x = 1 }\nbound = \"1 m\"\n"),
       "s.toml:10: constraint[1]: coefficient of 'l_x', which is no parameter of mechanism 4ppa-2par; expected one "
       "of a, b, l_u, l_d, d, L0, R_u, R_d, d_u, d_d, d_0, R_p, R_s, "
       "lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p; did you mean 'l_u'?");
@@ -67,38 +53,32 @@ TEST(RealCatalogue, LinearNamesParameters) {
 
 TEST(RealCatalogue, PlaneOffTheRailIsWarnedOf) {
   const std::string where = "the workspace of the middle of the variables' bounds is empty: no pose ";
-  EXPECT_THAT(read("").warnings, ElementsAre());
-  EXPECT_THAT(read("[workspace]\ny = -0.1\n").warnings, ElementsAre(where + "on the plane y = -0.1 m is feasible"));
-  EXPECT_THAT(read("[workspace]\nmethod = \"voxels\"\ny = 2.6\n").warnings,
+  EXPECT_THAT(read_more("").warnings, ElementsAre());
+  EXPECT_THAT(read_more("[workspace]\ny = -0.1\n").warnings,
+              ElementsAre(where + "on the plane y = -0.1 m is feasible"));
+  EXPECT_THAT(read_more("[workspace]\nmethod = \"voxels\"\ny = 2.6\n").warnings,
               ElementsAre(where + "on the plane y = 2.6 m is feasible"));
-  EXPECT_THAT(read("[workspace]\ny = \"integrated\"\n[baseline]\nL0 = 0\n").warnings,
+  EXPECT_THAT(read_more("[workspace]\ny = \"integrated\"\n[baseline]\nL0 = 0\n").warnings,
               ElementsAre("the workspace of the baseline is empty: no pose at any y is feasible"));
 }
 
 TEST(RealCatalogue, NodesDoNotIntegrateOverThePlane) {
   EXPECT_EQ(
-      message_of("[workspace]\ny = \"integrated\"\nnodes = { x = 12, theta = 12 }\n"),
+      complaint_of("[workspace]\ny = \"integrated\"\nnodes = { x = 12, theta = 12 }\n"),
       "s.toml:10: workspace: nodes fix the accuracy on one plane y only; with y = \"integrated\" give a tolerance "
       "instead");
 }
 
 /// A study of another mechanism, its [workspace] being `workspace`.
-Study read_quadrupteron(const std::string& workspace) {
-  return read_study_toml(
-      "[mechanism]\ntype = \"quadrupteron\"\n[variables]\nr = { min = 0.03, max = 0.05 }\n"
-      "[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\n[workspace]\n" +
-          workspace,
-      "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
+std::string quadrupteron(const std::string& workspace) {
+  return "[mechanism]\ntype = \"quadrupteron\"\n[variables]\nr = { min = 0.03, max = 0.05 }\n"
+         "[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\noptimiser = \"ga\"\n[workspace]\n" +
+         workspace;
 }
 
-std::string quadrupteron_message(const std::string& workspace) {
-  try {
-    read_quadrupteron(workspace);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+Study read_quadrupteron(const std::string& workspace) { return read_real(quadrupteron(workspace)); }
+
+std::string quadrupteron_message(const std::string& workspace) { return real_complaint(quadrupteron(workspace)); }
 
 TEST(RealCatalogue, TheHeldCoordinateIsTheOneThatIsGiven) {
   const auto plan = [](const std::string& workspace) { return read_quadrupteron(workspace).problem->parts().plan; };
@@ -153,14 +133,14 @@ TEST(RealCatalogue, WrongHeldCoordinates) {
             "or a number in m");
   EXPECT_THAT(quadrupteron_message("method = \"voxels\"\ny = 0.2\ncells = { x = 4, y = 5, z = 6 }"),
               HasSubstr("s.toml:12: workspace.cells.y: found an unknown coordinate; expected one of x, z, phi"));
-  EXPECT_THAT(message_of("[workspace]\nx = 0.2\n"), HasSubstr("found an unknown key"));
+  EXPECT_THAT(complaint_of("[workspace]\nx = 0.2\n"), HasSubstr("found an unknown key"));
 }
 
 const std::string kClearance = "[[constraint]]\ntype = \"clearance\"\n";  // lines 10, 11
 
 TEST(RealCatalogue, ClearanceCutsTheWorkspaceByBothMethods) {
   const auto volume = [](const std::string& more) {
-    const Study study = read(more);
+    const Study study = read_more(more);
     Survey<double> survey;
     const ProblemParts& parts = study.problem->parts();
     survey_once<double>(*prepare_survey(*parts.mechanism, parts.plan, parts.demand), parts.parameters, survey);
@@ -180,46 +160,38 @@ TEST(RealCatalogue, ClearanceCutsTheWorkspaceByBothMethods) {
 }
 
 TEST(RealCatalogue, ClearanceIsSpelledOut) {
-  const Study study = read(kClearance);
+  const Study study = read_more(kClearance);
   EXPECT_EQ(study.constraints[0].role, "cuts the workspace by clearance_min");
   EXPECT_EQ(study.constraints[0].options.number("min"), 0);
   EXPECT_THAT(describe(study),
               HasSubstr("clearance_min  0 m                     from constraint[1] clearance (line 10)"));
-  EXPECT_THAT(describe(read("")), HasSubstr("clearance_min  -2 m"));
-  EXPECT_EQ(message_of(kClearance + "min = \"-1 mm\"\n"),
+  EXPECT_THAT(describe(read_more("")), HasSubstr("clearance_min  -2 m"));
+  EXPECT_EQ(complaint_of(kClearance + "min = \"-1 mm\"\n"),
             "s.toml:12: constraint[1].min: found \"-1 mm\"; expected a number in [0, 100] m");
-  EXPECT_EQ(message_of(kClearance + "max = 1\n"),
+  EXPECT_EQ(complaint_of(kClearance + "max = 1\n"),
             "s.toml:12: constraint[1].max: found an unknown key; expected one of type, min");
   EXPECT_EQ(
-      message_of("[workspace]\nlimits = { clearance_min = 0 }\n" + kClearance),
+      complaint_of("[workspace]\nlimits = { clearance_min = 0 }\n" + kClearance),
       "s.toml:12: constraint[1]: the threshold clearance_min is set here and in workspace.limits (line 11); set it "
       "once");
 }
 
 TEST(RealCatalogue, GradientsAreRefusedUnderAClearance) {
   const std::string gradient = "[[stage]]\noptimiser = \"ipopt\"\n";
-  EXPECT_EQ(message_of(gradient), "accepted");
-  EXPECT_EQ(message_of(kClearance + gradient),
+  EXPECT_EQ(complaint_of(gradient), "accepted");
+  EXPECT_EQ(complaint_of(kClearance + gradient),
             "s.toml:13: stage[2].optimiser: the optimiser ipopt needs derivatives, but the study limits the clearance "
             "of links (clearance_min), which may end columns where no formula says, and such surveys have no "
             "derivatives; take an optimiser without gradients, or keep the sliders apart by h_min");
-  EXPECT_EQ(message_of(kClearance + "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"bobyqa\"\n"), "accepted");
+  EXPECT_EQ(complaint_of(kClearance + "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"bobyqa\"\n"), "accepted");
 }
 
 TEST(RealCatalogue, AParameterCannotVaryBesideTheThresholdThatTakesItsPlace) {
   const std::string hybrid =
       "[mechanism]\ntype = \"2t1r-p-hybrid\"\n[variables]\ntau_s = { min = 0.05, max = 0.2 }\n"
       "[[objective]]\ntype = \"workspace-volume\"\n" +
-      kStage;
-  const auto message = [&](const std::string& limit) -> std::string {
-    try {
-      read_study_toml(hybrid + limit, "s.toml",
-                      {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
+      kGa;
+  const auto message = [&](const std::string& limit) { return real_complaint(hybrid + limit); };
   EXPECT_EQ(
       message("[workspace]\nlimits = { tau_s = 0.1 }\n"),
       "s.toml:4: variables.tau_s: the threshold tau_s is set in workspace.limits (line 10); it can either vary or "
@@ -231,4 +203,4 @@ TEST(RealCatalogue, AParameterCannotVaryBesideTheThresholdThatTakesItsPlace) {
 }
 
 }  // namespace
-}  // namespace pkm
+}  // namespace pkm::testing

@@ -3,38 +3,25 @@
 
 #include <gtest/gtest.h>
 
-#include "constraints/all.hpp"
-#include "engine/core/error.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/setup/study.hpp"
-#include "objectives/all.hpp"
+#include "tests/unit/setup/real_studies.hpp"
 
-namespace pkm {
+namespace pkm::testing {
 namespace {
 
-const std::string kHead =
+const std::string kTask =
     "[mechanism]\ntype = \"3crr-r-cru\"\nmasses = \"geometry\"\n[variables]\nl_41 = { min = 0.12, max = 0.3 }\n"
     "[workspace]\nlimits = { s_min = 0.2, c_min = 0.1 }\n"
     "[[region]]\nname = \"task\"\nnodes = { x = 3, y = 3 }\n"
     "box = { x = [0.12, 0.2], y = [0.12, 0.2], z = [0.17, 0.24] }\nphi = [\"-30 deg\", 0, \"30 deg\"]\n";
-const std::string kStage = "[[stage]]\noptimiser = \"ga\"\n";
 
-Study read(const std::string& more) {
-  return read_study_toml(kHead + more + kStage, "s.toml",
-                         {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()});
-}
+std::string with_task(const std::string& more) { return kTask + more + "[[stage]]\noptimiser = \"ga\"\n"; }
 
-std::string message_of(const std::string& more) {
-  try {
-    read(more);
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+Study read_task(const std::string& more) { return read_real(with_task(more)); }
+
+std::string task_complaint(const std::string& more) { return real_complaint(with_task(more)); }
 
 TEST(Regions, AreSurveysOfTheirOwn) {
-  const Study study = read(
+  const Study study = read_task(
       "[[objective]]\ntype = \"dci\"\nregion = \"task\"\n[[report]]\ntype = \"workspace-volume\"\nregion = \"task\"\n"
       "[[report]]\ntype = \"workspace-volume\"\nname = \"all\"\n[[constraint]]\ntype = \"task-workspace\"\n"
       "region = \"task\"\nmargin = \"5 mm\"\n");
@@ -44,7 +31,7 @@ TEST(Regions, AreSurveysOfTheirOwn) {
   EXPECT_GT(report.reports[1], 10 * report.reports[0]);
   EXPECT_EQ(report.survey.volume, report.reports[1]);
   // The margin falls one to one with what is asked for.
-  const Study wider = read(
+  const Study wider = read_task(
       "[[objective]]\ntype = \"dci\"\nregion = \"task\"\n[[constraint]]\ntype = \"task-workspace\"\n"
       "region = \"task\"\nmargin = \"7 mm\"\n");
   const DesignReport other = wider.problem->report(wider.problem->parts().parameters);
@@ -54,7 +41,7 @@ TEST(Regions, AreSurveysOfTheirOwn) {
 
 TEST(Regions, TaskWorkspaceTellsWhatTheSurveyCounts) {
   // A short rod: part of the box is out of reach, and what the region counts is less than the box.
-  const Study study = read(
+  const Study study = read_task(
       "[[objective]]\ntype = \"workspace-volume\"\nregion = \"task\"\n[[constraint]]\ntype = \"task-workspace\"\n"
       "region = \"task\"\n");
   auto parameters = study.problem->parts().parameters;
@@ -72,26 +59,26 @@ TEST(Regions, TaskWorkspaceTellsWhatTheSurveyCounts) {
 
 TEST(Regions, MistakesAreNamed) {
   const std::string objective = "[[objective]]\ntype = \"dci\"\n";  // lines 13, 14
-  EXPECT_EQ(message_of(objective + "region = \"tsk\"\n"),
+  EXPECT_EQ(task_complaint(objective + "region = \"tsk\"\n"),
             "s.toml:15: objective[1].region: found \"tsk\"; expected one of task; did you mean 'task'?");
-  EXPECT_EQ(message_of(objective + "mode = \"-,-,-,*\"\n"),
+  EXPECT_EQ(task_complaint(objective + "mode = \"-,-,-,*\"\n"),
             "s.toml:13: objective[1]: mechanism 3crr-r-cru has no working mode '-,-,-,*'; did you mean '-,-,-,-'?");
-  EXPECT_EQ(message_of(objective + "limb = 5\n"),
+  EXPECT_EQ(task_complaint(objective + "limb = 5\n"),
             "s.toml:13: objective[1]: mechanism 3crr-r-cru has 4 joints, so none has the number 5");
-  EXPECT_EQ(message_of(objective + "limb = 9\n"),
+  EXPECT_EQ(task_complaint(objective + "limb = 9\n"),
             "s.toml:15: objective[1].limb: found 9; expected one of 1, 2, 3, 4, 5, 6, 7, 8, worst, mean");
-  EXPECT_EQ(message_of(objective + "limb = 4\n"), "accepted");
-  EXPECT_EQ(message_of(objective + "[[region]]\nname = \"task\"\n"),
+  EXPECT_EQ(task_complaint(objective + "limb = 4\n"), "accepted");
+  EXPECT_EQ(task_complaint(objective + "[[region]]\nname = \"task\"\n"),
             "s.toml:16: region[2].name: there is already a region called 'task'");
-  EXPECT_EQ(message_of(objective + "[[region]]\nname = \"plane\"\n[[constraint]]\ntype = \"task-workspace\"\n"
-                                   "region = \"plane\"\n"),
+  EXPECT_EQ(task_complaint(objective + "[[region]]\nname = \"plane\"\n[[constraint]]\ntype = \"task-workspace\"\n"
+                                       "region = \"plane\"\n"),
             "s.toml:17: constraint[1]: task-workspace needs a box, and region 'plane' has none");
-  EXPECT_EQ(message_of(objective + "[[constraint]]\ntype = \"task-workspace\"\nregion = \"box\"\n"),
+  EXPECT_EQ(task_complaint(objective + "[[constraint]]\ntype = \"task-workspace\"\nregion = \"box\"\n"),
             "s.toml:15: constraint[1]: the study has no [[region]] called 'box'");
-  EXPECT_EQ(message_of(objective + "statistic = \"p95\"\n[[stage]]\noptimiser = \"ipopt\"\n"),
+  EXPECT_EQ(task_complaint(objective + "statistic = \"p95\"\n[[stage]]\noptimiser = \"ipopt\"\n"),
             "s.toml:17: stage[1].optimiser: the optimiser ipopt needs derivatives, but dci with statistic = \"p95\" is "
             "a quantile, which has none; take \"mean\", \"max\" or \"std\"");
 }
 
 }  // namespace
-}  // namespace pkm
+}  // namespace pkm::testing

@@ -18,7 +18,9 @@
 #include "engine/mechanisms/all.hpp"
 #include "engine/storage/study_file.hpp"
 #include "objectives/all.hpp"
+#include "tests/unit/setup/real_studies.hpp"
 #include "tests/unit/storage/first_difference.hpp"
+#include "tests/unit/study/stop_at.hpp"
 
 namespace pkm::testing {
 namespace {
@@ -27,8 +29,6 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Ne;
-
-Catalogues catalogues() { return {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()}; }
 
 const char* const kStudy = R"([study]
 name = "two stages"
@@ -80,20 +80,8 @@ class RunStudy : public ::testing::Test {
   std::string folder_;
 };
 
-/// Asks the process to stop at the n-th generation, as Ctrl-C would.
-class StopAt final : public Progress {
- public:
-  explicit StopAt(int n) : left_(n) {}
-  void generation(const ProgressReport&) override {
-    if (left_-- == 0) std::raise(SIGINT);
-  }
-
- private:
-  int left_;
-};
-
 TEST_F(RunStudy, GoesOnUnderASignalThatTheProcessIgnores) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   StopAt at(2);
   std::signal(SIGINT, SIG_IGN);
   EXPECT_EQ(run_study(study, path("s.h5"), false, {}, at).stopped, "");
@@ -115,7 +103,7 @@ class Intruder final : public Progress {
 };
 
 TEST_F(RunStudy, WhoseLockIsTakenAwayLeavesTheFileToOthersAndKeepsItsOwn) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   Progress silent;
   const auto straight = run_study(study, path("straight.h5"), false, {}, silent);
   const std::string kept = path("s-kept-" + std::to_string(::getpid()) + ".h5");
@@ -131,19 +119,19 @@ TEST_F(RunStudy, WhoseLockIsTakenAwayLeavesTheFileToOthersAndKeepsItsOwn) {
   }
   std::ifstream file(path("s.h5"));
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "the second writer's");
-  EXPECT_EQ(first_difference(straight.contents, resume_study(kept, catalogues(), {}, {}, silent).contents), "");
+  EXPECT_EQ(first_difference(straight.contents, resume_study(kept, all_catalogues(), {}, {}, silent).contents), "");
 }
 
 TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   Progress silent;
   const StudyContents sound = run_study(study, path("s.h5"), false, {}, silent).contents;
-  EXPECT_EQ(study_of(sound, catalogues()).name, "two stages");
+  EXPECT_EQ(study_of(sound, all_catalogues()).name, "two stages");
   const auto refusal = [&](const auto& forge) -> std::string {
     StudyContents forged = sound;
     forge(forged);
     try {
-      study_of(forged, catalogues());
+      study_of(forged, all_catalogues());
     } catch (const StorageError& error) {
       return error.what();
     }
@@ -169,7 +157,7 @@ TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
 }
 
 TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   Progress silent;
   const auto straight = run_study(study, path("straight.h5"), false, {}, silent);
   EXPECT_EQ(straight.stopped, "");
@@ -180,7 +168,7 @@ TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
     const auto first = run_study(study, file, false, {}, at);
     // A stop in a stage's last generation lets the stage end; in the last stage of all the study is then finished.
     EXPECT_EQ(first.stopped, stop == generations - 1 ? "" : "SIGINT") << stop;
-    const auto second = resume_study(file, catalogues(), {}, {}, silent);
+    const auto second = resume_study(file, all_catalogues(), {}, {}, silent);
     EXPECT_EQ(second.stopped, "");
     EXPECT_EQ(first_difference(straight.contents, second.contents), "") << stop;
     EXPECT_EQ(first_difference(straight.contents, read_study(file)), "") << stop;
@@ -192,7 +180,7 @@ TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
 std::atomic<int> memory_left;
 
 Catalogues catalogues_with_scarce() {
-  Catalogues all = catalogues();
+  Catalogues all = all_catalogues();
   all.objectives.push_back({.name = "scarce",
                             .meaning = "needs memory",
                             .make =
@@ -269,7 +257,7 @@ TEST_F(RunStudy, OutOfMemoryEndsTheRunWithACheckpointAndNoDesignFails) {
 
 // As on a machine that has less than the one that goes on.
 TEST_F(RunStudy, GoesOnWithTheSameBitsOnAnotherInstructionSet) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   Progress silent;
   const auto straight = run_study(study, path("straight.h5"), false, {}, silent);
   StopAt at(4);
@@ -279,18 +267,18 @@ TEST_F(RunStudy, GoesOnWithTheSameBitsOnAnotherInstructionSet) {
   EXPECT_THAT(begun.machine, HasSubstr(", baseline, "));
   begun.machine = "a 4004, 1 cores, baseline, none";
   write_study(path("a.h5"), begun);
-  const auto resumed = resume_study(path("a.h5"), catalogues(), {}, {}, silent).contents;
+  const auto resumed = resume_study(path("a.h5"), all_catalogues(), {}, {}, silent).contents;
   EXPECT_EQ(first_difference(straight.contents, resumed), "");
   EXPECT_THAT(resumed.notes, ElementsAre(HasSubstr("begun on a 4004, 1 cores, baseline, none, went on on ")));
 }
 
 TEST_F(RunStudy, StoppingWhileItReplaysKeepsTheFile) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   StopAt at(9);
   run_study(study, path("a.h5"), false, {}, at);
   const auto before = read_study(path("a.h5"));
   StopAt early(2);
-  const auto outcome = resume_study(path("a.h5"), catalogues(), {}, {}, early);
+  const auto outcome = resume_study(path("a.h5"), all_catalogues(), {}, {}, early);
   EXPECT_EQ(outcome.stopped, "SIGINT");
   EXPECT_EQ(outcome.evaluations, 0);
   EXPECT_EQ(first_difference(before, read_study(path("a.h5"))), "");
@@ -298,7 +286,7 @@ TEST_F(RunStudy, StoppingWhileItReplaysKeepsTheFile) {
 }
 
 TEST_F(RunStudy, TheEndRecordsBestBaselineRoundedAndMap) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   Progress silent;
   const auto contents = run_study(study, path("a.h5"), false, {}, silent).contents;
   ASSERT_TRUE(contents.final && contents.final->best && contents.final->baseline && contents.final->rounded);
@@ -325,14 +313,14 @@ TEST_F(RunStudy, TheEndRecordsBestBaselineRoundedAndMap) {
 }
 
 TEST_F(RunStudy, RefusesOtherAlgorithmsAndOtherPaths) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   StopAt at(3);
   auto contents = run_study(study, path("a.h5"), false, {}, at).contents;
   const auto message = [&](const StudyContents& c) {
     write_study(path("b.h5"), c);
     Progress silent;
     try {
-      resume_study(path("b.h5"), catalogues(), {}, {}, silent);
+      resume_study(path("b.h5"), all_catalogues(), {}, {}, silent);
     } catch (const StorageError& error) {
       return std::string(error.what());
     }
@@ -348,7 +336,7 @@ TEST_F(RunStudy, RefusesOtherAlgorithmsAndOtherPaths) {
 
 // A file from before the mechanism had its last parameters: they are added, at their defaults.
 TEST_F(RunStudy, AParameterGainedSinceIsNoObstacle) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   Progress silent;
   const auto straight = run_study(study, path("straight.h5"), false, {}, silent).contents;
   StopAt at(4);
@@ -357,13 +345,13 @@ TEST_F(RunStudy, AParameterGainedSinceIsNoObstacle) {
   old.problem.parameters.resize(count - 2);
   write_study(path("old.h5"), old);
   EXPECT_EQ(read_study(path("old.h5")).problem.parameters.size(), count - 2);
-  const auto resumed = resume_study(path("old.h5"), catalogues(), {}, {}, silent);
+  const auto resumed = resume_study(path("old.h5"), all_catalogues(), {}, {}, silent);
   EXPECT_EQ(resumed.stopped, "");
   EXPECT_EQ(first_difference(straight, read_study(path("old.h5"))), "");
 }
 
 TEST_F(RunStudy, RefusesAProblemThatHasChanged) {
-  const Study study = read_study_toml(kStudy, "two.toml", catalogues());
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   StopAt at(3);
   const auto contents = run_study(study, path("a.h5"), false, {}, at).contents;
   const auto message = [&](const auto& change) {
@@ -372,7 +360,7 @@ TEST_F(RunStudy, RefusesAProblemThatHasChanged) {
     write_study(path("b.h5"), changed);
     Progress silent;
     try {
-      resume_study(path("b.h5"), catalogues(), {}, {}, silent);
+      resume_study(path("b.h5"), all_catalogues(), {}, {}, silent);
     } catch (const StorageError& error) {
       return std::string(error.what()).substr(path("b.h5").size());
     }
@@ -399,11 +387,11 @@ type = "workspace-volume"
 optimiser = "sweep"
 points = 5
 )",
-                                      "s.toml", catalogues());
+                                      "s.toml", all_catalogues());
   Progress silent;
   run_study(study, path("a.h5"), false, {}, silent);
   try {
-    resume_study(path("a.h5"), catalogues(), {.generations = 5, .evaluations = {}}, {}, silent);
+    resume_study(path("a.h5"), all_catalogues(), {.generations = 5, .evaluations = {}}, {}, silent);
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(),
@@ -429,7 +417,7 @@ type = "workspace-volume"
 optimiser = "sweep"
 points = 9
 )",
-                                      "s.toml", catalogues());
+                                      "s.toml", all_catalogues());
   Progress silent;
   const auto c = run_study(study, path("a.h5"), false, {}, silent).contents;
   EXPECT_NEAR(c.stages[0].table.objective_row(0)[0], 0.550157374606, 1e-9);

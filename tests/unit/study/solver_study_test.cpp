@@ -12,15 +12,15 @@
 #include "engine/study/run_study.hpp"
 #include "engine/study/starts.hpp"
 #include "objectives/all.hpp"
+#include "tests/unit/setup/real_studies.hpp"
 #include "tests/unit/storage/first_difference.hpp"
+#include "tests/unit/study/stop_at.hpp"
 
 namespace pkm::testing {
 namespace {
 
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
-
-Catalogues catalogues() { return {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()}; }
 
 /// The wide-bounds problem; its optimum lies on workspace-shape and the lower bound of a.
 std::string wide(const std::string& stages, double rail = 2.5) {
@@ -56,7 +56,7 @@ const std::string kGa = "[[stage]]\noptimiser = \"ga\"\npopulation = 20\ngenerat
 const std::string kSlsqp = "[[stage]]\noptimiser = \"nlopt\"\n";
 const std::string kIpopt = "[[stage]]\noptimiser = \"ipopt\"\n";
 
-Study study_of_text(const std::string& text) { return read_study_toml(text, "s.toml", catalogues()); }
+Study study_of_text(const std::string& text) { return read_study_toml(text, "s.toml", all_catalogues()); }
 
 class SolverStudy : public ::testing::Test {
  protected:
@@ -76,18 +76,6 @@ class SolverStudy : public ::testing::Test {
   std::string folder_;
 };
 
-/// Asks the process to stop at the n-th report, as Ctrl-C would.
-class StopAt final : public Progress {
- public:
-  explicit StopAt(int n) : left_(n) {}
-  void generation(const ProgressReport&) override {
-    if (left_-- == 0) std::raise(SIGINT);
-  }
-
- private:
-  int left_;
-};
-
 double best_objective(const StudyContents& contents) {
   return contents.stages[static_cast<std::size_t>(contents.best.stage)].table.objective_row(
       static_cast<std::size_t>(contents.best.row))[0];
@@ -101,11 +89,11 @@ TEST_F(SolverStudy, ResumedAtAnyEvaluationEqualsTheStraightRun) {
   const auto straight = run_study(study, path("straight.h5"), false, {}, silent);
   const auto reports =
       static_cast<int>(straight.contents.stages[1].table.size() + straight.contents.stages[2].table.size()) + 6;
-  for (int stop = 5; stop < reports; stop += 31) {
+  for (int stop = 5; stop < reports; stop += 61) {
     const std::string file = path("s" + std::to_string(stop) + ".h5");
     StopAt at(stop);
     run_study(study, file, false, {}, at);
-    const auto second = resume_study(file, catalogues(), {}, {}, silent);
+    const auto second = resume_study(file, all_catalogues(), {}, {}, silent);
     EXPECT_EQ(first_difference(straight.contents, second.contents), "") << stop;
     EXPECT_EQ(first_difference(straight.contents, read_study(file)), "") << stop;
     EXPECT_TRUE(second.warnings.empty());

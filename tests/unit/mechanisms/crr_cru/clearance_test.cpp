@@ -14,7 +14,6 @@
 namespace pkm::testing::crr {
 namespace {
 
-constexpr double kRoundoff = 1e-12;
 const WorkingMode kNominalMode = {-1, -1, 1, -1};
 
 std::size_t radius_index(std::size_t which) { return nominal().size() - kLinkRadii + which; }

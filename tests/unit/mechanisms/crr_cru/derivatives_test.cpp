@@ -16,15 +16,15 @@ namespace {
 
 constexpr double kTolerance = 1e-7;  // relative to value / parameter, or to the slope if that is larger
 
-struct Case {
+struct PlannedCase {
   std::string name;
   std::vector<double> p;
   SurveyPlan plan;
 };
 
-std::vector<Case> random_cases(int count, int seed, double tolerance) {
+std::vector<PlannedCase> random_plans(int count, int seed, double tolerance) {
   Uniform uniform(seed);
-  std::vector<Case> cases;
+  std::vector<PlannedCase> cases;
   for (int i = 0; i < count; ++i) {
     const int held = i % 4;
     const auto p = random_design(uniform, 0.2);
@@ -38,7 +38,7 @@ std::vector<Case> random_cases(int count, int seed, double tolerance) {
 
 /// Value and slopes by all parameters of a function of a survey.
 template <class Function>
-std::vector<double> slopes_of(const Case& c, const Demand& demand, const Function& f) {
+std::vector<double> slopes_of(const PlannedCase& c, const Demand& demand, const Function& f) {
   const auto surveyor = prepare_survey(mechanism(c.name), c.plan, demand);
   Scratch scratch;
   std::vector<double> slopes;
@@ -60,9 +60,9 @@ struct Agreement {
 };
 
 template <class Function>
-Agreement compare(const std::vector<Case>& cases, const Demand& demand, double tolerance, const Function& f) {
+Agreement compare(const std::vector<PlannedCase>& cases, const Demand& demand, double tolerance, const Function& f) {
   Agreement agreement;
-  for (const Case& c : cases) {
+  for (const PlannedCase& c : cases) {
     const auto surveyor = prepare_survey(mechanism(c.name), c.plan, demand);
     Scratch scratch;
     const auto value = [&](std::vector<double> p, std::size_t k, double by) {
@@ -99,7 +99,7 @@ const auto kMeanConditioning = [](const auto& survey) {
 };
 
 TEST(CrrCruDerivatives, OfTheVolumeEqualDifferences) {
-  const Agreement found = compare(random_cases(96, 1, 1e-13), {}, kTolerance, kVolume);
+  const Agreement found = compare(random_plans(96, 1, 1e-13), {}, kTolerance, kVolume);
   EXPECT_GT(found.compared, 1200);
   EXPECT_LT(found.excluded, found.compared / 20);
 }
@@ -107,7 +107,7 @@ TEST(CrrCruDerivatives, OfTheVolumeEqualDifferences) {
 TEST(CrrCruDerivatives, OfTheMeanConditioningEqualDifferences) {
   Demand demand;
   demand.add(kConditioning);
-  const Agreement found = compare(random_cases(48, 2, 1e-12), demand, kTolerance, kMeanConditioning);
+  const Agreement found = compare(random_plans(48, 2, 1e-12), demand, kTolerance, kMeanConditioning);
   EXPECT_GT(found.compared, 500);
   EXPECT_LT(found.excluded, found.compared / 20);
 }
@@ -116,7 +116,7 @@ TEST(CrrCruDerivatives, OfTheMeanConditioningEqualDifferences) {
 // as 1e-7; where the adaptive rule stops early, near a structure that it hardly sees, a few are not. A hundredth of the
 // tolerance leaves none.
 TEST(CrrCruDerivatives, AreAsGoodAsTheTolerance) {
-  const auto fine = random_cases(60, 3, 1e-13), usual = random_cases(60, 3, 1e-8), tight = random_cases(60, 3, 1e-10);
+  const auto fine = random_plans(60, 3, 1e-13), usual = random_plans(60, 3, 1e-8), tight = random_plans(60, 3, 1e-10);
   int compared = 0, beyond = 0;
   for (std::size_t i = 0; i < fine.size(); ++i) {
     const double here = survey(usual[i].name, usual[i].p, usual[i].plan).volume;

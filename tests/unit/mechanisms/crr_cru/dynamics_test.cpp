@@ -9,8 +9,6 @@
 namespace pkm::testing::crr {
 namespace {
 
-constexpr double kAccuracy = 1e-10;  // of the largest entry
-
 using Json = nlohmann::json;
 
 double largest(const Json& list) {
@@ -20,15 +18,13 @@ double largest(const Json& list) {
   return most;
 }
 
-AxisVector<double> vector_of(const Json& list) { return {list[0], list[1], list[2], list[3]}; }
-
 Wrench<double> wrench_of(const Json& entry) {
   const Json &F = entry["F"], &M = entry["M"];
   return {{F[0], F[1], F[2], M[0], M[1], M[2]}};
 }
 
 void expect_close(const AxisVector<double>& found, const Json& expected, double scale, const char* what) {
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found[i], expected[i].get<double>(), kAccuracy * scale) << what;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found[i], expected[i].get<double>(), kGoldenAccuracy * scale) << what;
 }
 
 TEST(CrrCruDynamics, EveryGoldenCase) {
@@ -43,8 +39,8 @@ TEST(CrrCruDynamics, EveryGoldenCase) {
     const JointSpace<double> at_joints = joint_space(d);
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j) {
-        EXPECT_NEAR(d.M_X(i, j), entry["M_X"][i][j].get<double>(), kAccuracy * largest(entry["M_X"]));
-        EXPECT_NEAR(at_joints.M_q(i, j), entry["M_q"][i][j].get<double>(), kAccuracy * largest(entry["M_q"]));
+        EXPECT_NEAR(d.M_X(i, j), entry["M_X"][i][j].get<double>(), kGoldenAccuracy * largest(entry["M_X"]));
+        EXPECT_NEAR(at_joints.M_q(i, j), entry["M_q"][i][j].get<double>(), kGoldenAccuracy * largest(entry["M_q"]));
       }
     expect_close(d.q, entry["q"], largest(entry["q"]), "q");
     expect_close(d.J * state.velocity, entry["qd"], largest(entry["qd"]), "qd");

@@ -21,6 +21,9 @@ namespace pkm::testing::crr {
 using namespace pkm::crr_cru;
 using crr_cru::Pose;  // not pkm::Pose, to which it converts
 
+inline constexpr double kRoundoff = 1e-12;
+inline constexpr double kGoldenAccuracy = 1e-10;  // of the largest entry
+
 inline const nlohmann::json& golden() {
   static const nlohmann::json data =
       nlohmann::json::parse(std::ifstream(PKM_TEST_DATA "/3crr-r-cru-and-quadrupteron.json"));
@@ -80,6 +83,8 @@ inline std::vector<double> design_of(const nlohmann::json& entry) {
   p[kCentre] = from["c"];
   return p;
 }
+
+inline AxisVector<double> vector_of(const nlohmann::json& x) { return {x[0], x[1], x[2], x[3]}; }
 
 inline Pose<double> pose_of(const nlohmann::json& x) { return {x[0], x[1], x[2], x[3]}; }
 

@@ -14,8 +14,6 @@ namespace {
 
 using crr_cru::Influence;
 
-constexpr double kRoundoff = 1e-12;
-
 TEST(CrrCruGolden, PosesOfEveryCase) {
   for (const auto& entry : golden()["cases"]) {
     SCOPED_TRACE(entry["id"].dump());

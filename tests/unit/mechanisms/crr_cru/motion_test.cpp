@@ -15,10 +15,6 @@ namespace {
 using Json = nlohmann::json;
 using ::testing::HasSubstr;
 
-constexpr double kAccuracy = 1e-10;  // of the largest entry
-
-AxisVector<double> vector_of(const Json& list) { return {list[0], list[1], list[2], list[3]}; }
-
 const std::vector<AxisInfo>& coordinates() { return mechanism("quadrupteron").info().coordinates; }  // of both
 
 Trajectory along(const Json& entry, const Motion& motion) {
@@ -29,7 +25,7 @@ Trajectory along(const Json& entry, const Motion& motion) {
 void expect_close(const AxisVector<double>& found, const Json& expected, const char* what) {
   double scale = 0;
   for (const double value : expected) scale = std::fmax(scale, std::fabs(value));
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found[i], expected[i].get<double>(), kAccuracy * scale) << what;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found[i], expected[i].get<double>(), kGoldenAccuracy * scale) << what;
 }
 
 TEST(CrrCruMotion, GoldenQuinticMoves) {
@@ -81,8 +77,8 @@ TEST(CrrCruMotion, GoldenHandlingCycle) {
     expect_close(s.peak_power, entry["peak_power"], "peak power");
     expect_close(*s.peak_speed, entry["peak_speed"], "peak speed");
     const double power = entry["peak_total_power"];
-    EXPECT_NEAR(s.peak_total_power, power, kAccuracy * power);
-    EXPECT_NEAR(s.least_total_power, entry["min_total_power"].get<double>(), kAccuracy * power);
+    EXPECT_NEAR(s.peak_total_power, power, kGoldenAccuracy * power);
+    EXPECT_NEAR(s.least_total_power, entry["min_total_power"].get<double>(), kGoldenAccuracy * power);
     // There and back from rest to rest, all work is given back; along half the way the rods' heights change.
     cycle.back = true;
     const Trajectory whole = along(entry, *pick_and_place(cycle));

@@ -19,7 +19,7 @@ const Json& golden() {
   return json;
 }
 
-std::shared_ptr<const Mechanism> read(const std::string& path) {
+std::shared_ptr<const Mechanism> mechanism_in(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   return read_mechanism_toml(text.str(), path);
@@ -39,8 +39,8 @@ struct Case {
                                                              {"delta", "delta"}};
     const std::string name = entry["case"];
     const auto file = files.find(name);
-    mechanism =
-        file == files.end() ? test::described("4ppa-2par") : read(PKM_TEST_DATA "/generic/" + file->second + ".toml");
+    mechanism = file == files.end() ? test::described("4ppa-2par")
+                                    : mechanism_in(PKM_TEST_DATA "/generic/" + file->second + ".toml");
     const MechanismInfo& info = mechanism->info();
     Json parameters;
     for (const auto& [key, value] : entry["parameters"].items()) parameters[parameter(key)] = value;
@@ -125,12 +125,12 @@ TEST(DescribedColumns, AreTheExactOnesOfTheReferences) {
       compared.insert(name);
     }
   }
-  EXPECT_THAT(compared, testing::IsSupersetOf({"3-rpr", "gough"}));
+  EXPECT_THAT(compared, ::testing::IsSupersetOf({"3-rpr", "gough"}));
 }
 
 /// One, two and three swept coordinates: areas over a coordinate are the volume, lengths the area.
 TEST(DescribedColumns, AddUpOverAnIntegratedCoordinate) {
-  const auto mechanism = read(PKM_TEST_DATA "/generic/three-cylinders.toml");
+  const auto mechanism = mechanism_in(PKM_TEST_DATA "/generic/three-cylinders.toml");
   const std::vector<double> design = test::nominal(mechanism->info());
   const auto measure = [&](const SurveyPlan& plan) { return test::survey(*mechanism, design, plan).volume; };
   SurveyPlan plan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism->info())};
@@ -227,7 +227,7 @@ TEST(DescribedColumns, SampleInsideTheWorkspace) {
     const MechanismInfo& info = mechanism.info();
     const auto surveyor = prepare_survey(mechanism, test::columns(info), {.fields = {&kConditioning}, .poses = true});
     EXPECT_EQ(surveyor->slopes(), nullptr);
-    EXPECT_THAT(surveyor->why_no_slopes(), testing::HasSubstr("derivatives of the volume"));
+    EXPECT_THAT(surveyor->why_no_slopes(), ::testing::HasSubstr("derivatives of the volume"));
     Survey<double> found;
     survey_once<double>(*surveyor, test::nominal(info), found);
     double sum = 0;

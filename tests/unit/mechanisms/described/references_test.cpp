@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-class DescribedReference : public testing::TestWithParam<std::string> {
+class DescribedReference : public ::testing::TestWithParam<std::string> {
  protected:
   const Mechanism& mechanism() const { return *test::described(GetParam()); }
   const MechanismInfo& info() const { return mechanism().info(); }
@@ -155,7 +155,7 @@ std::vector<std::string> with_references() {
     if (std::filesystem::exists(PKM_TEST_DATA "/mechanisms/" + name + ".json")) some.push_back(name);
   return some;
 }
-INSTANTIATE_TEST_SUITE_P(All, DescribedReference, testing::ValuesIn(with_references()),
+INSTANTIATE_TEST_SUITE_P(All, DescribedReference, ::testing::ValuesIn(with_references()),
                          [](const auto& name) { return test::test_name(name.param); });
 
 TEST(DescribedFiles, AreAllComparedWithSomething) {

@@ -261,11 +261,11 @@ TEST(FourPpaClearance, DerivativesEqualDifferences) {
 // --- the limit taken apart
 
 /// Random designs of every proportion, thick and thin.
-struct Case {
+struct ClearanceCase {
   std::vector<double> p;
   double least;
 };
-Case random_case(Uniform& uniform) {
+ClearanceCase random_clearance_case(Uniform& uniform) {
   auto p = nominal();
   p[kA] = uniform(0.05, 0.6);
   p[kB] = uniform(0.05, 1.2);
@@ -284,7 +284,7 @@ Case random_case(Uniform& uniform) {
 struct Sampled {
   double x, z, s, c;
 };
-Sampled random_pose(const Geometry<double>& g, Uniform& uniform) {
+Sampled random_sample(const Geometry<double>& g, Uniform& uniform) {
   const auto [s, c] = sincos(uniform(-kPi / 2, kPi / 2));
   return {uniform(0, g.b), uniform(-(g.l_u + g.l_d + g.d), -g.d), s, c};
 }
@@ -293,12 +293,12 @@ TEST(FourPpaClearance, NoPoseIsNearerThanTheBoundsSay) {
   Uniform uniform(3);
   std::vector<double> tightest(kGroups * kGroups, 10.0);
   for (int i = 0; i < 400; ++i) {
-    Case c = random_case(uniform);
+    ClearanceCase c = random_clearance_case(uniform);
     for (const ParameterIndex radius : {kRu, kRs, kRd, kRp}) c.p[radius] = 0;
     const auto g = geometry(std::span<const double>(c.p));
     const auto l = limits(g, no_limits_of_four_ppa());
     for (int k = 0; k < 500; ++k) {
-      const Sampled at = random_pose(g, uniform);
+      const Sampled at = random_sample(g, uniform);
       if (!feasible(g, l, at.x, g.L0 / 2, at.z, at.s, at.c)) continue;
       const auto all = links(g, lower_placement(g, at.x, at.z, at.s, at.c));
       for (const GroupPair& pair : kPairs) {
@@ -326,8 +326,8 @@ TEST(FourPpaClearance, TakenApartItSaysTheSameOfEveryPose) {
   Uniform uniform(4);
   int clear = 0, blocked = 0, tested = 0;
   for (int i = 0; i < 600; ++i) {
-    const Case c =
-        i % 3 > 0 ? random_case(uniform) : Case{with(exotics()[i / 3 % 4].changes), exotics()[i / 3 % 4].least};
+    const ClearanceCase c = i % 3 > 0 ? random_clearance_case(uniform)
+                                      : ClearanceCase{with(exotics()[i / 3 % 4].changes), exotics()[i / 3 % 4].least};
     const auto g = geometry(std::span<const double>(c.p));
     const auto free = limits(g, no_limits_of_four_ppa()), given = limits(g, clearance(c.least));
     auto folded = given;
@@ -335,7 +335,7 @@ TEST(FourPpaClearance, TakenApartItSaysTheSameOfEveryPose) {
     EXPECT_FALSE(folded.clearance_min);
     tested += test.has_value();
     for (int k = 0; k < 200; ++k) {
-      const Sampled at = random_pose(g, uniform);
+      const Sampled at = random_sample(g, uniform);
       if (!feasible(g, free, at.x, g.L0 / 2, at.z, at.s, at.c)) continue;
       const auto p = lower_placement(g, at.x, at.z, at.s, at.c);
       const double margin = nearest_links(links(g, p)).clearance - c.least;
@@ -371,7 +371,8 @@ TEST(FourPpaClearance, VoxelsEqualThePlainLoop) {
   Uniform uniform(5);
   std::int64_t total = 0, cut = 0;
   for (int i = 0; i < 40; ++i) {
-    const Case c = i % 2 ? random_case(uniform) : Case{with(exotics()[i / 2 % 4].changes), exotics()[i / 2 % 4].least};
+    const ClearanceCase c = i % 2 ? random_clearance_case(uniform)
+                                  : ClearanceCase{with(exotics()[i / 2 % 4].changes), exotics()[i / 2 % 4].least};
     const double y = i % 3 == 2 ? c.p[kL0] * uniform(0.2, 0.8) : c.p[kL0] / 2;
     const SurveyPlan plan = voxels(clearance(c.least), {13, 16, 18}, at_y(y));
     const auto g = geometry(std::span<const double>(c.p));

@@ -21,8 +21,6 @@ using namespace four_ppa_two_par;
 using Vector3 = Eigen::Vector3d;
 using Vector4 = Vector<double, 4>;
 
-const char* const kModes[] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
-
 struct PointMass {
   double mass;
   Vector3 at;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <fstream>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -10,27 +9,17 @@
 
 #include "engine/mechanisms/all.hpp"
 #include "engine/survey/survey_set.hpp"
+#include "tests/unit/math/uniform.hpp"
 
 namespace pkm::testing {
 
 inline const Mechanism& four_ppa() { return *all_mechanisms().front(); }
+inline const std::string kModes[] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
 
 inline const nlohmann::json& golden() {
   static const nlohmann::json data = nlohmann::json::parse(std::ifstream(PKM_TEST_DATA "/4ppa-2par.json"));
   return data;
 }
-
-/// Uniform random numbers, the same on every platform.
-class Uniform {
- public:
-  explicit Uniform(unsigned seed) : engine_(seed) {}
-  double operator()(double lower, double upper) {
-    return lower + (upper - lower) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 inline std::vector<double> nominal() {
   std::vector<double> p;

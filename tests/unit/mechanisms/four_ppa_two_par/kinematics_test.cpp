@@ -19,8 +19,6 @@ Eigen::Matrix4d eigen(const AxisMatrix<double>& a) {
   return same;
 }
 
-const std::string kModes[4] = {"lower,lower", "lower,upper", "upper,lower", "upper,upper"};
-
 TEST(FourPpaKinematics, ForwardAfterInverseContainsThePose) {
   Uniform uniform(1);
   int assembled = 0;

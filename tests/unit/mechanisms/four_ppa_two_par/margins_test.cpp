@@ -15,12 +15,12 @@ namespace {
 
 using namespace four_ppa_two_par;
 
-struct Case {
+struct MarginCase {
   Geometry<double> g;
   Limits<double> l;
 };
 
-Case random_case(Uniform& uniform) {
+MarginCase random_margin_case(Uniform& uniform) {
   std::vector<double> p = nominal();
   for (const ParameterIndex length : {kA, kB, kLu, kLd, kD}) p[length] *= uniform(0.7, 1.4);
   p[kL0] = uniform(0.8, 3) * p[kLu];
@@ -40,7 +40,7 @@ At random_pose(const Geometry<double>& g, Uniform& uniform) {
   return {uniform(0, g.b), uniform(0, g.L0), uniform(-(g.l_u + g.l_d + g.d), 0), uniform(-kPi / 2, kPi / 2)};
 }
 
-std::array<double, kMargins> lower_margins(const Case& c, const At& at, double y) {
+std::array<double, kMargins> lower_margins(const MarginCase& c, const At& at, double y) {
   const SchoenfliesPose<double> pose{at.x, y, at.z, at.angle};
   return margins(c.g, c.l, inverse(c.g, pose, kLowerMode), sincos(at.angle).cos, kLowerMode);
 }
@@ -50,7 +50,7 @@ TEST(FourPpaMargins, SidesOfTrianglesSayWhatRadiansSay) {
   Uniform uniform(31);
   int kept = 0, broken = 0;
   for (int i = 0; i < 40000; ++i) {
-    const Case c = random_case(uniform);
+    const MarginCase c = random_margin_case(uniform);
     const At at = random_pose(c.g, uniform);
     const auto theta = sincos(at.angle);
     const auto margin = lower_margins(c, at, at.y);
@@ -88,7 +88,7 @@ TEST(FourPpaMargins, SectionsHoldThePosesThatKeepThem) {
   Uniform uniform(33);
   int inside = 0, outside = 0;
   for (int i = 0; i < 100000; ++i) {
-    const Case c = random_case(uniform);
+    const MarginCase c = random_margin_case(uniform);
     const At at = random_pose(c.g, uniform);
     const Frame<double> f = frame(c.g, c.l, at.y);
     const SinCosOf<double> theta = sincos(at.angle);

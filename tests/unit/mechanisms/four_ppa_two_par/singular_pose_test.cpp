@@ -21,19 +21,19 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const Pose<double> kRegular = {0.35, 0.8, -0.8, 0}, kSingularPose = {0.35, 0.8, -0.8, kPi / 2};
+const pkm::Pose<double> kRegular = {0.35, 0.8, -0.8, 0}, kSingularPose = {0.35, 0.8, -0.8, kPi / 2};
 
-PoseDynamics<double> dynamics_at(const Pose<double>& pose) {
+pkm::PoseDynamics<double> dynamics_at(const pkm::Pose<double>& pose) {
   const std::vector<double> p = nominal();
-  const MotionState<double> state{pose, AxisVector<double>(4)};
-  PoseDynamics<double> found;
+  const pkm::MotionState<double> state{pose, AxisVector<double>(4)};
+  pkm::PoseDynamics<double> found;
   four_ppa().dynamics()->equations(std::span<const double>(p), "lower,lower", {&state, 1}, {&found, 1});
   return found;
 }
 
 TEST(SingularPose, HasNoForcesAndNoInertiaOfTheJoints) {
   for (const double force : drive_forces(dynamics_at(kRegular), {0, 0, 0, 1}, {})) EXPECT_TRUE(std::isfinite(force));
-  const PoseDynamics<double> d = dynamics_at(kSingularPose);
+  const pkm::PoseDynamics<double> d = dynamics_at(kSingularPose);
   ASSERT_TRUE(d.assembles);
   for (const double force : drive_forces(d, AxisVector<double>(4), {})) EXPECT_TRUE(std::isnan(force));
   for (const double element : joint_inertia(d)) EXPECT_TRUE(std::isnan(element));
@@ -93,7 +93,7 @@ TEST(SingularPose, FailsADesignWhosePeakForceIsLookedFor) {
 
 TEST(SingularPose, IsNoBeginningOfASimulation) {
   SimulationSetup setup;
-  setup.dynamics = [](const MotionState<double>& state) { return dynamics_at(state.pose); };
+  setup.dynamics = [](const pkm::MotionState<double>& state) { return dynamics_at(state.pose); };
   setup.forces = [](double) { return AxisVector<double>(4); };
   setup.duration = setup.step = 1e-3;
   EXPECT_EQ(simulate(setup, kSingularPose, AxisVector<double>(4)).stopped,

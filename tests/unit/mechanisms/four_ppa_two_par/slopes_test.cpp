@@ -73,14 +73,14 @@ TEST(FourPpaSlopes, StandInForTheWorstPose) {
 }
 
 /// Random designs with rails so short that the stroke cuts, and directions to move them in.
-struct Drawn {
+struct DrawnPlane {
   std::vector<double> design, direction;
   LimitSpec limits;
   double plane;  ///< in units of L0
 };
-Drawn draw(unsigned k) {
+DrawnPlane draw(unsigned k) {
   Stream random(5, 0, k, Stream::Use::start);
-  Drawn drawn;
+  DrawnPlane drawn;
   drawn.limits = test::random_limits(four_ppa().info(), random);
   drawn.design = test::random_design(four_ppa().info(), random);
   drawn.design[kL0] = drawn.design[kLu] * (0.8 + random.u01());
@@ -95,7 +95,7 @@ void compare(unsigned designs, HeldCoordinate::Kind kind, std::array<int, 2> nod
   unsigned compared = 0;
   for (unsigned k = 0; compared < designs && k < 4 * designs; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
-    const Drawn drawn = draw(k);
+    const DrawnPlane drawn = draw(k);
     const HeldCoordinate held{.coordinate = 1, .kind = kind, .value = drawn.plane * drawn.design[kL0]};
     SurveyPlan plan = columns(drawn.limits, held, tolerance);
     column_options(plan).nodes = nodes;
@@ -127,7 +127,7 @@ TEST(FourPpaSlopes, SamplesIntegratedOverY) {
   int compared = 0;
   for (unsigned k = 0; compared < 3 && k < 10; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
-    const Drawn drawn = draw(k);
+    const DrawnPlane drawn = draw(k);
     const auto surveyor = prepare_survey(four_ppa(), columns(drawn.limits, over_y(), 1e-8), demand);
     const auto sums = [&](double t) {
       std::vector<Dual4> p;
@@ -161,7 +161,7 @@ TEST(FourPpaSlopes, CrossingsMoveAsTheirDerivativesSay) {
   int followed = 0;
   for (unsigned k = 0; k < 300; ++k) {
     SCOPED_TRACE("design " + std::to_string(k));
-    const Drawn drawn = draw(k);
+    const DrawnPlane drawn = draw(k);
     const auto breaks = [&](double t) {
       using Scalar = Dual<1>;
       std::vector<Scalar> p;

@@ -8,7 +8,7 @@ namespace pkm::testing::hybrid {
 namespace {
 
 template <class S>
-Frame<S> frame_of(const std::vector<double>& design, const WorkingMode& mode) {
+Frame<S> unlimited_frame(const std::vector<double>& design, const WorkingMode& mode) {
   const std::vector<S> p(design.begin(), design.end());
   const std::span<const S> all(p);
   return frame(geometry(all), limits(all, no_limits(mechanism().info())), mode, 1);
@@ -33,12 +33,12 @@ TEST(HybridBreaks, SectionsKeepTheirStructureInBetween) {
   StripScratch strips;
   Structure structure;
   for (const std::vector<double>& design : designs(30)) {
-    const auto f = frame_of<double>(design, {1, -1, -1});
+    const auto f = unlimited_frame<double>(design, {1, -1, -1});
     const auto at = [&](double beta) -> const Structure& {
       find_strips(section(f, beta), strips, structure);
       return structure;
     };
-    find_stretches(f, frame_of<Dual<1>>(design, {1, -1, -1}), scratch);
+    find_stretches(f, unlimited_frame<Dual<1>>(design, {1, -1, -1}), scratch);
     double before = f.l.beta_min;
     for (std::size_t i = 0; i < scratch.count; ++i) {
       const Stretch& s = scratch.stretches[i];

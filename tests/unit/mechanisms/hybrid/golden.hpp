@@ -17,6 +17,8 @@ namespace pkm::testing::hybrid {
 
 using namespace pkm::hybrid;
 
+inline constexpr double kNear = 1e-12;  // golden values, and what is found in two ways
+
 inline const nlohmann::json& golden() {
   static const nlohmann::json data = nlohmann::json::parse(std::ifstream(PKM_TEST_DATA "/2t1r-p-hybrid.json"));
   return data;

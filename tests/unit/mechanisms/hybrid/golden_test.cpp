@@ -14,22 +14,21 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kRoundoff = 1e-12;
 constexpr double kDoubleRoot = 1e-6;  // its square is rounding
 
 /// Relative to 1 or, where that is more, to the value.
-void expect_near(double found, const Json& expected, const std::string& what, double tolerance = kRoundoff) {
+void expect_near(double found, const Json& expected, const std::string& what, double tolerance = kNear) {
   const double value = expected.get<double>();
   EXPECT_NEAR(found, value, tolerance * (1 + std::fabs(value))) << what;
 }
 
 template <class List>
-void expect_all_near(const List& found, const Json& expected, const std::string& what, double tolerance = kRoundoff) {
+void expect_all_near(const List& found, const Json& expected, const std::string& what, double tolerance = kNear) {
   for (std::size_t i = 0; i < expected.size(); ++i) expect_near(found[i], expected[i], what, tolerance);
 }
 
 void expect_matrix_near(const AxisMatrix<double>& found, const Json& expected, const std::string& what,
-                        double tolerance = kRoundoff) {
+                        double tolerance = kNear) {
   ASSERT_EQ(found.rows(), expected.size()) << what;
   for (std::size_t i = 0; i < found.rows(); ++i)
     for (std::size_t j = 0; j < found.cols(); ++j) expect_near(found(i, j), expected[i][j], what, tolerance);
@@ -89,7 +88,7 @@ TEST(HybridGolden, ForwardInEveryAssemblyMode) {
       EXPECT_EQ(Json({a.sign_z, a.sign_N2}), expected["am"]);
       EXPECT_EQ(a.double_z + 2 * a.double_beta, expected["flags"].get<int>());
       EXPECT_EQ(Json(a.mode), expected["wm"]);
-      const double tolerance = expected["flags"] == 0 ? kRoundoff : kDoubleRoot;
+      const double tolerance = expected["flags"] == 0 ? kNear : kDoubleRoot;
       expect_all_near(std::array{a.pose.x, a.pose.y, a.pose.z, a.pose.angle}, expected["X"], "X", tolerance);
     }
   }
@@ -107,14 +106,14 @@ TEST(HybridGolden, InfluenceCoefficientsBothWays) {
     expect_matrix_near(back.G, entry["G_fwd"], "G_fwd");
     for (std::size_t i = 0; i < 4; ++i) {
       expect_matrix_near(found->H[i], entry["H_inv"][i], "H_inv");
-      expect_matrix_near(back.H[i], entry["H_fwd"][i], "H_fwd", 10 * kRoundoff);
+      expect_matrix_near(back.H[i], entry["H_fwd"][i], "H_fwd", 10 * kNear);
     }
     const Vector<double, 4> V = vector_of(entry["V"]), A = vector_of(entry["A"]);
     const AxisVector<double> speeds = found->G * V, drives = accelerations<double, 0>(*found, V, A);
     expect_all_near(speeds, entry["qd"], "qd");
     expect_all_near(drives, entry["qdd"], "qdd");
     expect_all_near(back.G * speeds, entry["V_back"], "V");
-    expect_all_near(accelerations<double, 0>(back, speeds, drives), entry["A_back"], "A", 10 * kRoundoff);
+    expect_all_near(accelerations<double, 0>(back, speeds, drives), entry["A_back"], "A", 10 * kNear);
     const PoseReport report = inspect(entry, entry["wm"]);
     expect_near(*report.det_G, entry["det_Jx"], "det Jx");
     expect_near(*report.det_Jq, entry["det_Jq"], "det Jq");

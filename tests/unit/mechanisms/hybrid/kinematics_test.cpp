@@ -11,8 +11,6 @@
 namespace pkm::testing::hybrid {
 namespace {
 
-constexpr double kRoundoff = 1e-12;
-
 /// The least of what the accuracy of the forward kinematics goes with: t_xz, t_beta, |n_i|/L_i; and their product.
 struct Distance {
   double least = 1, product = 1;
@@ -72,8 +70,8 @@ TEST(HybridKinematics, ForwardInvertsInverseInEveryMode) {
       }
     }
   }
-  EXPECT_LT(worst, kRoundoff);
-  EXPECT_LT(worst_near, kRoundoff);
+  EXPECT_LT(worst, kNear);
+  EXPECT_LT(worst_near, kNear);
   EXPECT_GT(regular, 100000);
   EXPECT_GT(near, 10000);
   std::cout << "worst relative error of " << regular << " regular solutions: " << worst << ", of " << near
@@ -233,8 +231,8 @@ TEST(HybridKinematics, InfluenceCoefficientsAreTheDerivativesOfTheDrives) {
     const Vector<double, 4> speeds = q.G * V, drives = accelerations<double, 4>(q, V, A);
     const auto scale = [](double value) { return 1 + std::fabs(value); };
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_NEAR(speeds[i], motion.s[i].d, kRoundoff * scale(speeds[i]));
-      EXPECT_NEAR(drives[i], motion.s[i].dd, kRoundoff * scale(motion.s[i].dd) * scale(speeds[i] * speeds[i]));
+      EXPECT_NEAR(speeds[i], motion.s[i].d, kNear * scale(speeds[i]));
+      EXPECT_NEAR(drives[i], motion.s[i].dd, kNear * scale(motion.s[i].dd) * scale(speeds[i] * speeds[i]));
       EXPECT_NEAR((back.G * speeds)[i], V[i], 1e-11);
     }
     // and differences of G along the coordinates
