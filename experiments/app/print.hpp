@@ -29,6 +29,9 @@ std::string formatted(const char* format, double value);
 /// Ten significant digits; "-" for NaN.
 inline std::string digits(double value) { return formatted("%.10g", value); }
 
+/// Text for an element or an attribute of XML.
+std::string xml_text(const std::string& text);
+
 void print_json(const Json& json);
 
 /// What a command tells, each thing said once: as text for people, or as one JSON object for programs.
