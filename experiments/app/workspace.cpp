@@ -8,6 +8,7 @@
 #include "engine/report/workspace_export.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/cube.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/picture.hpp"
 #include "experiments/app/running.hpp"
@@ -19,7 +20,7 @@
 namespace pkm {
 namespace {
 
-struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs {
+struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, CubeArguments {
   std::vector<std::string> held, cut;
   std::string csv, html, svg, png;
 
@@ -172,6 +173,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     found.touches_box = touches(found, ranges_given);
     flatten(found, target.info(), slices);
     if (!arguments.picture().empty()) expect_plane(found, arguments.picture());
+    expect_cube(found, arguments);
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {
@@ -180,6 +182,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
     tell_workspace(target, found, out);
+    tell_cube(found, arguments, out);
     if (arguments.picture().empty()) return;
     const Picture picture = section_picture(target, found, out);
     if (!arguments.svg.empty()) write_file(arguments.svg, svg_file(picture), existing);
@@ -217,6 +220,7 @@ void add_workspace(CLI::App& app, Session& session) {
                                  {".stl", &arguments.stl},
                                  {".svg", &arguments.svg},
                                  {".vtkhdf", &arguments.vtk}});
+  add_cube_options(command, arguments);
   add_threads(command, arguments.threads);
 }
 
