@@ -29,6 +29,12 @@ std::string position(double value, std::string_view unit) {
   return number(value, unit) + (turns ? " (" + formatted("%.6g", value * 180 / std::numbers::pi) + " deg)" : "");
 }
 
+Step handy(const std::string& unit) {
+  if (unit == "m") return {1e-3, "mm"};
+  if (unit == "rad") return {std::numbers::pi / 180, "deg"};
+  return {1, unit};
+}
+
 std::string xml_text(const std::string& text) {
   std::string result;
   for (const char c : printable(text))
