@@ -23,10 +23,10 @@ namespace {
 struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, CubeArguments {
   std::vector<std::string> held, cut;
   std::string csv, html, svg, png;
+  int threads = 0;
 
   /// The option that asks for a picture of a slice; "": none does.
   std::string picture() const { return !svg.empty() ? "--svg" : !png.empty() ? "--png" : ""; }
-  int threads = 0;
 };
 
 /// Feasible cells lie at an end of a range that is given.
