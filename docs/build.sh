@@ -1,14 +1,21 @@
 #!/usr/bin/env bash
 # Builds the documentation as a site: docs/build.sh [PROGRAM [FOLDER]]
-# The program writes the reference: by default build/release/bin/pkmopt. The site's first page is
-# FOLDER/html/index.html, FOLDER being build/docs by default. Any warning is an error, and so is a link within the site
-# that leads nowhere. Installs what is missing.
+# The program writes the reference: by default build/release/bin/pkmopt. It has to be of the version of these pages, that
+# of CMakeLists.txt, which every page of the site names. The site's first page is FOLDER/html/index.html, FOLDER being
+# build/docs by default. Any warning is an error, and so is a link within the site that leads nowhere. Installs what is
+# missing.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath -- "${1:-$root/build/release/bin/pkmopt}")
 out=$(realpath -m -- "${2:-$root/build/docs}")
 if [[ ! -x $program ]]; then
   echo "There is no program $program. Build it, or name another: docs/build.sh PROGRAM" >&2
+  exit 1
+fi
+version=$(sed -nE 's/^project\(pkmopt VERSION ([0-9.]+).*/\1/p' "$root/CMakeLists.txt")
+built=$("$program" --version | head -1)  # "pkmopt 0.1.0 (a1b2c3d4e5f6)"
+if [[ $built != "pkmopt $version ("* ]]; then
+  echo "These pages are of version $version, and $program says that it is $built: build it again" >&2
   exit 1
 fi
 source "$root/experiments/debian-packages.sh"
@@ -52,8 +59,7 @@ SETTINGS
 
 /usr/bin/python3 docs/cpp.py "$root" docs "$out/xml"
 /usr/bin/python3 docs/reference.py "$program" "$root" docs
-version=$("$program" --version | head -1)
-PKM_DOCS_VERSION=${version#pkmopt } PKM_DOCS_XML=$out/xml \
+PKM_DOCS_VERSION=${built#pkmopt } PKM_DOCS_XML=$out/xml \
   /usr/bin/sphinx-build -q -W -n --keep-going -b html -d "$out/doctrees" docs "$out/html"
 cp -R -- experiments/mechanisms/pictures "$out/html/reference"  # named by <img> in an included README
 /usr/bin/python3 "$root/docs/links.py" "$out/html"

@@ -9,12 +9,14 @@ project = "pkmopt"
 author = "the pkmopt authors"
 release = os.environ["PKM_DOCS_VERSION"]  # as the program that wrote the reference tells it
 version = release.split()[0]
+released = f"## [{version}] - unreleased" not in Path("../CHANGELOG.md").read_text()
 copyright = f"2026, the pkmopt authors. Of version {release}"
 
 extensions = ["myst_parser", "breathe", "sphinx.ext.mathjax", "sphinx_copybutton"]
 nitpicky = True
 
-myst_enable_extensions = ["deflist", "dollarmath"]
+myst_enable_extensions = ["deflist", "dollarmath", "substitution"]
+myst_substitutions = {"version": version, "release": release, "state": "released" if released else "not released yet"}
 myst_heading_anchors = 4
 
 breathe_projects = {"pkmopt": os.environ["PKM_DOCS_XML"]}
@@ -30,7 +32,7 @@ nitpick_ignore_regex = [
 ]
 
 html_theme = "furo"
-html_title = f"pkmopt {version}"
+html_title = f"pkmopt {version}" + ("" if released else ", unreleased")
 html_static_path = ["_static"]
 html_css_files = ["katex/katex.css", "site.css"]
 html_js_files = [("katex/katex.js", {"defer": "defer"}), ("katex/contrib/auto-render.js", {"defer": "defer"})]

@@ -4,6 +4,7 @@ pkm_build_packages=(
   g++ cmake ninja-build pkg-config  # tools
   libeigen3-dev                     # linear algebra
   libhdf5-dev libxxhash-dev         # study files and their checksum
+  zlib1g-dev                        # pictures as dots
   libtomlplusplus-dev               # studies
   libnlopt-dev coinor-libipopt-dev  # solvers
   liblapack-dev                     # what Ipopt asks for when it is linked

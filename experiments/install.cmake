@@ -86,5 +86,5 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, man-db, libeigen3-dev, libhdf5-dev, libnlopt-dev, \
-coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev")
+coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev, zlib1g-dev")
 include(CPack)

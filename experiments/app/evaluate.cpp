@@ -8,6 +8,7 @@
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/grid.hpp"
 #include "experiments/app/running.hpp"
+#include "experiments/app/sensitivity.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kBareCells = 40;
 
-struct EvaluateArguments : DesignArguments {
+struct EvaluateArguments : DesignArguments, SensitivityArguments {
   int threads = 0;
   std::string certain;
 };
@@ -159,6 +160,7 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   tell("constraints", "constraints (margins: >= 0 holds)", problem->margins(), report.margins,
        [](const MarginInfo&, double margin) { return margin >= 0 ? "holds" : "violated"; });
   tell("reports", "reports", problem->reports(), report.reports, nothing);
+  if (!failed) with_team(arguments.threads, [&] { tell_sensitivities(*problem, report, arguments, out); });
   out.json["feasible"] = report.status == Status::feasible;
   const NamedValues facts = target.mechanism->facts(report.parameters, problem->parts().plan.limits);
   out.json["facts"] = values_by_name(facts);
@@ -180,6 +182,7 @@ void add_evaluate(CLI::App& app, Session& session) {
   add_cells_option(command, arguments.changes.cells, "Cells of the study's voxels, or of a bare mechanism's");
   add_option(command, "--certain GAP", arguments.certain,
              "Check the exact volume of columns against certain bounds of this gap, as 'pkmopt certify' has them");
+  add_sensitivity_options(command, arguments);
   add_threads(command, arguments.threads);
 }
 

@@ -3,48 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/model/singular.hpp"
-#include "engine/setup/assignments.hpp"
-#include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
-#include "experiments/app/cad.hpp"
-#include "experiments/app/workspace_outputs.hpp"
+#include "experiments/app/chain_at.hpp"
+#include "experiments/app/link_files.hpp"
+#include "experiments/app/tool_error.hpp"
 
 namespace pkm {
 namespace {
 
-struct PoseArguments : DesignArguments, MotionArguments {
-  std::string theta, gamma, zeta;
+struct PoseArguments : DesignArguments, MotionArguments, ChainArguments, LinkFiles {
   std::vector<std::string> joint_error;
-  std::string stl, dxf;
-  bool force = false;
 };
-
-double chain_angle(const Mechanism& mechanism, const std::string& text, const std::string& option) {
-  if (text.empty()) return 0;
-  if (!mechanism.chain())
-    throw ConfigError({"", 0, option}, "mechanism " + mechanism.info().name + " has no auxiliary chain");
-  return parse_number(text, option, "rad");
-}
-
-/// The auxiliary chain at a pose with the motion of its input.
-struct ChainAt {
-  Turning input;
-  double zeta;
-  ChainReport report;
-};
-
-std::optional<ChainAt> chain_at(const Target& target, const PoseArguments& arguments, MotionSample at) {
-  if (!arguments.theta.empty() && !arguments.gamma.empty())
-    throw ConfigError({"", 0, "--gamma"}, "the chain's input follows from its output; give --theta or --gamma");
-  at.input.angle = chain_angle(*target.mechanism, arguments.theta, "--theta");
-  const double zeta = chain_angle(*target.mechanism, arguments.zeta, "--zeta");
-  const double gamma = chain_angle(*target.mechanism, arguments.gamma, "--gamma");
-  const AuxiliaryChain* const chain = target.mechanism->chain();
-  if (!chain) return {};
-  if (!arguments.gamma.empty()) at.input.angle = chain->input_for(target.parameters, at.pose, gamma, zeta).value_or(0);
-  return ChainAt{at.input, zeta, chain->report(target.parameters, at, zeta)};
-}
 
 /// The joints with their speeds and accelerations, and the influence coefficients that these come from.
 void tell_joints(const Target& target, const std::string& mode, const MotionSample& at, const PoseReport& report,
@@ -72,82 +41,6 @@ void tell_joints(const Target& target, const std::string& mode, const MotionSamp
   out.section("joints", rows);
 }
 
-/// Writes the files of the links that are asked for.
-void write_links(const Target& target, const std::string& mode, const Pose<double>& pose,
-                 const PoseArguments& arguments, Printout& out) {
-  const Existing existing = if_forced(arguments.force);
-  check_outputs({arguments.stl, arguments.dxf}, target.files, existing);
-  if (arguments.stl.empty() && arguments.dxf.empty()) return;
-  const MechanismInfo& info = target.info();
-  const std::vector<PlacedLink> links =
-      needed(target.mechanism->links(), "a file of links", "links", info).place(target.parameters, pose, mode);
-  if (links.empty()) return;  // the pose does not assemble, which is told
-  const std::string title = "links of " + info.name + ", " + target.words;
-  const auto write = [&](const std::string& file, const std::string& bytes) {
-    write_file(file, bytes, existing);
-    out.json["files"].push_back(file);
-    out.text += "\nwrote " + file + '\n';
-  };
-  if (!arguments.stl.empty()) write(arguments.stl, links_stl(links, title));
-  if (!arguments.dxf.empty()) write(arguments.dxf, links_dxf(links));
-}
-
-/// Errors of the joints that --joint-error gives: one for all, or by name.
-std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<std::string>& lists) {
-  const std::string option = "--joint-error";
-  std::vector<double> errors;
-  if (lists.size() == 1 && lists[0].find('=') == std::string::npos)
-    for (const AxisInfo& joint : info.joints) errors.push_back(parse_number(lists[0], option, joint.unit));
-  else
-    errors = parse_some_assignments(lists, option, assignable_axes(info.joints));
-  for (const double error : errors)
-    if (error < 0) throw ConfigError({"", 0, option}, shortest(error), "an error >= 0");
-  return errors;
-}
-
-/// What errors of the joints within +- theirs do to the platform, to first order: the worst that each coordinate can
-/// have, and the longest translation, which is at a corner of the box of errors.
-void tell_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
-                     const std::vector<std::string>& lists, Printout& out) {
-  const MechanismInfo& info = target.info();
-  const Velocities& velocities =
-      needed(target.mechanism->velocities(), "--joint-error", "influence coefficients", info);
-  if (info.joints.size() != info.coordinates.size())
-    throw ConfigError({"", 0, "--joint-error"}, "mechanism " + info.name + " has not as many joints as coordinates");
-  const std::vector<double> errors = joint_errors(info, lists);
-  out.json["joint_error"] = values_by_name(info.joints, errors);
-  out.json["tool_error"] = nullptr;
-  const auto influence = velocities.influence(target.parameters, at.pose, mode);
-  if (!influence || is_singular(influence->G)) {
-    out.text += "\nerror of the tool: does not exist, the pose is singular\n";
-    return;
-  }
-  const AxisMatrix<double> of_joints = reversed(*influence).G;
-  const auto with_micrometres = [](double error) {
-    return number(error, "m") + " (" + formatted("%.6g", 1e6 * error) + " um)";
-  };
-  std::vector<Row> rows;
-  std::vector<double> worst(errors.size(), 0);
-  for (std::size_t i = 0; i < worst.size(); ++i) {
-    for (std::size_t j = 0; j < errors.size(); ++j) worst[i] += std::fabs(of_joints(i, j)) * errors[j];
-    const AxisInfo& axis = info.coordinates[i];
-    rows.push_back({axis.name, axis.turns() ? position(worst[i], axis.unit) : with_micrometres(worst[i])});
-  }
-  double longest = 0;
-  for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
-    double square = 0;
-    for (std::size_t i = 0; i < worst.size(); ++i) {
-      double move = 0;
-      for (std::size_t j = 0; j < errors.size(); ++j) move += (corner >> j & 1 ? 1 : -1) * of_joints(i, j) * errors[j];
-      if (!info.coordinates[i].turns()) square += move * move;
-    }
-    longest = std::max(longest, std::sqrt(square));
-  }
-  rows.push_back({"translation", with_micrometres(longest)});
-  out.json["tool_error"] = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", longest}};
-  out.section("greatest error of the tool, for errors of the joints up to " + axes_text(info.joints, errors), rows);
-}
-
 /// Matrices that the pose has, where it has them.
 void print_jacobians(const PoseReport& report, Printout& out) {
   const auto print = [&out](const std::string& title, const std::optional<AxisMatrix<double>>& matrix) {
@@ -160,31 +53,6 @@ void print_jacobians(const PoseReport& report, Printout& out) {
   } else {
     print("J, where qdot = J V", report.J);
   }
-}
-
-void tell_chain(const AuxiliaryChain& names, const ChainAt& at, Printout& out) {
-  const ChainReport& chain = at.report;
-  const Turning& turning = chain.output;
-  const std::string in = names.input(), name = names.output();
-  const auto found = [&chain](const Json& value) { return chain.turns ? value : Json(); };
-  out.json["angles"][name] = found(turning.angle);
-  out.json["chain"] = {{in, at.input.angle},
-                       {"zeta", at.zeta},
-                       {"reason", chain.turns ? Json() : Json(chain.reason)},
-                       {name, found(turning.angle)},
-                       {name + "_speed", found(turning.speed)},
-                       {name + "_acceleration", found(turning.acceleration)},
-                       {"omega", found(chain.spin.velocity.m)},
-                       {"alpha", found(chain.spin.acceleration.m)},
-                       {"gradient", found(vector_json(chain.influence.gradient))},
-                       {"hessian", found(matrix_json(chain.influence.hessian))}};
-  if (chain.turns)
-    out.section("auxiliary chain", {{in, position(at.input.angle, "rad")},
-                                    {name, position(turning.angle, "rad")},
-                                    {"speed", number(turning.speed, "rad/s")},
-                                    {"acceleration", number(turning.acceleration, "rad/s^2")}});
-  else
-    out.text += '\n' + name + " does not exist: " + chain.reason + '\n';
 }
 
 std::string pose(const Target& target, const PoseArguments& arguments, Printout& out) {
@@ -254,13 +122,8 @@ void add_pose(CLI::App& app, Session& session) {
   add_option(command, "--joint-error ERROR|NAME=ERROR", arguments.joint_error,
              "Errors of the joints, as 10um of all, or by name: gives the tool's, to first order")
       ->allow_extra_args(false);
-  add_option(command, "--stl FILE", arguments.stl, "Write the links' surfaces to this file, as binary STL in m");
-  add_option(command, "--dxf FILE", arguments.dxf, "Write the links' axes to this file, as DXF in m");
-  add_output_by_ending(command, {{".dxf", &arguments.dxf}, {".stl", &arguments.stl}});
-  command.add_flag("--force", arguments.force, "Overwrite files that exist");
-  add_option(command, "--theta ANGLE", arguments.theta, "Input angle of an auxiliary chain; default 0");
-  add_option(command, "--gamma ANGLE", arguments.gamma, "Its output angle instead: the input follows");
-  add_option(command, "--zeta ANGLE", arguments.zeta, "Phase of its forks; default 0");
+  add_link_files(command, arguments);
+  add_chain_options(command, arguments);
 }
 
 }  // namespace pkm

@@ -29,6 +29,19 @@ std::string position(double value, std::string_view unit) {
   return number(value, unit) + (turns ? " (" + formatted("%.6g", value * 180 / std::numbers::pi) + " deg)" : "");
 }
 
+Step handy(const std::string& unit) {
+  if (unit == "m") return {1e-3, "mm"};
+  if (unit == "rad") return {std::numbers::pi / 180, "deg"};
+  return {1, unit};
+}
+
+std::string xml_text(const std::string& text) {
+  std::string result;
+  for (const char c : printable(text))
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return result;
+}
+
 void print_json(const Json& json) {
   // Names and file names may hold bytes that are no UTF-8; JSON may not. What would steer a terminal is within strings,
   // where JSON has escapes of its own.

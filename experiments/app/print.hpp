@@ -24,10 +24,20 @@ std::string number(double value, std::string_view unit = "1");
 /// The same of a coordinate or a joint, which in degrees is easier to read: "0.349065850399 rad (20 deg)".
 std::string position(double value, std::string_view unit);
 
+/// "3.47 rad/m" -> per mm for lengths, per degree for angles: what an engineer thinks in.
+struct Step {
+  double size;
+  std::string unit;
+};
+Step handy(const std::string& unit);
+
 /// As std::printf has it; "-" for NaN.
 std::string formatted(const char* format, double value);
 /// Ten significant digits; "-" for NaN.
 inline std::string digits(double value) { return formatted("%.10g", value); }
+
+/// Text for an element or an attribute of XML.
+std::string xml_text(const std::string& text);
 
 void print_json(const Json& json);
 

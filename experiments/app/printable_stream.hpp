@@ -1,9 +1,11 @@
 // What a program prints, printable: names of files and of studies, which may be another's, do not steer a terminal.
 #pragma once
 
+#include <functional>
 #include <ostream>
 #include <streambuf>
 #include <string>
+#include <string_view>
 
 namespace pkm {
 
@@ -11,7 +13,10 @@ namespace pkm {
 /// tabs. Text that must stay on its line is escaped where it is printed.
 class PrintableStream : private std::streambuf {
  public:
-  explicit PrintableStream(std::ostream& stream);
+  using Paint = std::function<std::string(std::string_view lines)>;
+
+  /// @param paint  what whole lines that are printable look like; they are then held back until the stream is flushed
+  explicit PrintableStream(std::ostream& stream, Paint paint = {});
   ~PrintableStream() override;
   PrintableStream(const PrintableStream&) = delete;
   PrintableStream& operator=(const PrintableStream&) = delete;
@@ -21,10 +26,14 @@ class PrintableStream : private std::streambuf {
   int_type overflow(int_type c) override;
   int sync() override;
   bool pass(std::size_t size);
+  bool pass_painted(std::size_t size);
+  bool hand_on(const std::string& text);
 
   std::ostream& stream_;
   std::streambuf* sink_;
-  std::string begun_;  ///< what has come and is not handed on: bytes of a character whose end is still to come
+  Paint paint_;
+  std::string begun_;      ///< what has come and is not handed on: bytes of a character whose end is still to come
+  std::string unpainted_;  ///< printable text that is held back
 };
 
 }  // namespace pkm

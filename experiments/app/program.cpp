@@ -1,5 +1,7 @@
 #include "experiments/app/program.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -19,6 +21,7 @@
 #include "engine/mechanisms/all.hpp"
 #include "engine/storage/contained_reading.hpp"
 #include "engine/study/run_study.hpp"
+#include "experiments/app/colours.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/printable_stream.hpp"
@@ -134,7 +137,11 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
   if (argc > 0 && argv[0] == program_invocation_name) use_file_checker({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   Session session{catalogues, name.empty() ? "pkmopt" : name};
-  const PrintableStream out(std::cout), err(std::cerr);
+  const auto paint_on = [&session](int descriptor) -> PrintableStream::Paint {
+    if (!shows_colours(descriptor)) return {};
+    return [&session](std::string_view lines) { return painted(lines, session.program); };
+  };
+  const PrintableStream out(std::cout, paint_on(STDOUT_FILENO)), err(std::cerr, paint_on(STDERR_FILENO));
   const auto complain = [&session](const std::string& sentence, int exit_code) {
     std::cerr << excerpt(session.program, kLongestProgram) << ": " << sentence << '\n';
     return exit_code;

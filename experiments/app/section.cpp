@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
-#include "engine/core/printable.hpp"
 #include "engine/core/team.hpp"
-#include "experiments/app/print.hpp"
 
 namespace pkm {
 namespace {
@@ -103,57 +100,6 @@ double twice_area(const Section::Loop& loop) {
   return sum;
 }
 
-/// How an axis is drawn: in mm or degrees.
-struct Scale {
-  std::string title;
-  double unit = 1;  ///< of what is written, in SI
-  double lower = 0, upper = 0;
-  double pixel = 0, length = 0;  ///< where it begins, and how long it is, < 0 upwards
-
-  double at(double value) const { return pixel + length * (value - lower) / (upper - lower); }
-  /// Four to ten round numbers between the ends, in the unit written.
-  std::vector<double> ticks() const {
-    const double span = (upper - lower) / unit, power = std::pow(10, std::floor(std::log10(span / 5)));
-    const double step = power * (span / power >= 20 ? 5 : span / power >= 8 ? 2 : 1);
-    std::vector<double> values;
-    for (double k = std::ceil(lower / unit / step); k * step <= upper / unit; ++k) values.push_back(k * step + 0.0);
-    return values;
-  }
-};
-
-/// What is feasible and a tenth more; the whole axis where nothing is.
-Scale scale_of(const Section& section, std::size_t i) {
-  const WorkspaceAxis& axis = section.axes[i];
-  const bool turns = axis.unit == "rad";
-  double least = axis.upper, greatest = axis.lower;
-  for (const Section::Loop& loop : section.loops)
-    for (const Point& point : loop) {
-      least = std::min(least, point[i]);
-      greatest = std::max(greatest, point[i]);
-    }
-  const double more = 0.1 * (greatest - least);
-  Scale scale{axis.name + (turns ? " [deg]" : " [mm]"), turns ? std::numbers::pi / 180 : 1e-3, axis.lower, axis.upper};
-  if (more > 0) scale.lower = least - more, scale.upper = greatest + more;
-  return scale;
-}
-
-std::string xml_text(const std::string& text) {
-  std::string result;
-  for (const char c : printable(text))
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return result;
-}
-
-std::string pixels(double value) { return formatted("%.2f", value); }
-
-std::string text_at(double x, double y, const std::string& style, const std::string& words) {
-  return "<text x=\"" + pixels(x) + "\" y=\"" + pixels(y) + "\" " + style + ">" + xml_text(words) + "</text>\n";
-}
-
-std::string line_between(double x1, double y1, double x2, double y2) {
-  return "<path class=\"grid\" d=\"M" + pixels(x1) + " " + pixels(y1) + "L" + pixels(x2) + " " + pixels(y2) + "\"/>\n";
-}
-
 }  // namespace
 
 Section section_of(const WorkspaceFields& workspace, const PoseMargin& margin) {
@@ -173,49 +119,6 @@ Section section_of(const WorkspaceFields& workspace, const PoseMargin& margin) {
     section.loops.push_back(std::move(loop));
   }
   return section;
-}
-
-std::string svg_picture(const Section& section, const std::vector<std::string>& lines) {
-  constexpr double kLeft = 90, kRight = 30, kBelow = 64, kLine = 20, kLongest = 560;
-  const double above = 24 + kLine * static_cast<double>(lines.size());
-  Scale across = scale_of(section, 0), up = scale_of(section, 1);
-  double width = kLongest, height = 0.75 * kLongest;
-  if (section.axes[0].unit == section.axes[1].unit) {  // undistorted, unless it is very thin
-    const double wide = across.upper - across.lower, high = up.upper - up.lower, most = std::max(wide, high);
-    width = std::max(kLongest * wide / most, 160.0);
-    height = std::max(kLongest * high / most, 160.0);
-  }
-  across.pixel = kLeft, across.length = width;
-  up.pixel = above + height, up.length = -height;
-
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + pixels(kLeft + width + kRight) +
-                    "\" height=\"" + pixels(above + height + kBelow) +
-                    "\" font-family=\"sans-serif\" font-size=\"13\">\n<style>.grid { stroke: #ddd }</style>\n"
-                    "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
-  for (std::size_t k = 0; k < lines.size(); ++k)
-    svg += text_at(kLeft, 24 + kLine * static_cast<double>(k), k == 0 ? "font-weight=\"bold\"" : "fill=\"#444\"",
-                   lines[k]);
-  for (const double tick : across.ticks()) {
-    const double x = across.at(tick * across.unit);
-    svg += line_between(x, up.pixel, x, above) +
-           text_at(x, up.pixel + 18, "text-anchor=\"middle\"", formatted("%.6g", tick));
-  }
-  for (const double tick : up.ticks()) {
-    const double y = up.at(tick * up.unit);
-    svg += line_between(kLeft, y, kLeft + width, y) +
-           text_at(kLeft - 8, y + 4, "text-anchor=\"end\"", formatted("%.6g", tick));
-  }
-  svg += "<path class=\"section\" fill=\"#4a7fb5\" fill-opacity=\"0.45\" fill-rule=\"evenodd\" stroke=\"#1f4e79\" d=\"";
-  for (const Section::Loop& loop : section.loops) {
-    for (std::size_t k = 0; k < loop.size(); ++k)
-      svg += (k == 0 ? "M" : "L") + pixels(across.at(loop[k][0])) + " " + pixels(up.at(loop[k][1]));
-    svg += "Z";
-  }
-  svg += "\"/>\n<rect x=\"" + pixels(kLeft) + "\" y=\"" + pixels(above) + "\" width=\"" + pixels(width) +
-         "\" height=\"" + pixels(height) + "\" fill=\"none\" stroke=\"#222\"/>\n";
-  svg += text_at(kLeft + width / 2, up.pixel + 44, "text-anchor=\"middle\"", across.title);
-  const std::string turned = "text-anchor=\"middle\" transform=\"rotate(-90 24 " + pixels(above + height / 2) + ")\"";
-  return svg + text_at(24, above + height / 2, turned, up.title) + "</svg>\n";
 }
 
 }  // namespace pkm

@@ -1,11 +1,10 @@
-// A section of a workspace over two coordinates: its outline, and a picture of it.
+// A section of a workspace over two coordinates: its outline.
 //
 // Nodes on a grid are feasible or not; marching squares walk between them, and each point of the outline lies where the
 // least margin of the pose changes its sign, found by halving the step between two nodes.
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "engine/report/workspace_fields.hpp"
@@ -21,9 +20,5 @@ struct Section {
 
 /// @param workspace  of two swept coordinates, whose ranges and held values are taken
 Section section_of(const WorkspaceFields& workspace, const PoseMargin& margin);
-
-/// The section as SVG, lengths in mm and angles in degrees.
-/// @param lines  that stand above it, the title first
-std::string svg_picture(const Section& section, const std::vector<std::string>& lines);
 
 }  // namespace pkm

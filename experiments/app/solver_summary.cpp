@@ -11,17 +11,6 @@ namespace {
 
 constexpr std::size_t kMostStarts = 12, kMostStartsOnFront = 20;  // that a table shows
 
-/// "3.47 rad/m" -> per mm for lengths, per degree for angles: what an engineer thinks in.
-struct Step {
-  double size;
-  std::string unit;
-};
-Step handy(const std::string& unit) {
-  if (unit == "m") return {1e-3, "mm"};
-  if (unit == "rad") return {3.14159265358979323846 / 180, "deg"};
-  return {1, unit};
-}
-
 /// The starts, best end first; as they come where there are several objectives.
 std::vector<std::size_t> by_end(const ProblemRecord& problem, const StageRecord& stage) {
   std::vector<std::size_t> order(stage.starts.size());

@@ -8,7 +8,9 @@
 #include "engine/report/workspace_export.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/cube.hpp"
 #include "experiments/app/grid.hpp"
+#include "experiments/app/picture.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/section.hpp"
 #include "experiments/app/slices.hpp"
@@ -18,10 +20,13 @@
 namespace pkm {
 namespace {
 
-struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs {
+struct WorkspaceArguments : DesignArguments, ModeArguments, GridArguments, WorkspaceOutputs, CubeArguments {
   std::vector<std::string> held, cut;
-  std::string csv, html, svg;
+  std::string csv, html, svg, png;
   int threads = 0;
+
+  /// The option that asks for a picture of a slice; "": none does.
+  std::string picture() const { return !svg.empty() ? "--svg" : !png.empty() ? "--png" : ""; }
 };
 
 /// Feasible cells lie at an end of a range that is given.
@@ -38,17 +43,17 @@ bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges
 }
 
 /// Throws ConfigError where a workspace is not one over two coordinates.
-void expect_plane(const WorkspaceFields& workspace) {
+void expect_plane(const WorkspaceFields& workspace, const std::string& option) {
   std::vector<std::string> names;
   for (const WorkspaceAxis& axis : workspace.axes) names.push_back(axis.name);
   if (names.size() != 2)
-    throw ConfigError({"", 0, "--svg"}, "a workspace over " + join(names),
+    throw ConfigError({"", 0, option}, "a workspace over " + join(names),
                       names.size() > 2 ? "a slice of it, such as that of --cut " + names.back() + "=0"
                                        : "a workspace over two coordinates");
 }
 
 /// A picture of a workspace over two coordinates.
-std::string section_picture(const Target& target, const WorkspaceFields& workspace, Printout& out) {
+Picture section_picture(const Target& target, const WorkspaceFields& workspace, Printout& out) {
   const Section section = section_of(workspace, PoseMargin(*target.mechanism, target.parameters, target.limits));
   const std::string& unit = workspace.volume_unit;
   out.say("area", section.area, number(section.area, unit) + ", within the outline that is drawn");
@@ -59,7 +64,7 @@ std::string section_picture(const Target& target, const WorkspaceFields& workspa
                                        : formatted("%.6g mm", 1e3 * axis.lower)));
   std::vector<std::string> lines = {title_of(target), "area " + formatted("%.4g", section.area) + " " + unit};
   if (!held.empty()) lines.insert(lines.begin() + 1, join(held));
-  return svg_picture(section, lines);
+  return picture_of(section, lines);
 }
 
 /// Least and greatest value of each axis at which a cell is feasible: the cells' outer faces. Absent: none is.
@@ -149,7 +154,7 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
 
 std::string workspace(const Target& target, const WorkspaceArguments& arguments, Printout& out) {
   std::vector<std::string> files = files_of(arguments, target);
-  for (const std::string& file : {arguments.csv, arguments.html, arguments.svg})
+  for (const std::string& file : {arguments.csv, arguments.html, arguments.svg, arguments.png})
     if (!file.empty()) files.push_back(file);
   const Existing existing = if_forced(arguments.force);
   check_outputs(files, target.files, existing);
@@ -160,14 +165,15 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     if (!arguments.held.empty()) slices = set_held(plan, target.info(), arguments.held);
     add_cuts(slices, plan, target.info(), arguments.cut);
     if (!slices.empty() && !arguments.html.empty())
-      throw ConfigError({"", 0, "--html"}, "a slice of a workspace", "a whole one; --svg draws slices");
+      throw ConfigError({"", 0, "--html"}, "a slice of a workspace", "a whole one; --svg and --png draw slices");
     auto ranges_given = set_grid(plan, target, arguments, kPictureCells, kMostCells);
     cut(plan, target, slices, ranges_given);
     const std::string mode = known_mode(target.info(), arguments);
     WorkspaceFields found = fields_of(target, plan, mode);
     found.touches_box = touches(found, ranges_given);
     flatten(found, target.info(), slices);
-    if (!arguments.svg.empty()) expect_plane(found);
+    if (!arguments.picture().empty()) expect_plane(found, arguments.picture());
+    expect_cube(found, arguments);
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {
@@ -176,7 +182,11 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
     tell_workspace(target, found, out);
-    if (!arguments.svg.empty()) write_file(arguments.svg, section_picture(target, found, out), existing);
+    tell_cube(found, arguments, out);
+    if (arguments.picture().empty()) return;
+    const Picture picture = section_picture(target, found, out);
+    if (!arguments.svg.empty()) write_file(arguments.svg, svg_file(picture), existing);
+    if (!arguments.png.empty()) write_file(arguments.png, png_file(picture), existing);
   });
   out.json["files"] = files;
   for (const std::string& file : files) out.text += "wrote " + file + '\n';
@@ -203,11 +213,14 @@ void add_workspace(CLI::App& app, Session& session) {
   add_option(command, "--html FILE", arguments.html, "Write a page with plots of the design to this file");
   add_option(command, "--svg FILE", arguments.svg,
              "Draw a workspace over two coordinates, such as a slice, to this file");
+  add_option(command, "--png FILE", arguments.png, "The same picture as dots");
   add_output_by_ending(command, {{".csv", &arguments.csv},
                                  {".html", &arguments.html},
+                                 {".png", &arguments.png},
                                  {".stl", &arguments.stl},
                                  {".svg", &arguments.svg},
                                  {".vtkhdf", &arguments.vtk}});
+  add_cube_options(command, arguments);
   add_threads(command, arguments.threads);
 }
 

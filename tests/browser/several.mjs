@@ -23,6 +23,37 @@ for (const [i, study] of shown.entries()) {
 await page.draw("front"); // only the second has one
 await page.close();
 
+/** The comparison of a study and the same of another seed. */
+async function compared(toml) {
+  const runs = ["1", "2"].map((seed) => {
+    const file = path.join(folder, path.basename(toml, ".toml") + "-" + seed + ".h5");
+    pkmopt("run", toml, "--output", file, "--seed", seed, "--force", "--quiet");
+    return file;
+  });
+  const html = path.join(folder, path.basename(toml, ".toml") + "-compared.html");
+  pkmopt("report", ...runs, "--output", html, "--force");
+  const both = await Page.open(html);
+  await both.draw("comparison");
+  const titles = await both.page.locator("#comparison h3").allInnerTexts();
+  const traces = await both.page.locator("#comparison .plot").evaluateAll((plots) =>
+    plots.map((plot) => plot.data.map(({ type }) => type).join(" ")),
+  );
+  await both.screenshots(folder, path.basename(toml, ".toml") + "-compared", ["comparison"]);
+  const table = await both.text("#comparison");
+  await both.close();
+  return { titles, traces, table };
+}
+const forces = await compared(path.join(studies, "3crr-r-cru.toml"));
+assert.ok(forces.titles.includes("Drive forces, cycle"), forces.titles.join());
+assert.ok(forces.traces.includes("mesh3d mesh3d"), "workspaces over each other");
+assert.match(forces.table, /3crr-r-cru-1\.h5[^]*3crr-r-cru-2\.h5/); // of one name
+for (const row of [/\bdci\s+objective/, /workspace-volume margin\s+constraint/]) assert.match(forces.table, row);
+
+const plane = path.join(folder, "five-bar.toml");
+const bar = path.join(studies, "..", "..", "..", "experiments", "mechanisms", "five-bar.toml");
+pkmopt("new", "study", bar, "-o", plane, "--force");
+assert.ok((await compared(plane)).traces.includes("contour contour"), "outlines over each other");
+
 const one = path.join(folder, "one.html");
 pkmopt("workspace", "3crr-r-cru", "--set", "l=50mm", "--html", one, "--force");
 const design = await Page.open(one, { scheme: "dark" });

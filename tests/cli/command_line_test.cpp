@@ -40,8 +40,8 @@ TEST(CliErrors, BadInputIsExitCodeTwoAndOneSentence) {
       {{"pose", mechanism}, "pose: --at is required (see 'pkmopt pose --help')"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
-       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certain, --threads, "
-       "--instruction-set; did you mean '--json'?"},
+       "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --certain, "
+       "--sensitivity, --tolerance, --threads, --instruction-set; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},

@@ -145,7 +145,7 @@ TEST_F(ExportProgram, WorkspaceSaysWhatEvaluateSays) {
 
 TEST_F(ExportProgram, EndsOfTheExtentThatAreRoundingAreZero) {
   ASSERT_EQ(run({"workspace", "3crr-r-cru", "--cells", "x=8,y=8,z=8"}), 0) << output_;
-  EXPECT_THAT(output_, HasSubstr("  y  0 m .. 0.4 m "));
+  EXPECT_THAT(output_, HasSubstr("  y   0 m .. 0.4 m "));
   EXPECT_THAT(output_, HasSubstr(" of 0 m .. 0.4 m "));
 }
 

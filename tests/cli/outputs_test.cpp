@@ -58,7 +58,7 @@ TEST(CliOutputs, TheEndingSaysWhatAFileIs) {
     return refused.err;
   };
   EXPECT_EQ(refusal({"-o", "w.dat"}),
-            "pkmopt: -o: found 'w.dat'; expected a file that ends in one of .csv, .html, .stl, .svg, .vtkhdf\n");
+            "pkmopt: -o: found 'w.dat'; expected a file that ends in one of .csv, .html, .png, .stl, .svg, .vtkhdf\n");
   EXPECT_EQ(refusal({"--csv", "a.csv", "-o", "b.csv"}),
             "pkmopt: -o: found 'b.csv' beside 'a.csv'; expected one file of a kind\n");
 }

@@ -29,6 +29,7 @@ const std::vector<Library> kLibraries = {
     {"Ip", {"engine/optimisers"}},
     {"nlohmann/", {"engine/report", "experiments/app"}},
     {"CLI/", {"experiments/app"}},
+    {"zlib.h", {"experiments/app"}},
 };
 // May be included everywhere.
 const Words kSystem = {"Eigen/", "sys/", "unistd.h", "fcntl.h", "sched.h", "signal.h", "spawn.h"};

@@ -1,4 +1,4 @@
-// Several studies beside each other: results, convergence, best designs.
+// Several studies beside each other: results, convergence, best designs, their workspaces and forces.
 
 function studyColour(i) {
   return seriesColours[i % seriesColours.length];
@@ -74,18 +74,117 @@ function bestCurve(study, k) {
   return { x, y };
 }
 
-/** The best designs' workspaces over each other, of studies that sweep the same three coordinates. */
-function addOverlays(studies, grid) {
+/** What the best designs come to, a column for each study: objectives, reports, margins of constraints. */
+function resultsTable(studies) {
+  const kinds = ["objective", "report", "constraint"],
+    found = new Map(); // rows by kind, name and unit
+  for (const kind of kinds)
+    studies.forEach((study, i) => {
+      for (const row of study.summary.table?.rows ?? []) {
+        if (row.kind !== kind) continue;
+        const key = [kind, row.name, row.unit].join("|");
+        if (!found.has(key)) found.set(key, { row, values: studies.map(() => "–") });
+        found.get(key).values[i] = (isResult(row) ? result : measured)(row.values[0], row.unit);
+      }
+    });
+  const rows = [...found.values()].map(({ row, values }) => [
+    row.name + (row.kind === "constraint" ? " margin" : ""),
+    row.kind,
+    ...values,
+  ]);
+  return element(
+    "div",
+    "panel",
+    element("h3", "", "Best designs in numbers"),
+    simpleTable(["quantity", "what", ...studies.map((study) => study.name)], rows),
+  );
+}
+
+/** The studies whose `item`s have the same key; those that are alone are left out. */
+function together(studies, itemsOf) {
   const groups = new Map();
   studies.forEach((study, i) => {
-    const packed = study.workspace?.designs[0];
-    if (!packed?.surface) return;
-    const swept = packed.axes.map((axis) => `${axis.name} [${axis.unit}]`).join(", ");
-    if (!groups.has(swept)) groups.set(swept, []);
-    groups.get(swept).push({ study, i, cells: (packed.cells ??= new Cells(packed)) });
+    for (const { key, ...item } of itemsOf(study)) {
+      if (!groups.has(key)) groups.set(key, []);
+      groups.get(key).push({ study, i, ...item });
+    }
   });
-  for (const those of groups.values()) {
-    if (those.length < 2) continue;
+  return [...groups.values()].filter((group) => group.length > 1);
+}
+
+/** What a motion of the same name asks of the drives of several best designs: the largest of all of one unit. */
+function addForces(studies, grid) {
+  const drives = ({ motions }) =>
+    (motions?.motions ?? []).flatMap((motion) =>
+      [...new Set(motions.joints.map((joint) => joint.unit))].flatMap((unit) => {
+        const forces = motion.designs[0]?.forces;
+        if (!forces) return [];
+        const curves = forces.filter((_, j) => motions.joints[j].unit === unit).map(unpack);
+        return [{ key: motion.name + "|" + unit, motion, unit, curves }];
+      }),
+    );
+  for (const those of together(studies, drives)) {
+    const [title, name, unit, scale] = motionColumns.forces[those[0].unit];
+    addPlot(grid, {
+      title: `${title}, ${those[0].motion.name}`,
+      caption: "The largest of all drives at each time, of the best designs.",
+      size: "half",
+      height: 360,
+      make: () => ({
+        data: those.map(({ study, i, motion, curves }) => ({
+          type: "scatter",
+          mode: "lines",
+          x: timesOf(motion),
+          y: Array.from(curves[0], (_, k) => scale * Math.max(...curves.map((curve) => Math.abs(curve[k])))),
+          name: label(study.name),
+          line: { color: studyColour(i), width: 2 },
+          hovertemplate: `%{y:.4g} ${label(unitText(unit))} at %{x:.4g} s<extra>${label(study.name)}</extra>`,
+        })),
+        layout: {
+          xaxis: axis("time [s]"),
+          yaxis: axis(axisName("largest " + name, unit), { rangemode: "tozero" }),
+          legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
+        },
+      }),
+    });
+  }
+}
+
+/** The outline of the feasible cells of a plane; a ring of others around the grid closes it. */
+function outlineTrace(cells, [across, up], name, colour) {
+  const shown = (axis) =>
+    [-1, ...Array(cells.axes[axis].cells + 1).keys()].map(
+      (k) => cells.centre(axis, k) * shownScale(cells.axes[axis].unit),
+    );
+  const rows = cells.matrix(across, up, (cell) => cells.feasible[cell]).map((row) => [0, ...row, 0]),
+    none = rows[0].map(() => 0);
+  return {
+    type: "contour",
+    x: shown(across),
+    y: shown(up),
+    z: [none, ...rows, none],
+    contours: { start: 0.5, end: 0.5, size: 1, coloring: "lines" },
+    colorscale: [
+      [0, colour],
+      [1, colour],
+    ],
+    line: { width: 2 },
+    showscale: false,
+    showlegend: true,
+    hoverinfo: "skip",
+    name,
+  };
+}
+
+/** The best designs' workspaces over each other, of studies that sweep the same two or three coordinates. */
+function addOverlays(studies, grid) {
+  const workspaces = ({ workspace }) => {
+    const packed = workspace?.designs[0];
+    if (!packed || packed.axes.length < 2) return [];
+    const key = packed.axes.map((axis) => `${axis.name} [${axis.unit}]`).join(", ");
+    return [{ key, cells: (packed.cells ??= new Cells(packed)) }];
+  };
+  for (const those of together(studies, workspaces)) {
     const all = those.map(({ cells }) => cells),
       order = drawingOrder(all[0].axes);
     addPlot(grid, {
@@ -100,22 +199,32 @@ function addOverlays(studies, grid) {
       ],
       size: "half",
       height: 460,
-      make: () => ({
-        data: those.map(({ study, i, cells }) =>
-          surfaceTrace(cells, null, null, order, {
-            name: label(study.name),
-            color: studyColour(i),
-            opacity: 0.4,
-            showlegend: true,
-          }),
-        ),
-        layout: { scene: workspaceScene(all, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
-      }),
+      make: () =>
+        order.length === 2
+          ? {
+              data: those.map(({ study, i, cells }) => outlineTrace(cells, order, label(study.name), studyColour(i))),
+              layout: planeAxes(all, ...order),
+            }
+          : {
+              data: those.map(({ study, i, cells }) =>
+                surfaceTrace(cells, null, null, order, {
+                  name: label(study.name),
+                  color: studyColour(i),
+                  opacity: 0.4,
+                  showlegend: true,
+                }),
+              ),
+              layout: { scene: workspaceScene(all, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+            },
     });
   }
 }
 
-function showComparison(studies, section) {
+/** @param given  those of one name are told apart by their files */
+function showComparison(given, section) {
+  const studies = given.map((study) =>
+    given.some((other) => other !== study && other.name === study.name) ? { ...study, name: study.file } : study,
+  );
   section.append(
     element(
       "p",
@@ -126,7 +235,7 @@ function showComparison(studies, section) {
   );
   const grid = element("div", "grid");
   section.append(grid);
-  grid.append(comparisonTable(studies));
+  grid.append(comparisonTable(studies), resultsTable(studies));
   const names = [
     ...new Map(studies.flatMap((s) => s.problem.objectives.map((o) => [o.name + "|" + o.unit, o]))).values(),
   ];
@@ -162,6 +271,7 @@ function showComparison(studies, section) {
       });
   }
   addOverlays(studies, grid);
+  addForces(studies, grid);
   const variables = [
     ...new Map(studies.flatMap((s) => s.problem.variables.map((v) => [v.name + "|" + v.unit, v]))).values(),
   ];

@@ -1,0 +1,28 @@
+// The largest cube of poses within a workspace, or square where two coordinates are swept.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/report/workspace_fields.hpp"
+#include "experiments/app/commands.hpp"
+#include "experiments/app/print.hpp"
+
+namespace pkm {
+
+struct CubeArguments {
+  bool cube = false;
+  std::vector<std::string> least;
+};
+/// Declares --cube and --least.
+void add_cube_options(CLI::App& command, CubeArguments& arguments);
+
+/// Throws ConfigError where a cube is asked for and the workspace is not one over two or three lengths, or has not the
+/// fields that --least names.
+void expect_cube(const WorkspaceFields& workspace, const CubeArguments& arguments);
+
+/// Tells the largest cube of cells that are feasible and have the least values asked for, if one is asked for. Of
+/// several, the one in their midst.
+void tell_cube(const WorkspaceFields& workspace, const CubeArguments& arguments, Printout& out);
+
+}  // namespace pkm

@@ -1,0 +1,57 @@
+#include "experiments/app/link_files.hpp"
+
+#include "engine/storage/safe_file.hpp"
+#include "experiments/app/axes.hpp"
+#include "experiments/app/cad.hpp"
+#include "experiments/app/urdf.hpp"
+#include "experiments/app/workspace_outputs.hpp"
+
+namespace pkm {
+namespace {
+
+/// The links at a pose nearby, on either side; empty where none assembles.
+std::vector<PlacedLink> moved_links(const Links& mechanism, const Target& target, const std::string& mode,
+                                    const Pose<double>& pose) {
+  constexpr double kNear = 1e-4;  // [m or rad]; of each coordinate another part, so that no way of moving hides another
+  for (const double step : {kNear, -kNear}) {
+    Pose<double> moved = pose;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += step / static_cast<double>(i + 1);
+    auto links = mechanism.place(target.parameters, moved, mode);
+    if (!links.empty()) return links;
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_link_files(CLI::App& command, LinkFiles& files) {
+  add_option(command, "--stl FILE", files.stl, "Write the links' surfaces to this file, as binary STL in m");
+  add_option(command, "--dxf FILE", files.dxf, "Write the links' axes to this file, as DXF in m");
+  add_option(command, "--urdf FILE", files.urdf, "Write the links as a tree with fixed joints to this file, as URDF");
+  add_output_by_ending(command, {{".dxf", &files.dxf}, {".stl", &files.stl}, {".urdf", &files.urdf}});
+  command.add_flag("--force", files.force, "Overwrite files that exist");
+}
+
+void write_links(const Target& target, const std::string& mode, const Pose<double>& pose, const LinkFiles& files,
+                 Printout& out) {
+  const Existing existing = if_forced(files.force);
+  check_outputs({files.stl, files.dxf, files.urdf}, target.files, existing);
+  if (files.stl.empty() && files.dxf.empty() && files.urdf.empty()) return;
+  const MechanismInfo& info = target.info();
+  const Links& mechanism = needed(target.mechanism->links(), "a file of links", "links", info);
+  const std::vector<PlacedLink> links = mechanism.place(target.parameters, pose, mode);
+  if (links.empty()) return;  // the pose does not assemble, which is told
+  const std::string title = "links of " + info.name + ", " + target.words;
+  const auto write = [&](const std::string& file, const std::string& bytes) {
+    write_file(file, bytes, existing);
+    out.json["files"].push_back(file);
+    out.text += "\nwrote " + file + '\n';
+  };
+  if (!files.stl.empty()) write(files.stl, links_stl(links, title));
+  if (!files.dxf.empty()) write(files.dxf, links_dxf(links));
+  if (!files.urdf.empty())
+    write(files.urdf, links_urdf(links, moved_links(mechanism, target, mode, pose), info.name,
+                                 title + ", at " + axes_text(info.coordinates, pose)));
+}
+
+}  // namespace pkm

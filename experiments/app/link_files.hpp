@@ -1,0 +1,21 @@
+// The files of a mechanism's links at a pose that a command writes.
+#pragma once
+
+#include <string>
+
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+
+struct LinkFiles {
+  std::string stl, dxf, urdf;
+  bool force = false;
+};
+/// Declares --stl, --dxf, --urdf, -o and --force.
+void add_link_files(CLI::App& command, LinkFiles& files);
+
+/// Writes those that are asked for; none where the pose does not assemble. Throws ConfigError.
+void write_links(const Target& target, const std::string& mode, const Pose<double>& pose, const LinkFiles& files,
+                 Printout& out);
+
+}  // namespace pkm

@@ -1,0 +1,80 @@
+#include "experiments/app/motor_fits.hpp"
+
+#include <algorithm>
+
+#include "engine/dynamics/coupling.hpp"
+#include "engine/setup/motor_table.hpp"
+#include "experiments/app/axes.hpp"
+
+namespace pkm {
+namespace {
+
+/// What each joint does along the motion, by joint.
+std::vector<std::vector<JointLoad>> loads_of(const DriveTrains& trains, const Trajectory& trajectory) {
+  std::vector<std::vector<JointLoad>> loads(trains.size());
+  for (const TrajectoryPoint& p : trajectory.points)
+    for (std::size_t i = 0; i < trains.size(); ++i) {
+      const double acceleration = (*p.accelerations)[i];
+      loads[i].push_back({(*p.forces)[i] - trains[i].reflected() * acceleration, (*p.speeds)[i], acceleration});
+    }
+  return loads;
+}
+
+/// Mean over the samples of the largest coupling index where every joint has this motor.
+double coupling_with(const Motor& motor, const Mechanism& mechanism, std::span<const double> parameters,
+                     const std::string& mode, const Trajectory& trajectory) {
+  double sum = 0;
+  for (const TrajectoryPoint& p : trajectory.points) {
+    const MotionState<double> state{p.motion.pose, p.motion.velocity};
+    PoseDynamics<double> d;
+    mechanism.dynamics()->equations(parameters, mode, {&state, 1}, {&d, 1});
+    AxisMatrix<double> M_q = joint_inertia(d);
+    for (std::size_t i = 0; i < M_q.rows(); ++i) {
+      DriveTrain train = (*mechanism.drive_trains())[i];
+      const double own = train.reflected();
+      train.rotor = motor.rotor;
+      M_q(i, i) += train.reflected() - own;
+    }
+    sum += std::ranges::max(coupling_indices(M_q));
+  }
+  return sum / static_cast<double>(trajectory.points.size());
+}
+
+}  // namespace
+
+void tell_motors(const Target& target, const std::string& mode, const Trajectory& trajectory, const std::string& file,
+                 Printout& out) {
+  const Mechanism& mechanism = *target.mechanism;
+  const DriveTrains& trains = *mechanism.drive_trains();
+  const auto& joints = target.info().joints;
+  const auto loads = loads_of(trains, trajectory);
+  std::vector<Row> rows = {{"", "does it", "reserve", "bounded by", "coupling index"}};
+  out.json["motors"] = Json::array();
+  for (const Motor& motor : load_motors_toml(file)) {
+    MotorFit worst;
+    std::string where;
+    Json reserves = Json::object();
+    for (std::size_t i = 0; i < trains.size(); ++i) {
+      const MotorFit here = fit(motor, trains[i], loads[i]);
+      reserves[joints[i].name] = {{"reserve", here.reserve},
+                                  {"bounded_by", here.bounded_by},
+                                  {"peak_torque", here.peak_torque},
+                                  {"rms_torque", here.rms_torque},
+                                  {"speed", here.speed}};
+      if (!where.empty() && !(here.reserve < worst.reserve)) continue;
+      worst = here;
+      where = joints[i].name;
+    }
+    const double coupling = coupling_with(motor, mechanism, target.parameters, mode, trajectory);
+    rows.push_back({motor.name, worst.reserve >= 1 ? "yes" : "no", number(worst.reserve),
+                    worst.bounded_by + " of " + where, number(coupling)});
+    out.json["motors"].push_back({{"name", motor.name},
+                                  {"does_it", worst.reserve >= 1},
+                                  {"reserve", worst.reserve},
+                                  {"joints", reserves},
+                                  {"dci", coupling}});
+  }
+  out.section("motors: what they can over what the motion asks, and the mean largest coupling index", rows);
+}
+
+}  // namespace pkm

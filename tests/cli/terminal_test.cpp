@@ -1,0 +1,119 @@
+// What a terminal shows: the text that goes into a pipe, with colours where a terminal has them and nobody forbids
+// them.
+#include <pty.h>
+
+#include <map>
+#include <regex>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiments/app/colours.hpp"
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::vector<std::string> kPose = {"pose",    "4ppa-2par",     "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg",
+                                        "--limit", "beta_max=10deg"};
+
+/// What the program writes, on stdout and stderr, to a terminal of its own.
+std::string on_terminal(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment = {},
+                        const std::string& folder = ".") {
+  arguments.insert(arguments.begin(), PKM_PROGRAM);
+  std::vector<char*> argv;
+  for (const auto& word : arguments) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child < 0) throw std::runtime_error("no pseudo-terminal");
+  if (child == 0) {
+    unsetenv("NO_COLOR");
+    setenv("TERM", "xterm-256color", 1);
+    for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
+    if (chdir(folder.c_str()) != 0) _exit(126);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  std::string text;
+  char part[4096];
+  for (ssize_t size; (size = read(terminal, part, sizeof part)) > 0;) text.append(part, static_cast<std::size_t>(size));
+  close(terminal);
+  int status = 0;
+  waitpid(child, &status, 0);
+  std::erase(text, '\r');  // of the terminal's line ends
+  return text;
+}
+
+std::string without_colours(const std::string& text) {
+  return std::regex_replace(text, std::regex("\x1b\\[[0-9]*m"), "");
+}
+
+TEST(CliTerminal, HeadingsAndVerdictsHaveColours) {
+  const std::string text = on_terminal(kPose);
+  EXPECT_THAT(text, HasSubstr("\n\x1b[1mmargins (>= 0 holds)\x1b[0m\n"));
+  EXPECT_THAT(text, HasSubstr("  \x1b[32mholds\x1b[0m\n"));
+  EXPECT_THAT(text, HasSubstr("  \x1b[31mbroken\x1b[0m\n"));
+  EXPECT_THAT(text, HasSubstr("\x1b[31mno: limit beta_max is broken\x1b[0m\n"));
+  EXPECT_EQ(without_colours(text), pkmopt(kPose).out);
+}
+
+TEST(CliTerminal, PipesHaveNoColoursNorHasATerminalThatIsToHaveNone) {
+  const std::string text = pkmopt(kPose).out;
+  EXPECT_THAT(text, Not(HasSubstr("\x1b")));
+  EXPECT_EQ(on_terminal(kPose, {{"NO_COLOR", "1"}}), text);
+  EXPECT_EQ(on_terminal(kPose, {{"TERM", "dumb"}}), text);
+}
+
+TEST(CliTerminal, ComplaintsAreRed) {
+  EXPECT_THAT(on_terminal({"pose"}), HasSubstr("\x1b[31mpkmopt: \x1b[0mpose: --at is required"));
+}
+
+TEST(CliTerminal, NamesOfOthersDoNotPaint) {
+  const StudyFolder folder;
+  folder.write("esc.toml",
+               "[study]\nname = \"\\u001b[31mred\"\n[mechanism]\ntype = \"4ppa-2par\"\n[variables]\n"
+               "a = { min = 0.1, max = 0.2 }\n[[objective]]\ntype = \"workspace-volume\"\n[[stage]]\n"
+               "optimiser = \"sweep\"\n");
+  EXPECT_THAT(on_terminal({"check", "esc.toml"}, {}, folder.path()), HasSubstr("\\x1b[31mred"));
+}
+
+TEST(Colours, EndOfARun) {
+  EXPECT_EQ(painted("study: finished, 420 evaluations\n"
+                    "stage 1: ga, ended: generation limit\n"
+                    "\n"
+                    "                     best    baseline  gain\n"
+                    "  volume        m^3  0.1727  0.0797    +116.60 %\n"
+                    "  force         N    12.5    11.25     +11.11 %, worse\n"
+                    "\n"
+                    "active: R at its lower bound\n"
+                    "verdict: infeasible: no design reaches it\n"
+                    "next: pkmopt report study.h5\n",
+                    "pkmopt"),
+            "study: finished, 420 evaluations\n"
+            "stage 1: ga, ended: generation limit\n"
+            "\n"
+            "                     \x1b[2mbest\x1b[0m    \x1b[2mbaseline\x1b[0m  \x1b[2mgain\x1b[0m\n"
+            "  volume        m^3  0.1727  0.0797    \x1b[32m+116.60 %\x1b[0m\n"
+            "  force         N    12.5    11.25     \x1b[31m+11.11 %, worse\x1b[0m\n"
+            "\n"
+            "\x1b[33mactive:\x1b[0m\x1b[33m R at its lower bound\x1b[0m\n"
+            "\x1b[31mverdict:\x1b[0m infeasible: no design reaches it\n"
+            "\x1b[2mnext:\x1b[0m\x1b[1m pkmopt report study.h5\x1b[0m\n");
+}
+
+TEST(Colours, WarningsNamesOfColumnsAndWhatIsLeftAsItIs) {
+  EXPECT_EQ(painted("own: warning: a box is touched\nown: study.toml:3: found\n", "own"),
+            "own: \x1b[33mwarning:\x1b[0m a box is touched\n\x1b[31mown: \x1b[0mstudy.toml:3: found\n");
+  EXPECT_EQ(painted("{\n  \"active\": 1,\n  \"next: \": \"yes\"\n}\n", "pkmopt"),
+            "{\n  \"active\": 1,\n  \"next: \": \"yes\"\n}\n");
+  EXPECT_EQ(painted("  name  unit  default\n  a     m     0.2\n", "pkmopt"),
+            "  \x1b[2mname\x1b[0m  \x1b[2munit\x1b[0m  \x1b[2mdefault\x1b[0m\n  a     m     0.2\n");
+}
+
+}  // namespace
+}  // namespace pkm::testing

@@ -1,0 +1,2 @@
+#!/bin/sh
+echo "pkmopt 99.0 (revision)"
