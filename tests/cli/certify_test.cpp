@@ -78,6 +78,51 @@ TEST_F(Certify, DecidesBoxesOfPoses) {
   EXPECT_THAT(across.out, HasSubstr("does not hold at x = "));
 }
 
+TEST_F(Certify, DecidesMotions) {
+  const std::string file = kMechanisms + "orthoglide.toml";
+  const auto points = [](const std::string& end) {
+    return "type = \"points\"\ntime = 0.5\npoints = [{ x = 0, y = 0, z = 0 }, { x = \"30 mm\", z = " + end + " }]\n";
+  };
+  folder_.write("inside.toml", points("0.02"));
+  folder_.write("leaves.toml", points("0.3"));
+  const auto inside = run({"certify", file, "--motion", "inside.toml", "--json"});
+  EXPECT_EQ(inside.exit_code, 0) << inside.err;
+  EXPECT_EQ(inside.json()["feasible"]["verdict"], "yes");
+  EXPECT_EQ(inside.json()["regular"]["verdict"], "yes");
+  EXPECT_EQ(inside.json()["duration"], 0.5);
+  EXPECT_TRUE(inside.json()["feasible"]["time"].is_null());
+  EXPECT_THAT(run({"certify", file, "--motion", "inside.toml"}).out, HasSubstr("everywhere along the motion"));
+
+  const auto leaves = run({"certify", file, "--motion", "leaves.toml", "--json"});
+  EXPECT_EQ(leaves.exit_code, 1);
+  EXPECT_THAT(leaves.err, HasSubstr("the motion is not feasible everywhere"));
+  EXPECT_EQ(leaves.json()["feasible"]["verdict"], "no");
+  EXPECT_TRUE(leaves.json()["regular"].is_null());
+  const double t = leaves.json()["feasible"]["time"];
+  // samples say the same, as far as they can
+  const auto sampled = run({"trajectory", file, "--motion", "leaves.toml", "--samples", "1001", "--json"}).json();
+  for (const auto& sample : sampled["samples"]) {
+    const double at = sample["time"];
+    const bool feasible = sample["feasible"];
+    EXPECT_TRUE(feasible || at >= t - 1e-5) << at;
+    EXPECT_TRUE(!feasible || at < t || at > t + 6e-4) << at;
+  }
+  EXPECT_THAT(run({"certify", file, "--motion", "leaves.toml"}).out, HasSubstr("does not hold at t = "));
+}
+
+TEST_F(Certify, RefusesMotionsInOneSentence) {
+  const std::string file = kMechanisms + "orthoglide.toml";
+  folder_.write("m.toml", "type = \"formulas\"\nduration = 1\nx = \"0.01*t\"\ny = 0\nz = 0\n");
+  EXPECT_EQ(run({"certify", file, "--motion", "m.toml"}).exit_code, 0);
+  EXPECT_THAT(run({"certify", file, "--motion", "missing.toml"}).err, HasSubstr("missing.toml"));
+  EXPECT_THAT(run({"certify", file, "--motion", "m.toml", "--box", "x=0:0.1,y=0:0.1,z=0:0.1"}).err,
+              HasSubstr("--motion: found --box beside it; expected one of them"));
+  EXPECT_THAT(run({"certify", file, "--motion", "m.toml", "--proof", "p"}).err, HasSubstr("proofs are of volumes"));
+  EXPECT_THAT(run({"certify", "quadrupteron", "--motion", "m.toml"}).err, HasSubstr("certify needs formulas"));
+  folder_.write("four.toml", "type = \"formulas\"\nduration = 1\nx = 0\ny = 0\nz = 0\nphi = 0\n");
+  EXPECT_THAT(run({"certify", file, "--motion", "four.toml"}).err, HasSubstr("phi"));
+}
+
 TEST_F(Certify, ProofsAreAccepted) {
   for (const std::string mechanism : {"orthoglide", "4ppa-2par", "five-bar", "rotary-delta", "gough"}) {
     proof_of(mechanism, mechanism == "rotary-delta" ? "0.8" : "0.3");
