@@ -123,6 +123,52 @@ TEST_F(Certify, RefusesMotionsInOneSentence) {
   EXPECT_THAT(run({"certify", file, "--motion", "four.toml"}).err, HasSubstr("phi"));
 }
 
+/// The study of a five-bar whose volumes have to be within certain bounds.
+class CertainVolumes : public Certify {
+ protected:
+  void SetUp() override {
+    folder_.write("s.toml", "[mechanism]\nfile = \"" + kMechanisms +
+                                "five-bar.toml\"\n[variables]\nl_a = { min = 0.2, max = 0.4 }\nl_b = { min = 0.25, max "
+                                "= 0.5 }\n[baseline]\nl_a = 0.25\nl_b = 0.35\n[workspace]\ncertain = "
+                                "1e-3\n[[objective]]\ntype = \"workspace-ratio\"\n[[stage]]\noptimiser = "
+                                "\"ga\"\npopulation = 6\ngenerations = 4\n[final]\nround = \"10 mm\"\n");
+  }
+};
+
+TEST_F(CertainVolumes, AreToldByRunShowAndExport) {
+  const auto ran = run({"run", "s.toml", "--threads", "1"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("volume, at least"));
+  EXPECT_THAT(ran.out, HasSubstr("volume, at most"));
+  EXPECT_THAT(run({"show", "s.h5"}).out, HasSubstr("volume, at least"));
+  const auto shown = run({"show", "s.h5", "--json"}).json();
+  for (const char* design : {"best", "rounded", "baseline"}) {
+    const auto& json = shown[design];
+    EXPECT_LE(json["certain"]["lower"], json["volume"]) << design;
+    EXPECT_GE(json["certain"]["upper"], json["volume"]) << design;
+    EXPECT_LE(json["certain"]["gap"], 1e-3) << design;
+  }
+  ASSERT_EQ(run({"export", "s.h5", "--csv", "tables"}).exit_code, 0);
+  std::ostringstream table;
+  table << std::ifstream(folder_.path() + "/tables/best.csv").rdbuf();
+  EXPECT_THAT(table.str(), HasSubstr("workspace,volume at least,m^2,"));
+  EXPECT_EQ(run({"run", "s.toml", "--threads", "2", "--output", "two.h5", "--quiet"}).exit_code, 0);
+  auto two = run({"show", "two.h5", "--json"}).json(), one = shown;
+  two.erase("seconds");
+  one.erase("seconds");
+  EXPECT_EQ(one, two);
+}
+
+TEST_F(CertainVolumes, AreCheckedByEvaluate) {
+  const auto found = run({"evaluate", "s.toml", "--json"});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_EQ(found.json()["certain"]["holds_volume"], true);
+  EXPECT_LE(found.json()["certain"]["gap"], 1e-3);
+  EXPECT_LE(run({"evaluate", "s.toml", "--certain", "1e-4", "--json"}).json()["certain"]["gap"], 1e-4);
+  EXPECT_THAT(run({"check", "s.toml"}).out, HasSubstr("within bounds of the gap 0.001"));
+  EXPECT_EQ(run({"check", "s.toml", "--json"}).json()["workspace"]["certain"], 1e-3);
+}
+
 TEST_F(Certify, ProofsAreAccepted) {
   for (const std::string mechanism : {"orthoglide", "4ppa-2par", "five-bar", "rotary-delta", "gough"}) {
     proof_of(mechanism, mechanism == "rotary-delta" ? "0.8" : "0.3");
