@@ -78,7 +78,8 @@ class BoxSearch {
             const BoundsOptions& options)
       : conditions_(conditions), matrices_(matrices), ranges_(ranges), options_(options) {
     for (std::size_t i = 0; i < workers(); ++i)
-      rooms_.push_back({conditions.room(), matrices ? matrices->room() : Matrices::Room()});
+      rooms_.push_back(
+          {conditions.room(), conditions.room(), conditions.room(), matrices ? matrices->room() : Matrices::Room()});
   }
 
   PosesCertificate run() {
@@ -120,7 +121,7 @@ class BoxSearch {
 
  private:
   struct Room {
-    Conditions::Room conditions;
+    Conditions::Room over, middle, corner;
     Matrices::Room matrices;
   };
 
@@ -136,14 +137,18 @@ class BoxSearch {
     std::vector<std::size_t> open;
     Place middle = box.side;
     for (Interval& side : middle) side = Interval(side.middle());
+    const std::size_t last = ranges_.size() - 1;
+    conditions_.enter(box.side, room.over);
+    conditions_.enter(middle, room.middle);
     for (const std::size_t k : box.open) {
-      const Slope slope = conditions_.slope(k, box.side, room.conditions);
-      if (slope.value.surely_holds()) continue;
-      const Interval at_middle = conditions_.value(k, middle, room.conditions);
-      if (slope.value.surely_fails() || at_middle.surely_fails()) {
+      const Interval value = conditions_.value(k, box.side[last], room.over);
+      if (value.surely_holds()) continue;
+      const Interval at_middle = conditions_.value(k, middle[last], room.middle);
+      if (value.surely_fails() || at_middle.surely_fails()) {
         box.fails = k;
         return;
       }
+      const Slope slope = conditions_.slope(k, box.side[last], room.over);
       if (slope.is_known &&
           (around(at_middle, middle, box.side, slope).surely_holds() || least(k, box.side, slope, room).surely_holds()))
         continue;
@@ -172,7 +177,8 @@ class BoxSearch {
       if (slope.by[axis].lower >= 0) corner[axis] = Interval(side[axis].lower);
       if (slope.by[axis].upper <= 0) corner[axis] = Interval(side[axis].upper);
     }
-    return conditions_.value(k, corner, room.conditions);
+    conditions_.enter(corner, room.corner);
+    return conditions_.value(k, corner[ranges_.size() - 1], room.corner);
   }
 
   /// Where the open conditions change most, as far as that is known; else the side that is most of the whole.
