@@ -26,6 +26,7 @@ JSON = [
     "simulate 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --forces rho3=8 --duration 10ms --step 1ms",
     "workspace 3crr-r-cru --cells x=8,y=8,z=8",
     "certify experiments/mechanisms/orthoglide.toml --gap 0.2",
+    "certify experiments/mechanisms/motors/rotary-delta.toml --motion cycle",
     "show study.h5",
 ]
 

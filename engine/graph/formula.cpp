@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-Formula::Formula(const std::string& text, const std::vector<std::string>& names) {
+Formula::Formula(const std::string& text, const std::vector<std::string>& names) : text_(text) {
   graph::Graph graph;
   std::vector<graph::Node> nodes;
   for (auto name = names.begin(); name != names.end(); ++name) {

@@ -29,6 +29,7 @@ class Formula {
   /// Throws std::invalid_argument with a sentence that names the place when the text is no formula of these names.
   Formula(const std::string& text, const std::vector<std::string>& names);
 
+  const std::string& text() const { return text_; }
   /// Positions in `names` of those that the formula uses, ascending.
   const std::vector<std::size_t>& used() const { return used_; }
 
@@ -48,6 +49,7 @@ class Formula {
   }
 
  private:
+  std::string text_;
   std::vector<std::size_t> used_;
   graph::Program program_;
 };

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "engine/graph/interval_step.hpp"
+
 namespace pkm::graph {
 
 Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<const Groups> stages)
@@ -74,39 +76,41 @@ void Program::run(std::size_t stage, std::span<S> registers) const {
 }
 
 /// A square of one number is less than a product of two from the same range.
-template <>
-void Program::run(std::size_t stage, std::span<Interval> registers) const {
-  for (const Step& step : stages_[stage].steps) {
-    const Interval& x = registers[step.from[0]];
-    const Interval& y = registers[step.from[1]];
-    Interval& to = registers[step.to];
-    switch (step.operation->code) {
-      case Code::add:
-        to = x + y;
-        break;
-      case Code::subtract:
-        to = x - y;
-        break;
-      case Code::multiply:
-        to = step.from[0] == step.from[1] ? square(x) : x * y;
-        break;
-      case Code::divide:
-        to = x / y;
-        break;
-      case Code::negate:
-        to = -x;
-        break;
-      case Code::sqrt:
-        to = sqrt(x);
-        break;
-      default: {
-        Interval arguments[kMostArguments];
-        for (std::size_t i = 0; i < kMostArguments; ++i)
-          if (i < step.count) arguments[i] = registers[step.from[i]];
-        to = std::get<Rule<Interval>>(step.operation->rules)(arguments, step.count);
-      }
+void run_step(const Program::Step& step, std::span<Interval> registers) {
+  const Interval& x = registers[step.from[0]];
+  const Interval& y = registers[step.from[1]];
+  Interval& to = registers[step.to];
+  switch (step.operation->code) {
+    case Code::add:
+      to = x + y;
+      break;
+    case Code::subtract:
+      to = x - y;
+      break;
+    case Code::multiply:
+      to = step.from[0] == step.from[1] ? square(x) : x * y;
+      break;
+    case Code::divide:
+      to = x / y;
+      break;
+    case Code::negate:
+      to = -x;
+      break;
+    case Code::sqrt:
+      to = sqrt(x);
+      break;
+    default: {
+      Interval arguments[kMostArguments];
+      for (std::size_t i = 0; i < kMostArguments; ++i)
+        if (i < step.count) arguments[i] = registers[step.from[i]];
+      to = std::get<Rule<Interval>>(step.operation->rules)(arguments, step.count);
     }
   }
+}
+
+template <>
+void Program::run(std::size_t stage, std::span<Interval> registers) const {
+  for (const Step& step : stages_[stage].steps) run_step(step, registers);
 }
 
 template void Program::run(std::size_t, std::span<double>) const;

@@ -47,6 +47,8 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
     return bare_->voxels() && (!has_rotors() || bare_->voxels()->take_rotors()) ? this : nullptr;
   }
   const Columns* columns() const override { return bare_->columns() ? this : nullptr; }
+  std::string why_no_columns() const override { return bare_->why_no_columns(); }
+  const CertainBounds* bounds() const override { return bare_->bounds(); }
   const Size* size() const override { return bare_->size(); }
   const DesignTests* design_tests() const override { return bare_->design_tests(); }
   const PoseMargins* pose_margins() const override { return bare_->pose_margins(); }

@@ -43,6 +43,8 @@ struct ColumnOptions {
   double tolerance = 1e-8;     ///< relative
   std::array<int, 2> nodes{};  ///< fixed nodes per piece and coordinate; 0: chosen from the tolerance
   std::optional<Box> box;      ///< cuts the workspace, where the mechanism's can be cut
+  std::optional<double> certain =
+      {};  ///< gap of certain bounds that the volume of a design that is kept must be within
 };
 
 struct SurveyPlan {

@@ -1,4 +1,5 @@
 #include "engine/core/error.hpp"
+#include "engine/graph/formula_reader.hpp"
 #include "engine/math/taylor.hpp"
 #include "engine/motion/motions.hpp"
 
@@ -14,17 +15,18 @@ Taylor at_time(const Formula& formula, double time) {
 }  // namespace
 
 std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, const Formula& input) {
-  return std::make_shared<const Motion>(motion->duration(), [motion, input](double time) {
+  const auto at = [motion, input](double time) {
     MotionSample sample = motion->at(time);
     const Taylor angle = at_time(input, time);
     sample.input = {angle.a, angle.d, angle.dd};
     return sample;
-  });
+  };
+  return std::make_shared<const Motion>(motion->duration(), at, [motion](TimeGraph& to) { return motion->write(to); });
 }
 
-std::shared_ptr<const Motion> formulas_of_time(std::vector<Formula> coordinates, double duration) {
+std::shared_ptr<const Motion> formulas_of_time(const std::vector<Formula>& coordinates, double duration) {
   PKM_EXPECTS(duration > 0);
-  return std::make_shared<const Motion>(duration, [coordinates = std::move(coordinates)](double time) {
+  const auto at = [coordinates](double time) {
     MotionSample sample;
     sample.time = time;
     sample.pose = sample.velocity = sample.acceleration = AxisVector<double>(coordinates.size());
@@ -35,6 +37,13 @@ std::shared_ptr<const Motion> formulas_of_time(std::vector<Formula> coordinates,
       sample.acceleration[i] = x.dd;
     }
     return sample;
+  };
+  return std::make_shared<const Motion>(duration, at, [coordinates](TimeGraph& to) {
+    std::vector<graph::Node> pose;
+    const graph::Node time = to.time.node();
+    for (const Formula& formula : coordinates)
+      pose.push_back(graph::read_formula(to.graph, formula.text(), time_name(), {&time, 1}));
+    return pose;
   });
 }
 

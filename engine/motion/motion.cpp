@@ -6,6 +6,13 @@
 
 namespace pkm {
 
+std::vector<graph::Node> Motion::write(TimeGraph& to) const {
+  std::vector<graph::Node> pose = write_(to);
+  for (graph::Node& node : pose)  // a number would be folded, and so rounded, with those of a mechanism
+    if (to.graph[node].is_number()) node = to.input(to.graph[node].number).node();
+  return pose;
+}
+
 std::vector<MotionSample> sample(const Motion& motion, std::size_t count) {
   PKM_EXPECTS(count >= 2);
   const double end = motion.duration();

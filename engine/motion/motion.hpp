@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/model/chain.hpp"
+#include "engine/motion/time_formulas.hpp"
 
 namespace pkm {
 
@@ -25,15 +26,21 @@ struct MotionSample {
 /// Immutable, shared by threads.
 class Motion {
  public:
-  Motion(double duration, std::function<MotionSample(double)> at) : duration_(duration), at_(std::move(at)) {}
+  using At = std::function<MotionSample(double)>;
+  using Write = std::function<std::vector<graph::Node>(TimeGraph&)>;
+
+  Motion(double duration, At at, Write write) : duration_(duration), at_(std::move(at)), write_(std::move(write)) {}
   /// [s], > 0; it begins at 0.
   double duration() const { return duration_; }
   /// @param time  in [0, duration()]
   MotionSample at(double time) const { return at_(time); }
+  /// The coordinates of the pose as formulas of the time in [0, duration()].
+  std::vector<graph::Node> write(TimeGraph& to) const;
 
  private:
   double duration_;
-  std::function<MotionSample(double)> at_;
+  At at_;
+  Write write_;
 };
 
 /// A motion with the name that a study gives it.

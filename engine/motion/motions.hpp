@@ -58,7 +58,7 @@ struct PickAndPlace {
 std::shared_ptr<const Motion> pick_and_place(const PickAndPlace& cycle);
 
 /// A formula of the time t [s] for each coordinate; derivatives are exact. What is undefined is NaN in the samples.
-std::shared_ptr<const Motion> formulas_of_time(std::vector<Formula> coordinates, double duration);
+std::shared_ptr<const Motion> formulas_of_time(const std::vector<Formula>& coordinates, double duration);
 
 /// The same motion, with the auxiliary chain's input [rad] as a formula of the time.
 std::shared_ptr<const Motion> with_input(std::shared_ptr<const Motion> motion, const Formula& input);

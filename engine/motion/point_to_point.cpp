@@ -12,6 +12,26 @@ struct Leg {
   AxisVector<double> from, to;
 };
 
+/// Where it starts and every move's share: of those that have not begun nothing, of those that have ended all.
+std::vector<graph::Node> write_moves(const AxisVector<double>& start, const std::vector<Move>& moves, TimeLaw law,
+                                     TimeGraph& to) {
+  std::vector<graph::Term> pose;
+  for (const double value : start) pose.push_back(to.number(value));
+  Interval begin(0.0);
+  AxisVector<double> from = start;
+  for (const Move& move : moves) {
+    begin += Interval(move.wait);
+    const graph::Term share = share_of_way(law, to, begin, move.duration);
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      pose[i] = pose[i] + to.number(Interval(move.to[i]) - Interval(from[i])) * share;
+    begin += Interval(move.duration);
+    from = move.to;
+  }
+  std::vector<graph::Node> nodes;
+  for (const graph::Term& coordinate : pose) nodes.push_back(coordinate.node());
+  return nodes;
+}
+
 }  // namespace
 
 std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, const std::vector<Move>& moves,
@@ -25,7 +45,7 @@ std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, co
     legs.push_back({end, move.duration, legs.empty() ? start : legs.back().to, move.to});
     end += move.duration;
   }
-  return std::make_shared<const Motion>(end + wait, [legs = std::move(legs), law](double time) {
+  const auto at = [legs = std::move(legs), law](double time) {
     // The last leg that has begun; a pause before the first belongs to it.
     const auto after = std::ranges::upper_bound(legs, time, {}, &Leg::begin);
     const Leg& leg = after == legs.begin() ? legs.front() : *(after - 1);
@@ -33,7 +53,9 @@ std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, co
     const AxisVector<double> way = leg.to - leg.from;
     const AxisVector<double> pose = share.way == 1 ? leg.to : leg.from + way * share.way;
     return MotionSample{time, pose, way * share.speed, way * share.acceleration, {}};
-  });
+  };
+  return std::make_shared<const Motion>(end + wait, at,
+                                        [=](TimeGraph& to) { return write_moves(start, moves, law, to); });
 }
 
 double time_within(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,

@@ -19,6 +19,21 @@ Advance advance(TimeLaw law, double time, double duration, double way) {
           rate_2 * (60 * u * (1 - u) * (1 - 2 * u))};
 }
 
+graph::Term share_of_way(TimeLaw law, TimeGraph& graph, const Interval& begin, double duration) {
+  using graph::Term, graph::operation;
+  const auto number = [&graph](double value) { return graph.number(value); };
+  const auto s = [&](const Term& u) {
+    if (law == TimeLaw::cycloid) return u - sin(number(2 * kPi) * u) / number(2 * kPi);
+    return u * u * u * (number(10) - u * (number(15) - number(6) * u));
+  };
+  // s(1 - u) = 1 - s(u): each half from its own end, where intervals of it are narrow
+  const auto half = [&](const Term& u) {
+    return s(call(operation("min"), call(operation("max"), u, number(0)), number(0.5)));
+  };
+  const Term u = (graph.time - graph.number(begin)) / number(duration);
+  return half(u) + number(0.5) - half(number(1) - u);
+}
+
 double peak_acceleration(TimeLaw law) { return law == TimeLaw::cycloid ? 2 * kPi : 10 / std::sqrt(3.0); }
 
 double time_of_move(TimeLaw law, double way, double peak) {

@@ -6,6 +6,8 @@
 // Both begin and end with speed and acceleration 0.
 #pragma once
 
+#include "engine/motion/time_formulas.hpp"
+
 namespace pkm {
 
 enum class TimeLaw { quintic, cycloid };
@@ -17,6 +19,9 @@ struct Advance {
 
 /// A move over `way` in the time `duration`, at `time` after its beginning; at rest before and behind.
 Advance advance(TimeLaw law, double time, double duration, double way);
+
+/// The same way over 1, as a formula of the time in which a move begins.
+graph::Term share_of_way(TimeLaw law, TimeGraph& graph, const Interval& begin, double duration);
 
 /// Peak acceleration of a move over 1 in the time 1.
 double peak_acceleration(TimeLaw law);

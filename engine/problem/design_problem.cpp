@@ -37,6 +37,8 @@ struct DesignProblem::Room {
 
 DesignProblem::DesignProblem(ProblemParts parts) : parts_(std::move(parts)), used_(used_surveys(parts_)) {
   surveyors_.push_back(prepare_survey(*parts_.mechanism, parts_.plan, parts_.demand));
+  if (const ColumnOptions* const columns = parts_.plan.columns(); columns && columns->certain)
+    parts_.mechanism->bounds()->refuse_bounds(parts_.plan);
   for (const Region& region : parts_.regions)
     surveyors_.push_back(prepare_survey(*parts_.mechanism, region.plan, region.demand));
   for (const auto& q : parts_.objectives) objectives_.push_back({q.name, q.unit, q.meaning, q.direction});

@@ -66,6 +66,20 @@ DesignTable design_table(const StudyContents& contents, const std::vector<Refere
   add_all("objective", problem.objectives, &DesignRecord::objectives);
   add_all("report", problem.reports, &DesignRecord::reports);
   add_all("constraint", problem.margins, &DesignRecord::margins);
+  const auto bounded = [](const DesignTable::Column& column) { return column.record->certain.has_value(); };
+  if (std::ranges::none_of(table.columns, bounded)) return table;
+  const std::string& unit = contents.final->volume_unit;
+  const auto add_volume = [&](const char* name, const char* meaning, const auto& of) {
+    add({"certain", name, unit, meaning, {}, {}, {}}, false, {}, of, [](const Reference&) { return std::nullopt; });
+  };
+  const auto end = [](double VolumeBounds::*which) {
+    return [which](const DesignRecord& r) -> std::optional<double> {
+      return r.certain ? std::optional((*r.certain).*which) : std::nullopt;
+    };
+  };
+  add_volume("volume", "by exact columns", [](const DesignRecord& r) { return r.volume; });
+  add_volume("volume, at least", "whatever was rounded or overlooked", end(&VolumeBounds::lower));
+  add_volume("volume, at most", "whatever was rounded or overlooked", end(&VolumeBounds::upper));
   return table;
 }
 

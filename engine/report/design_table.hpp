@@ -19,7 +19,7 @@ struct DesignTable {
   };
   /// What is said of every design; none where a design or a reference does not know it.
   struct Line {
-    std::string kind;  ///< "variable", "objective", "report" or "constraint"
+    std::string kind;  ///< "variable", "objective", "report", "constraint" or "certain" (of the volume)
     std::string name, unit, meaning;
     std::vector<std::optional<double>> values, published;  ///< of the columns, of the references
     std::optional<Gain> gain;                              ///< of the first column over the baseline

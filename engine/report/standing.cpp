@@ -41,6 +41,19 @@ std::string name_of_best(const StudyContents& contents) {
   return contents.final ? "best" : "best so far";
 }
 
+std::vector<std::string> contradicted(const StudyContents& contents) {
+  std::vector<std::string> sentences;
+  if (!contents.final) return sentences;
+  const auto add = [&sentences](const std::string& name, const std::optional<DesignRecord>& design) {
+    if (design && design->certain && design->status == Status::failed)
+      sentences.push_back("the " + name + " fails: " + design->reason);
+  };
+  add("best design", contents.final->best);
+  add("rounded design", contents.final->rounded);
+  add("baseline", contents.final->baseline);
+  return sentences;
+}
+
 std::optional<std::size_t> most_broken(std::span<const double> margins) {
   std::optional<std::size_t> worst;
   for (std::size_t i = 0; i < margins.size(); ++i)

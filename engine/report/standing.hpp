@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/problem/verdict.hpp"
 #include "engine/storage/study_contents.hpp"
@@ -30,6 +31,9 @@ std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignPro
 /// What the best evaluation is called: "best", "best so far" before the study's end, "compromise" where there are
 /// several objectives; "least bad" where nothing was feasible, "as good as any" where no objective says anything.
 std::string name_of_best(const StudyContents& contents);
+
+/// A sentence for each design whose exact volume lies outside of its certain bounds.
+std::vector<std::string> contradicted(const StudyContents& contents);
 
 /// The margin that is broken most; none where all hold.
 std::optional<std::size_t> most_broken(std::span<const double> margins);

@@ -102,9 +102,16 @@ CsvTable best(const StudyContents& contents) {
   add_rows(problem.objectives, &DesignRecord::objectives, [](const auto&) { return "objective"; });
   add_rows(problem.margins, &DesignRecord::margins, [](const auto&) { return "margin"; });
   add_rows(problem.reports, &DesignRecord::reports, [](const auto&) { return "report"; });
+  const auto add_bounds = [&](const char* name, double VolumeBounds::*end) {
+    if (std::ranges::none_of(designs, [](const auto& named) { return named.second.certain.has_value(); })) return;
+    table.row("workspace", name, final->volume_unit);
+    for (const auto& [of, design] : designs) design.certain ? table.add((*design.certain).*end) : table.add_empty(1);
+  };
   if (final) {
     table.row("workspace", "volume", final->volume_unit);
     for (const auto& named : designs) table.add(named.second.volume);
+    add_bounds("volume at least", &VolumeBounds::lower);
+    add_bounds("volume at most", &VolumeBounds::upper);
   }
   table.row("status", "status", "");
   for (const auto& named : designs) table.add(words(named.second.status));

@@ -28,6 +28,7 @@ class ConfigValue {
 
   bool is_table() const { return value_->kind == TomlValue::Kind::table; }
   bool is_list() const { return value_->kind == TomlValue::Kind::array; }
+  bool is_flag() const { return value_->kind == TomlValue::Kind::flag; }
   bool is_integer() const { return value_->kind == TomlValue::Kind::integer; }
   bool is_text() const { return value_->kind == TomlValue::Kind::text; }
 

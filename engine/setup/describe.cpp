@@ -95,6 +95,7 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) 
     else
       rows.push_back({"tolerance", shortest(columns->tolerance) + " relative",
                       mark(columns->tolerance == usual.columns()->tolerance)});
+    if (columns->certain) rows.push_back({"certain", "within bounds of the gap " + shortest(*columns->certain)});
   }
   for (const int i : sweep.held) {
     const HeldCoordinate held = how_held(plan, i);

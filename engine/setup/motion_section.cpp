@@ -176,7 +176,7 @@ std::shared_ptr<const Motion> read_formulas(const ConfigValue& table, const Coor
     formulas.push_back(coordinate_formula(
         table.at(axis.name, "a formula of the time t [s], such as \"0.1*sin(2*pi*t)\", or a number in " + axis.unit),
         axis.unit));
-  return formulas_of_time(std::move(formulas), duration);
+  return formulas_of_time(formulas, duration);
 }
 
 struct Kind {

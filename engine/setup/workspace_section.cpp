@@ -16,6 +16,7 @@ constexpr std::int64_t kMostCellsPerAxis = 1 << 20;
 constexpr std::int64_t kMostCells = std::int64_t{1} << 28;  // a voxel map takes a byte per cell
 constexpr double kFinestTolerance = 1e-13, kCoarsestTolerance = 0.1;
 constexpr std::int64_t kMostNodes = 200;
+constexpr double kUsualGap = 1e-2;  // of certain = true
 
 const AxisInfo& axis_of(const MechanismInfo& info, int coordinate) {
   return info.coordinates[static_cast<std::size_t>(coordinate)];
@@ -115,6 +116,19 @@ void read_nodes(const ConfigValue& table, const MechanismInfo& info, const Sweep
   table.expect_table("a table of node numbers for " + join(names)).allow(names, "coordinate");
   for (std::size_t k = 0; k < names.size(); ++k)
     columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer(1, kMostNodes));
+}
+
+/// certain = true, or a gap.
+std::optional<double> read_certain(const ConfigValue& value, const Mechanism& mechanism) {
+  const std::string expected = "true, false, or the gap of the bounds: a number between 0 and 2";
+  if (value.is_flag() && !value.flag()) return {};
+  if (value.is_text() || value.is_list() || value.is_table()) throw value.error(expected);
+  const double gap = value.is_flag() ? kUsualGap : value.number("1");
+  if (!(gap > 0 && gap < 2)) throw value.error(expected);
+  if (!mechanism.bounds())
+    throw value.refusal("certain bounds are of mechanisms from files, whose formulas can be computed over intervals; " +
+                        mechanism.info().name + " is built in");
+  return gap;
 }
 
 /// The key of a coordinate that is not swept: "middle", "integrated" or a number.
@@ -217,11 +231,17 @@ void read_limits(const ConfigValue& table, StudyDraft& draft) {
 }
 
 /// Refuses keys that are neither those of a survey, which [workspace] and [[region]] share, nor `own`.
-void allow_survey(const ConfigValue& table, const MechanismInfo& info, const std::string& own) {
+void allow_survey(const ConfigValue& table, const MechanismInfo& info, const std::vector<std::string>& own) {
   std::vector<std::string> keys = {"method", "tolerance", "nodes", "cells", "box", "sweep"};
   for (const int coordinate : holdable(info)) keys.push_back(axis_of(info, coordinate).name);
-  keys.push_back(own);
+  keys.insert(keys.end(), own.begin(), own.end());
   table.allow(keys);
+}
+
+ConfigError of_other_method(const ConfigValue& key, const SurveyPlan& plan) {
+  return key.refusal(std::string("this key belongs to method = ") +
+                     (plan.voxels() ? "\"columns\", but the study's method is \"voxels\""
+                                    : "\"voxels\", but the study's method is \"columns\""));
 }
 
 void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_region, SurveyPlan& plan) {
@@ -232,9 +252,7 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
   for (const std::string key : {"tolerance", "nodes", "cells", "box"}) {
     const bool of_voxels = key == "cells" || key == "box", of_both = key == "box" && columns_take_box;
     if (!of_both && of_voxels != (plan.voxels() != nullptr) && table.has(key))
-      throw table.find(key)->refusal(std::string("this key belongs to method = ") +
-                                     (of_voxels ? "\"voxels\", but the study's method is \"columns\""
-                                                : "\"columns\", but the study's method is \"voxels\""));
+      throw of_other_method(*table.find(key), plan);
   }
   const auto tolerance = table.find("tolerance"), nodes = table.find("nodes");
   const double relative = tolerance ? tolerance->number("1", kFinestTolerance, kCoarsestTolerance) : 0;
@@ -274,8 +292,13 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   plan.limits = no_limits(info);
   draft.study.limit_origins.resize(info.limits.size());
   if (const auto table = root.find("workspace")) {
-    allow_survey(table->expect_table("a table [workspace]"), info, "limits");
+    allow_survey(table->expect_table("a table [workspace]"), info, {"limits", "certain"});
     read_survey(*table, *draft.parts.mechanism, false, plan);
+    if (const auto certain = table->find("certain")) {
+      auto* const columns = std::get_if<ColumnOptions>(&plan.method);
+      if (!columns) throw of_other_method(*certain, plan);
+      columns->certain = read_certain(*certain, *draft.parts.mechanism);
+    }
     if (const auto limits = table->find("limits")) read_limits(*limits, draft);
   }
   override_cells(draft);
@@ -283,7 +306,7 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
 
 void read_regions(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& table : tables_of(root, "region")) {
-    allow_survey(table, draft.info(), "name");
+    allow_survey(table, draft.info(), {"name"});
     Region region;
     region.name = new_name(table, "region", draft.parts.regions, "the region's name");
     region.plan.limits = draft.parts.plan.limits;

@@ -252,6 +252,11 @@ void describe_design(Archive& archive, const std::string& group, const char* des
   archive.attribute(group, "feasible_cells", design.feasible_cells);
   archive.attribute(group, "cell_volume", design.cell_volume);
   archive.attribute(group, "touches_box", design.touches_box);
+  if (const std::string bounds = group + "/certain"; present(archive, bounds, design.certain)) {
+    archive.group(bounds, "Certain bounds of the volume");
+    archive.attribute(bounds, "lower", design.certain->lower);
+    archive.attribute(bounds, "upper", design.certain->upper);
+  }
   columns(archive, group + "/parameter", "All parameters of the mechanism", problem.parameters, design.parameters);
   columns(archive, group + "/objective", "Objectives; NaN: not computed", problem.objectives, design.objectives);
   columns(archive, group + "/margin", "Margins, >= 0 holds; NaN: not computed", problem.margins, design.margins);

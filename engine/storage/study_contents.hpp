@@ -11,6 +11,7 @@
 #include "engine/core/options.hpp"
 #include "engine/core/parameter.hpp"
 #include "engine/core/source_text.hpp"
+#include "engine/mechanism/abilities/bounds.hpp"
 #include "engine/mechanism/survey.hpp"
 #include "engine/problem/front.hpp"
 #include "engine/problem/start_outcome.hpp"
@@ -133,6 +134,7 @@ struct DesignRecord {
   std::int64_t feasible_cells = 0;
   double cell_volume = 0;
   bool touches_box = false;
+  std::optional<VolumeBounds> certain = {};  ///< of the volume, where the study asks for them; then the two ends alone
 };
 
 /// The best design's voxels with the names of their axes.

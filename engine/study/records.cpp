@@ -12,15 +12,26 @@
 #include "engine/core/unit.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/optimisers/solvers/optimality.hpp"
+#include "engine/problem/certain_volume.hpp"
 #include "engine/study/machine.hpp"
+#include "engine/study/stop_request.hpp"
 #include "engine/survey/picture_plan.hpp"
 #include "engine/survey/survey_set.hpp"
 
 namespace pkm {
 namespace {
 
-DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters) {
-  const DesignReport r = problem.report(parameters);
+/// @param certain  gap of bounds that its exact volume has to be within; none: nobody asks
+DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters,
+                       std::optional<double> certain = {}) {
+  DesignReport r = problem.report(parameters);
+  std::optional<VolumeBounds> bounds;
+  if (certain && r.status != Status::failed) try {
+      bounds = check_volume(problem, r, *certain, [] { return StopRequest::signal() != 0; });
+    } catch (const std::invalid_argument& reason) {
+      r.status = Status::failed;
+      r.reason = reason.what();
+    }
   const bool box_matters = problem.parts().plan.box().has_value();  // the default box ends where the mechanism does
   return {.parameters = r.parameters,
           .objectives = r.objectives,
@@ -32,12 +43,14 @@ DesignRecord evaluated(const DesignProblem& problem, std::span<const double> par
           .cells = r.survey.cells,
           .feasible_cells = r.survey.feasible_cells,
           .cell_volume = r.survey.cell_volume,
-          .touches_box = box_matters && r.survey.touches_box};
+          .touches_box = box_matters && r.survey.touches_box,
+          .certain = bounds};
 }
 
 /// Rounding may leave the bounds, or what the mechanism is defined for: said in `reason`, and in the latter case
 /// nothing is evaluated.
-DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters) {
+DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters,
+                               std::optional<double> certain) {
   const ProblemParts& parts = problem.parts();
   if (const Refusal refusal = parts.mechanism->refuse(parameters)) {
     const auto nothing = [](std::size_t size) {
@@ -50,7 +63,7 @@ DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<d
             .status = Status::failed,
             .reason = *refusal};
   }
-  DesignRecord record = evaluated(problem, parameters);
+  DesignRecord record = evaluated(problem, parameters, certain);
   for (std::size_t i = 0; i < parts.varies.size(); ++i) {
     const Variable& v = parts.space[i];
     const double value = parameters[parts.varies[i]], roundoff = 1e-12 * std::fabs(value);
@@ -62,6 +75,7 @@ DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<d
 }
 
 constexpr const char* kNoExactValues = "no exact values of the ";
+constexpr const char* kWideBounds = "certain bounds of the ";
 
 /// What a voxel study says of its designs on exact columns, where the mechanism has them and they know it.
 class ExactValues {
@@ -294,23 +308,34 @@ FinalRecord final_record(const Study& study, StudyContents& contents) {
   const DesignProblem& problem = *study.problem;
   const ProblemParts& parts = problem.parts();
   const MechanismInfo& info = parts.mechanism->info();
-  std::erase_if(contents.notes, [](const std::string& note) { return note.starts_with(kNoExactValues); });
+  std::erase_if(contents.notes, [](const std::string& note) {
+    return note.starts_with(kNoExactValues) || note.starts_with(kWideBounds);
+  });
   const ExactValues exact(parts);
+  const std::optional<double> certain = parts.plan.columns() ? parts.plan.columns()->certain : std::nullopt;
+  const auto note_gap = [&](const char* name, const std::optional<VolumeBounds>& bounds) {
+    if (bounds && !bounds->stopped && bounds->gap() > *certain)
+      contents.notes.push_back(kWideBounds + std::string(name) + " have the gap " + shortest(bounds->gap()) +
+                               ", asked for " + shortest(*certain) + ": " + std::to_string(bounds->boxes) + " boxes");
+  };
   FinalRecord f;
   f.volume_unit = volume_unit(info, parts.plan);
   if (study.baseline) {
-    f.baseline = evaluated(problem, *study.baseline);
+    f.baseline = evaluated(problem, *study.baseline, certain);
+    note_gap("baseline", f.baseline->certain);
     f.baseline_exact = exact.of("baseline", *study.baseline, contents.notes);
   }
   if (contents.best.row < 0) return f;
   const auto best = problem.parameters(contents.best_design());
-  f.best = evaluated(problem, best);
+  f.best = evaluated(problem, best, certain);
+  note_gap("best design", f.best->certain);
   f.best_exact = exact.of("best design", best, contents.notes);
   f.active = active_sentences(problem, *f.best);
   if (study.round) {
     auto rounded = best;
     for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
-    f.rounded = evaluated_rounded(problem, rounded);
+    f.rounded = evaluated_rounded(problem, rounded, certain);
+    note_gap("rounded design", f.rounded->certain);
   }
   MapRecord map;
   map.voxels = voxel_map(*parts.mechanism, best, picture_plan(info, parts.plan, kMapCells));

@@ -31,7 +31,7 @@ std::optional<OptimalityRecord> optimality_record(const Study& study, const Stag
 
 /// What is worked out at the end, from the best design so far. Empty records where nothing was evaluated. A note says
 /// why a voxel study knows no values on exact columns that its mechanism has; they are NaN where they are read from a
-/// region on voxels.
+/// region on voxels. Asked to stop, certain bounds end early, `stopped`.
 FinalRecord final_record(const Study& study, StudyContents& contents);
 
 }  // namespace pkm

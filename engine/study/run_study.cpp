@@ -63,6 +63,14 @@ double feasible_share(const EvaluationTable& table, const std::vector<std::int64
   return static_cast<double>(feasible) / static_cast<double>(population.size());
 }
 
+/// Whether certain bounds of a design were left before they came to their gap.
+bool is_cut_short(const FinalRecord& final) {
+  const auto cut = [](const std::optional<DesignRecord>& design) {
+    return design && design->certain && design->certain->stopped;
+  };
+  return cut(final.best) || cut(final.rounded) || cut(final.baseline);
+}
+
 /// One run of one study into one file.
 class Run final : public Monitor {
  public:
@@ -197,7 +205,11 @@ class Run final : public Monitor {
       contents_ = read_study(path_);  // stopped before it came to anything new: the file holds more than this run
     } else {
       if (ranks::size() > 1 && outcome.evaluations > 0) note_ranks(outcome);
-      if (stopped_.empty()) contents_.final = final_record(study_, contents_);
+      if (stopped_.empty()) {
+        contents_.final = final_record(study_, contents_);
+        if (is_cut_short(*contents_.final) && !goes_on()) contents_.final.reset();
+        outcome.stopped = stopped_;
+      }
       try {
         write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);
       } catch (const StorageError& failure) {

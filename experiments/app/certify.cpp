@@ -16,7 +16,7 @@ namespace pkm {
 namespace {
 
 struct CertifyArguments : DesignArguments, ModeArguments {
-  std::string gap = "1e-2", proof;
+  std::string gap = "1e-2", proof, motion;
   std::vector<std::string> box;
   std::int64_t boxes = 4000000;
   int threads = 0;
@@ -65,30 +65,34 @@ std::vector<std::array<double, 2>> ranges_of(const Target& target, const SurveyP
   return ranges;
 }
 
-/// @param holds, fails  what is said of the box
+/// @param what  "box" or "motion"
 /// @return what is wrong; "": nothing
-std::string tell_verdict(const MechanismInfo& info, const std::string& name, const BoxVerdict& verdict,
-                         const std::string& holds, const std::string& fails, Printout& out) {
-  using Kind = BoxVerdict::Kind;
+std::string tell_verdict(const MechanismInfo& info, const std::string& name, const PosesVerdict& verdict,
+                         const std::string& holds, const std::string& what, Printout& out) {
+  using Kind = PosesVerdict::Kind;
   const std::string kind = verdict.kind == Kind::holds ? "yes" : verdict.kind == Kind::fails ? "no" : "undecided";
   out.json[name] = {
       {"verdict", kind}, {"what", text_or_null(verdict.what)}, {"pose", axes_json(info.coordinates, verdict.where)}};
+  if (what == "motion") out.json[name]["time"] = json_or_null(verdict.time);
   if (verdict.kind == Kind::holds) {
     out.head.push_back({name, holds});
     return "";
   }
-  const std::string where = "at " + axes_text(info.coordinates, *verdict.where);
-  const std::string words = verdict.kind == Kind::fails ? fails + ": " + verdict.what + " does not hold " + where
-                                                        : "undecided: " + verdict.what + ", near " + where.substr(3);
+  const std::string where =
+      (verdict.time ? "t = " + number(*verdict.time, "s") + ", " : "") + axes_text(info.coordinates, *verdict.where);
+  const std::string words = verdict.kind == Kind::fails
+                                ? "not everywhere: " + verdict.what + " does not hold at " + where
+                                : "undecided: " + verdict.what + ", near " + where;
   out.head.push_back({name, words});
-  return verdict.kind == Kind::fails ? "the box is not feasible everywhere" : "the box is not decided everywhere";
+  return "the " + what + " is not " + (verdict.kind == Kind::fails ? "feasible" : "decided") + " everywhere";
 }
 
-std::string tell_box(const MechanismInfo& info, const BoxCertificate& found, Printout& out) {
-  std::string wrong = tell_verdict(info, "feasible", found.feasible, "everywhere in the box", "not everywhere", out);
+std::string tell_poses(const MechanismInfo& info, const PosesCertificate& found, const std::string& what,
+                       Printout& out) {
+  const std::string in = (what == "box" ? "in the " : "along the ") + what;
+  std::string wrong = tell_verdict(info, "feasible", found.feasible, "everywhere " + in, what, out);
   if (found.regular) {
-    const std::string singular =
-        tell_verdict(info, "regular", *found.regular, "no singularity in the box", "not everywhere", out);
+    const std::string singular = tell_verdict(info, "regular", *found.regular, "no singularity " + in, what, out);
     if (wrong.empty()) wrong = singular;
   }
   out.say("boxes", found.boxes, std::to_string(found.boxes) + " looked at");
@@ -100,10 +104,15 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   const CertainBounds& bounds =
       needed(target.mechanism->bounds(), "certify", "formulas that can be computed over intervals", info);
   const double gap = parse_gap(arguments.gap, "--gap");
-  if (!arguments.box.empty() && !arguments.proof.empty())
-    throw ConfigError({"", 0, "--proof"}, "--box", "a volume: proofs are of volumes");
+  const bool of_poses = !arguments.box.empty() || !arguments.motion.empty();
+  if (of_poses && !arguments.proof.empty())
+    throw ConfigError({"", 0, "--proof"}, arguments.box.empty() ? "--motion" : "--box",
+                      "a volume: proofs are of volumes");
+  if (!arguments.box.empty() && !arguments.motion.empty())
+    throw ConfigError({"", 0, "--motion"}, "--box beside it", "one of them");
   const Existing existing = if_forced(arguments.force);
   check_outputs({arguments.proof}, target.files, existing);
+  const auto motion = arguments.motion.empty() ? nullptr : find_motion(target, arguments.motion);
   const SurveyPlan plan = target.plan();
   const std::string mode = known_mode(info, arguments);
   out.say("mechanism", info.name);
@@ -122,7 +131,13 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
     with_team(arguments.threads, [&] {
       if (!arguments.box.empty()) {
         const auto ranges = ranges_of(target, plan, arguments.box);
-        wrong = tell_box(info, bounds.box(target.parameters, plan, mode, ranges, options), out);
+        wrong = tell_poses(info, bounds.box(target.parameters, plan, mode, ranges, options), "box", out);
+        return;
+      }
+      if (motion) {
+        out.say("motion", arguments.motion);
+        out.say("duration", motion->duration(), number(motion->duration(), "s"));
+        wrong = tell_poses(info, bounds.motion(target.parameters, plan.limits, mode, *motion, options), "motion", out);
         return;
       }
       const auto start = std::chrono::steady_clock::now();
@@ -149,7 +164,8 @@ void add_certify(CLI::App& app, Session& session) {
       "The formulas of a mechanism's file are computed over intervals, rounded outward: the volume is certainly "
       "within\n"
       "the bounds. Ctrl-C ends with what is known so far. Numbers are taken as the doubles that they are. With --box,\n"
-      "instead: whether every pose of the box is feasible and none is singular, else a pose that is not.\n"
+      "instead: whether every pose of the box is feasible and none is singular, else a pose that is not; with\n"
+      "--motion, the same at every instant of a motion, else the first instant that is not.\n"
       "Example: pkmopt certify experiments/mechanisms/orthoglide.toml --gap 1e-3 --proof orthoglide.proof",
       certify);
   add_option(command, "--gap GAP", arguments.gap,
@@ -157,6 +173,8 @@ void add_certify(CLI::App& app, Session& session) {
   add_option(command, "--box NAME=FROM:TO", arguments.box,
              "Ranges of the swept coordinates, whose poses are to be certified")
       ->allow_extra_args(false);
+  add_option(command, "--motion MOTION.toml", arguments.motion,
+             "A motion in TOML, or the name of a [[motion]] of the study, whose poses are to be certified");
   add_option(command, "-o,--proof FILE", arguments.proof, "Write the proof, which pkmopt-check-proof checks");
   command.add_flag("--force", arguments.force, "Overwrite an existing proof");
   add_integer(command, "--boxes N", arguments.boxes, 1, 100000000,

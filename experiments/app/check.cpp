@@ -49,6 +49,7 @@ Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
   if (const ColumnOptions* columns = plan.columns()) {
     const bool fixed = columns->nodes[0] > 0;
     json["tolerance"] = fixed ? Json() : Json(columns->tolerance);
+    json["certain"] = json_or_null(columns->certain);
     json["nodes"] = nullptr;  // chosen from the tolerance
     std::size_t node = 0;
     for (std::size_t k = 0; k < swept.size(); ++k)

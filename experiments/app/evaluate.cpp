@@ -1,6 +1,7 @@
 // `pkmopt evaluate`: everything that is known of one design.
 
 #include "engine/core/team.hpp"
+#include "engine/problem/certain_volume.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/study/stop_request.hpp"
 #include "engine/survey/survey_set.hpp"
@@ -82,32 +83,24 @@ void tell_workspace(const DesignProblem& problem, const Survey<double>& survey, 
   out.section("workspace", rows);
 }
 
-/// Bounds of the exact volume that rounding and sampling cannot make wrong.
-/// @param gap  to which they are computed
-/// @return what is wrong; "": nothing
-std::string tell_bounds(const DesignProblem& problem, const DesignReport& report, double gap, Printout& out) {
-  const ProblemParts& parts = problem.parts();
-  const MechanismInfo& info = parts.mechanism->info();
-  const StopRequest stop;
-  VolumeBounds bounds;
-  try {
-    bounds = parts.mechanism->bounds()->volume(report.parameters, parts.plan, parts.demand.mode,
-                                               {.gap = gap, .stop = [] { return StopRequest::signal() != 0; }});
-  } catch (const std::invalid_argument& reason) {
-    throw ConfigError({"", 0, "--certain"}, reason.what());
-  }
-  // what is rounded in the closed forms counts beside the estimate
-  const double volume = report.survey.volume, error = (report.survey.error + 1e-9) * volume;
-  const bool holds = bounds.lower <= volume + error && bounds.upper >= volume - error;
-  const std::string unit = volume_unit(info, parts.plan);
+/// Bounds of the exact volume that neither rounding nor sampling can make wrong.
+/// @param holds  the volume lies within
+void tell_bounds(const VolumeBounds& bounds, double wanted, bool holds, const std::string& unit, Printout& out) {
   out.json["certain"] = {
       {"lower", bounds.lower}, {"upper", bounds.upper}, {"unit", unit}, {"gap", bounds.gap()}, {"holds_volume", holds}};
   out.section("certain bounds of the volume", {{"at least", number(bounds.lower, unit)},
                                                {"at most", number(bounds.upper, unit)},
-                                               {"gap", number(bounds.gap()) + ", asked for " + number(gap)}});
-  if (holds) return "";
-  return "the exact volume, " + number(volume, unit) + ", lies outside of its certain bounds: columns have " +
-         (volume < bounds.lower ? "overlooked" : "added") + " a part of this workspace";
+                                               {"gap", number(bounds.gap()) + ", asked for " + number(wanted)}});
+}
+
+/// The report fails where its exact volume lies outside.
+VolumeBounds bounds_of(const DesignProblem& problem, DesignReport& report, double gap) {
+  const StopRequest stop;
+  try {
+    return check_volume(problem, report, gap, [] { return StopRequest::signal() != 0; });
+  } catch (const std::invalid_argument& reason) {
+    throw ConfigError({"", 0, "--certain"}, reason.what());
+  }
 }
 
 /// The constraints that do not hold, as "no: ...".
@@ -123,16 +116,21 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
                      Printout& out) {
   const auto problem =
       target.study ? target.study->problem : default_problem(target, catalogues, arguments.changes.cells);
-  const bool certain = !arguments.certain.empty();
-  const double gap = certain ? parse_gap(arguments.certain, "--certain") : 0;
-  if (certain) {
+  const ColumnOptions* const columns = problem->parts().plan.columns();
+  std::optional<double> gap = columns ? columns->certain : std::nullopt;
+  if (!arguments.certain.empty()) {
+    gap = parse_gap(arguments.certain, "--certain");
     needed(target.mechanism->bounds(), "--certain", "formulas that can be computed over intervals", target.info());
-    if (problem->parts().plan.voxels())
+    if (!columns)
       throw ConfigError({"", 0, "--certain"}, "voxels", "workspace.method = \"columns\", whose exact volume it checks");
   }
   DesignReport report;
-  with_team(arguments.threads, [&] { report = problem->report(target.parameters); });
-  const bool failed = report.status == Status::failed;
+  std::optional<VolumeBounds> bounds;
+  with_team(arguments.threads, [&] {
+    report = problem->report(target.parameters);
+    if (gap && report.status != Status::failed) bounds = bounds_of(*problem, report, *gap);
+  });
+  const bool failed = report.status == Status::failed, surveyed = !failed || bounds;
 
   /// Values with their units and what else is to be said of them.
   const auto tell = [&out](const std::string& key, const std::string& title, const auto& named,
@@ -152,9 +150,8 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   out.head.push_back({"feasible", verdict(*problem, report)});
   tell("parameters", "parameters", target.info().parameters, report.parameters, nothing);
   out.json["workspace"] = nullptr;
-  if (!failed) tell_workspace(*problem, report.survey, out);
-  std::string wrong = failed ? "the evaluation failed: " + report.reason : "";
-  if (certain && !failed) with_team(arguments.threads, [&] { wrong = tell_bounds(*problem, report, gap, out); });
+  if (surveyed) tell_workspace(*problem, report.survey, out);
+  if (bounds) tell_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
   tell("objectives", "objectives", problem->objectives(), report.objectives,
        [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; });
   tell("constraints", "constraints (margins: >= 0 holds)", problem->margins(), report.margins,
@@ -165,7 +162,7 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   const NamedValues facts = target.mechanism->facts(report.parameters, problem->parts().plan.limits);
   out.json["facts"] = values_by_name(facts);
   out.section("facts", rows_of(facts));
-  return wrong;
+  return failed ? "the evaluation failed: " + report.reason : "";
 }
 
 }  // namespace

@@ -175,6 +175,7 @@ struct SeedTable {
   std::vector<double> best = {}, exact = {}, seconds = {};
   std::string note = {};                ///< the first
   std::optional<Verdict> verdict = {};  ///< of the first seed that found nothing
+  std::vector<std::string> wrong = {};  ///< volumes outside of their certain bounds
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
     const FinalRecord final = contents.final.value_or(FinalRecord());
@@ -192,7 +193,10 @@ struct SeedTable {
       return digits(*value);
     };
     const auto value = trade_off ? evolved_hypervolume(study, contents) : objective(final.best);
-    const std::string best_text = feasible ? keep(value, best) : "nothing feasible";
+    for (const std::string& sentence : contradicted(contents))
+      wrong.push_back("seed " + std::to_string(contents.seed) + ": " + sentence);
+    const bool fails = final.best && final.best->certain && final.best->status == Status::failed;
+    const std::string best_text = feasible ? keep(value, best) : fails ? "outside of its bounds" : "nothing feasible";
     seconds.push_back(contents.seconds);
     if (note.empty() && !contents.notes.empty())
       note = "note of seed " + std::to_string(contents.seed) + ": " + printable(join(contents.notes, "; ")) + '\n';
@@ -262,6 +266,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
               << " seeds ended feasible\n"
               << table.note << std::flush;
   if (unwritten) throw StorageError(*unwritten);
+  if (!table.wrong.empty()) throw std::runtime_error(join(table.wrong, "; "));
   if (session.exit_code == kDone && table.feasible_seeds == 0 && table.verdict) {
     if (!arguments.common.quiet)
       std::cout << "verdict: " << table.verdict->finding << ": " << table.verdict->sentence << '\n'

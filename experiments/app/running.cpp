@@ -94,6 +94,10 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
     throw StorageError(*end.unwritten);
   }
   if (outcome.stopped.empty()) conclude(verdict, arguments, session);
+  if (const auto wrong = contradicted(outcome.contents); !wrong.empty()) {
+    std::cout << std::flush;
+    throw std::runtime_error(join(wrong, "; "));
+  }
 }
 
 }  // namespace pkm

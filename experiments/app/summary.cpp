@@ -48,6 +48,10 @@ std::string rounded_remarks(const StudyContents& contents, const DesignRecord& r
   return (rounded.status == Status::feasible ? ", but " : ": ") + join(remarks, "; ");
 }
 
+Json certain_json(const VolumeBounds& bounds) {
+  return {{"lower", bounds.lower}, {"upper", bounds.upper}, {"gap", bounds.gap()}};
+}
+
 Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
   Json design = Json::object();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i)
@@ -58,6 +62,7 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
                  {"reports", values_by_name(problem.reports, record.reports)},
                  {"status", words(record.status)},
                  {"volume", record.volume}};
+  if (record.certain) object["certain"] = certain_json(*record.certain);
   if (!record.reason.empty()) object["reason"] = record.reason;
   return object;
 }
@@ -108,7 +113,11 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
     out << "no best design: the study has no objective\n";
     return out.str();
   }
-  if (final.best->status == Status::failed)
+  const std::vector<std::string> wrong = contradicted(contents);
+  for (const std::string& sentence : wrong) out << sentence << '\n';
+  if (final.best->status == Status::failed && final.best->certain)
+    out << "its values are not to be used\n";
+  else if (final.best->status == Status::failed)
     out << "no design could be evaluated: " << final.best->reason << '\n';
   else if (final.best->status != Status::feasible)
     out << "nothing feasible was found; this is the least infeasible design: " << blocking(contents, *final.best)
@@ -161,6 +170,12 @@ Json summary_json(const StudyContents& contents, const std::optional<Verdict>& v
     object["best"].update({{"status", words(stage.table.status[row])},
                            {"stage", contents.best.stage + 1},
                            {"generation", stage.generations.generation_of_rows(stage.table.size())[row]}});
+    if (contents.final && contents.final->best && contents.final->best->certain) {
+      const DesignRecord& best = *contents.final->best;
+      object["best"].update({{"volume", best.volume}, {"certain", certain_json(*best.certain)}});
+      if (best.status == Status::failed)
+        object["best"].update({{"status", words(best.status)}, {"reason", best.reason}});
+    }
   }
   if (contents.final) {
     const FinalRecord& final = *contents.final;

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/setup/assignments.hpp"
+#include "engine/setup/motion_section.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/study/run_study.hpp"
@@ -157,6 +159,12 @@ double parse_gap(const std::string& text, const std::string& option) {
   const double gap = parse_number(text, option, "1");
   if (!(gap > 0 && gap < 2)) throw ConfigError({"", 0, option}, text, "a number between 0 and 2");
   return gap;
+}
+
+std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
+  if (target.study)
+    if (const NamedMotion* known = find_named(target.study->motions, name)) return known->motion;
+  return load_motion_toml(name, motion_names(*target.mechanism));
 }
 
 std::string known_mode(const MechanismInfo& info, const ModeArguments& arguments) {

@@ -94,6 +94,9 @@ bool may_be_file(const std::string& name);
 /// The built-in mechanism of that name, or the one that a file describes. Throws ConfigError.
 std::shared_ptr<const Mechanism> find_mechanism(const Catalogues& catalogues, const std::string& name);
 
+/// A [[motion]] of the study by its name, else a file.
+std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name);
+
 /// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
 Target find_target(const Catalogues& catalogues, const DesignArguments& arguments);
 

@@ -7,7 +7,6 @@
 #include "engine/mechanism/trajectory.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
-#include "engine/setup/motion_section.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/motor_fits.hpp"
@@ -26,13 +25,6 @@ struct TrajectoryArguments : DesignArguments, ModeArguments, TableOutput {
 };
 
 using Values = std::optional<AxisVector<double>>;
-
-/// A [[motion]] of the study by its name, else a file.
-std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
-  if (target.study)
-    if (const NamedMotion* known = find_named(target.study->motions, name)) return known->motion;
-  return load_motion_toml(name, motion_names(*target.mechanism));
-}
 
 /// The auxiliary chain at a sample, NaN for what does not exist; empty where there is no chain.
 NamedValues chain_values(const AuxiliaryChain* chain, const TrajectoryPoint& p) {

@@ -78,6 +78,97 @@ TEST_F(Certify, DecidesBoxesOfPoses) {
   EXPECT_THAT(across.out, HasSubstr("does not hold at x = "));
 }
 
+TEST_F(Certify, DecidesMotions) {
+  const std::string file = kMechanisms + "orthoglide.toml";
+  const auto points = [](const std::string& end) {
+    return "type = \"points\"\ntime = 0.5\npoints = [{ x = 0, y = 0, z = 0 }, { x = \"30 mm\", z = " + end + " }]\n";
+  };
+  folder_.write("inside.toml", points("0.02"));
+  folder_.write("leaves.toml", points("0.3"));
+  const auto inside = run({"certify", file, "--motion", "inside.toml", "--json"});
+  EXPECT_EQ(inside.exit_code, 0) << inside.err;
+  EXPECT_EQ(inside.json()["feasible"]["verdict"], "yes");
+  EXPECT_EQ(inside.json()["regular"]["verdict"], "yes");
+  EXPECT_EQ(inside.json()["duration"], 0.5);
+  EXPECT_TRUE(inside.json()["feasible"]["time"].is_null());
+  EXPECT_THAT(run({"certify", file, "--motion", "inside.toml"}).out, HasSubstr("everywhere along the motion"));
+
+  const auto leaves = run({"certify", file, "--motion", "leaves.toml", "--json"});
+  EXPECT_EQ(leaves.exit_code, 1);
+  EXPECT_THAT(leaves.err, HasSubstr("the motion is not feasible everywhere"));
+  EXPECT_EQ(leaves.json()["feasible"]["verdict"], "no");
+  EXPECT_TRUE(leaves.json()["regular"].is_null());
+  const double t = leaves.json()["feasible"]["time"];
+  // samples say the same, as far as they can
+  const auto sampled = run({"trajectory", file, "--motion", "leaves.toml", "--samples", "1001", "--json"}).json();
+  for (const auto& sample : sampled["samples"]) {
+    const double at = sample["time"];
+    const bool feasible = sample["feasible"];
+    EXPECT_TRUE(feasible || at >= t - 1e-5) << at;
+    EXPECT_TRUE(!feasible || at < t || at > t + 6e-4) << at;
+  }
+  EXPECT_THAT(run({"certify", file, "--motion", "leaves.toml"}).out, HasSubstr("does not hold at t = "));
+}
+
+TEST_F(Certify, RefusesMotionsInOneSentence) {
+  const std::string file = kMechanisms + "orthoglide.toml";
+  folder_.write("m.toml", "type = \"formulas\"\nduration = 1\nx = \"0.01*t\"\ny = 0\nz = 0\n");
+  EXPECT_EQ(run({"certify", file, "--motion", "m.toml"}).exit_code, 0);
+  EXPECT_THAT(run({"certify", file, "--motion", "missing.toml"}).err, HasSubstr("missing.toml"));
+  EXPECT_THAT(run({"certify", file, "--motion", "m.toml", "--box", "x=0:0.1,y=0:0.1,z=0:0.1"}).err,
+              HasSubstr("--motion: found --box beside it; expected one of them"));
+  EXPECT_THAT(run({"certify", file, "--motion", "m.toml", "--proof", "p"}).err, HasSubstr("proofs are of volumes"));
+  EXPECT_THAT(run({"certify", "quadrupteron", "--motion", "m.toml"}).err, HasSubstr("certify needs formulas"));
+  folder_.write("four.toml", "type = \"formulas\"\nduration = 1\nx = 0\ny = 0\nz = 0\nphi = 0\n");
+  EXPECT_THAT(run({"certify", file, "--motion", "four.toml"}).err, HasSubstr("phi"));
+}
+
+/// The study of a five-bar whose volumes have to be within certain bounds.
+class CertainVolumes : public Certify {
+ protected:
+  void SetUp() override {
+    folder_.write("s.toml", "[mechanism]\nfile = \"" + kMechanisms +
+                                "five-bar.toml\"\n[variables]\nl_a = { min = 0.2, max = 0.4 }\nl_b = { min = 0.25, max "
+                                "= 0.5 }\n[baseline]\nl_a = 0.25\nl_b = 0.35\n[workspace]\ncertain = "
+                                "1e-3\n[[objective]]\ntype = \"workspace-ratio\"\n[[stage]]\noptimiser = "
+                                "\"ga\"\npopulation = 6\ngenerations = 4\n[final]\nround = \"10 mm\"\n");
+  }
+};
+
+TEST_F(CertainVolumes, AreToldByRunShowAndExport) {
+  const auto ran = run({"run", "s.toml", "--threads", "1"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("volume, at least"));
+  EXPECT_THAT(ran.out, HasSubstr("volume, at most"));
+  EXPECT_THAT(run({"show", "s.h5"}).out, HasSubstr("volume, at least"));
+  const auto shown = run({"show", "s.h5", "--json"}).json();
+  for (const char* design : {"best", "rounded", "baseline"}) {
+    const auto& json = shown[design];
+    EXPECT_LE(json["certain"]["lower"], json["volume"]) << design;
+    EXPECT_GE(json["certain"]["upper"], json["volume"]) << design;
+    EXPECT_LE(json["certain"]["gap"], 1e-3) << design;
+  }
+  ASSERT_EQ(run({"export", "s.h5", "--csv", "tables"}).exit_code, 0);
+  std::ostringstream table;
+  table << std::ifstream(folder_.path() + "/tables/best.csv").rdbuf();
+  EXPECT_THAT(table.str(), HasSubstr("workspace,volume at least,m^2,"));
+  EXPECT_EQ(run({"run", "s.toml", "--threads", "2", "--output", "two.h5", "--quiet"}).exit_code, 0);
+  auto two = run({"show", "two.h5", "--json"}).json(), one = shown;
+  two.erase("seconds");
+  one.erase("seconds");
+  EXPECT_EQ(one, two);
+}
+
+TEST_F(CertainVolumes, AreCheckedByEvaluate) {
+  const auto found = run({"evaluate", "s.toml", "--json"});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_EQ(found.json()["certain"]["holds_volume"], true);
+  EXPECT_LE(found.json()["certain"]["gap"], 1e-3);
+  EXPECT_LE(run({"evaluate", "s.toml", "--certain", "1e-4", "--json"}).json()["certain"]["gap"], 1e-4);
+  EXPECT_THAT(run({"check", "s.toml"}).out, HasSubstr("within bounds of the gap 0.001"));
+  EXPECT_EQ(run({"check", "s.toml", "--json"}).json()["workspace"]["certain"], 1e-3);
+}
+
 TEST_F(Certify, ProofsAreAccepted) {
   for (const std::string mechanism : {"orthoglide", "4ppa-2par", "five-bar", "rotary-delta", "gough"}) {
     proof_of(mechanism, mechanism == "rotary-delta" ? "0.8" : "0.3");

@@ -10,6 +10,7 @@
 
 #include "engine/mechanism/plan.hpp"
 #include "engine/model/pose.hpp"
+#include "engine/motion/motion.hpp"
 
 namespace pkm {
 
@@ -30,32 +31,39 @@ struct VolumeBounds {
   double gap() const { return upper > 0 ? 2 * (upper - lower) / (upper + lower) : 0; }
 };
 
-/// Whether something holds at every pose of a box.
-struct BoxVerdict {
+/// Whether something holds at every pose of a box or of a motion.
+struct PosesVerdict {
   enum class Kind { holds, fails, undecided };
   Kind kind = Kind::holds;
   std::string what = {};                   ///< does not hold, or is undecided
   std::optional<Pose<double>> where = {};  ///< a pose where it fails, or near which it is undecided
+  std::optional<double> time = {};         ///< of a motion: when it is there [s]
 };
 
-struct BoxCertificate {
-  BoxVerdict feasible;
-  std::optional<BoxVerdict> regular;  ///< no singularity where it is feasible; none: its Jacobian is not square
-  std::size_t boxes = 0;              ///< looked at
+struct PosesCertificate {
+  PosesVerdict feasible;
+  std::optional<PosesVerdict> regular;  ///< no singularity where it is feasible; none: its Jacobian is not square
+  std::size_t boxes = 0;                ///< looked at
   bool stopped = false;
 };
 
 class CertainBounds {
  public:
   virtual ~CertainBounds() = default;
+  /// Throws std::invalid_argument with a sentence where there are no bounds of a plan's workspace.
+  virtual void refuse_bounds(const SurveyPlan& plan) const = 0;
   /// Of the workspace within the plan's box, else within the ranges that hold it, as the numbers stand. Throws
   /// std::invalid_argument with a sentence when the mechanism cannot serve the plan.
   virtual VolumeBounds volume(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
                               const BoundsOptions& options) const = 0;
   /// Of a box of poses, under the plan's limits.
   /// @param ranges  by coordinate; one of no width holds it
-  virtual BoxCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
-                             std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
+  virtual PosesCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                               std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const = 0;
+  /// Of a motion, at every instant of it. Where it is infeasible, at the first instant that is, to 1e-6 of the
+  /// duration.
+  virtual PosesCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
+                                  const Motion& motion, const BoundsOptions& options) const = 0;
 };
 
 }  // namespace pkm

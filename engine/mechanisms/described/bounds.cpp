@@ -14,9 +14,11 @@ namespace {
 
 using bounds::Conditions, bounds::Ranges;
 
-constexpr const char* kNoClearanceOfBoxes =
-    "has no certain bounds under a clearance (clearance_min), because the distance of two links is no formula of the "
-    "pose; take voxels, or leave the clearance out";
+void refuse_clearance_of_boxes(const Model& model, const LimitSpec& limits) {
+  refuse_clearance(model, limits,
+                   "has no certain bounds under a clearance (clearance_min), because the distance of two links is no "
+                   "formula of the pose; take voxels, or leave the clearance out");
+}
 
 /// The graph's inputs for a design, with the held coordinates where they are held.
 std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
@@ -24,25 +26,30 @@ std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e,
   const std::vector<Interval> design(parameters.begin(), parameters.end());
   std::vector<Interval> inputs(e.model.inputs.count());
   e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
-  for (const int coordinate : sweep_of(mechanism.info(), plan).held) {
-    const HeldCoordinate held = how_held(plan, coordinate);
-    const bool integrated = held.kind == HeldCoordinate::Kind::integrated;
-    if (integrated || (held.kind == HeldCoordinate::Kind::listed && held.values.size() > 1))
-      throw std::invalid_argument(
-          "bounds are of one value of " + mechanism.info().coordinates[static_cast<std::size_t>(coordinate)].name +
-          (integrated ? ", which the survey integrates over" : ", of which the survey has several") +
-          ": hold it at a value");
+  for (const int coordinate : sweep_of(mechanism.info(), plan).held)
     inputs[e.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
         held_value(mechanism, parameters, plan, coordinate);
-  }
   return inputs;
 }
 
 }  // namespace
 
+void refuse_bounds(const Model& model, const SurveyPlan& plan) {
+  refuse_clearance_of_boxes(model, plan.limits);
+  for (const int coordinate : sweep_of(model.info, plan).held) {
+    const HeldCoordinate held = how_held(plan, coordinate);
+    const bool integrated = held.kind == HeldCoordinate::Kind::integrated;
+    if (integrated || (held.kind == HeldCoordinate::Kind::listed && held.values.size() > 1))
+      throw std::invalid_argument(
+          "bounds are of one value of " + model.info.coordinates[static_cast<std::size_t>(coordinate)].name +
+          (integrated ? ", which the survey integrates over" : ", of which the survey has several") +
+          ": hold it at a value");
+  }
+}
+
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::span<const double> parameters,
                           const SurveyPlan& plan, std::size_t mode, const BoundsOptions& options) {
-  refuse_clearance(e.model, plan.limits, kNoClearanceOfBoxes);
+  refuse_bounds(e.model, plan);
   const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
   const Ranges given = e.survey_box(parameters, plan.box(), swept);
   for (std::size_t i = 0; i < swept.size(); ++i)
@@ -139,15 +146,45 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
   return matrices;
 }
 
-}  // namespace
-
-BoxCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const SurveyPlan& plan,
-                           std::size_t mode, std::span<const std::array<double, 2>> ranges,
-                           const BoundsOptions& options) {
-  refuse_clearance(e.model, plan.limits, kNoClearanceOfBoxes);
+/// The graph's inputs for a design at no pose.
+std::vector<Interval> inputs_of(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
+                                std::size_t mode) {
+  refuse_clearance_of_boxes(e.model, limits);
   const std::vector<Interval> design(parameters.begin(), parameters.end());
   std::vector<Interval> inputs(e.model.inputs.count());
-  e.fill_inputs<Interval>(design, plan.limits, mode, inputs);
+  e.fill_inputs<Interval>(design, limits, mode, inputs);
+  return inputs;
+}
+
+/// Puts a motion's formulas in place of the coordinates. @return  the position of the time among the inputs
+std::size_t put_motion(const Motion& motion, const Inputs& at, Graph& graph, std::vector<Interval>& inputs,
+                       std::vector<Node>& roots) {
+  TimeGraph time(graph, inputs);
+  const std::vector<Node> pose = motion.write(time);
+  std::vector<std::optional<Node>> coordinates(at.coordinate(0) + pose.size());
+  std::ranges::copy(pose, coordinates.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
+  graph = graph::with_nodes(graph, coordinates, roots);
+  return time.position;
+}
+
+bounds::Matrices jacobians_along(const Motion& motion, const Model& model, std::vector<Interval> inputs) {
+  Graph graph;
+  std::vector<bounds::NamedMatrix> named = jacobians(model, graph, inputs);
+  std::vector<Node> entries;
+  for (const auto& matrix : named) entries.insert(entries.end(), matrix.entries.begin(), matrix.entries.end());
+  const std::size_t time = put_motion(motion, model.inputs, graph, inputs, entries);
+  auto entry = entries.begin();
+  for (auto& matrix : named)
+    for (Node& node : matrix.entries) node = *entry++;
+  return {graph, named, {time}, inputs};
+}
+
+}  // namespace
+
+PosesCertificate certify_box(const Evaluation& e, std::span<const double> parameters, const SurveyPlan& plan,
+                             std::size_t mode, std::span<const std::array<double, 2>> ranges,
+                             const BoundsOptions& options) {
+  std::vector<Interval> inputs = inputs_of(e, parameters, plan.limits, mode);
   std::vector<std::size_t> axes;
   for (std::size_t i = 0; i < ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
   const PoseConditions all = pose_conditions(e.model, inputs);
@@ -159,6 +196,41 @@ BoxCertificate certify_box(const Evaluation& e, std::span<const double> paramete
     matrices.emplace(graph, named, axes, inputs);
   }
   return bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
+}
+
+PosesCertificate certify_motion(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
+                                std::size_t mode, const Motion& motion, const BoundsOptions& options) {
+  const std::vector<Interval> design = inputs_of(e, parameters, limits, mode);
+  PoseConditions all = pose_conditions(e.model, design);
+  std::vector<Node> roots;
+  for (const auto& condition : all.all) roots.push_back(condition.node);
+  std::vector<Interval> inputs = design;
+  const std::size_t time = put_motion(motion, e.model.inputs, all.graph, inputs, roots);
+  for (std::size_t i = 0; i < roots.size(); ++i) all.all[i].node = roots[i];
+  const Conditions conditions(all.graph, all.all, {time}, inputs);
+  std::optional<bounds::Matrices> matrices;
+  if (e.model.inputs.joints == e.model.inputs.coordinates) matrices = jacobians_along(motion, e.model, design);
+
+  const auto until = [&](double end, const bounds::Matrices* regular) {
+    const std::array<double, 2> times = {0, end};
+    return bounds::certify(conditions, regular, {&times, 1}, options);
+  };
+  PosesCertificate found = until(motion.duration(), matrices ? &*matrices : nullptr);
+  const auto first = [](const PosesVerdict& verdict) { return (*verdict.where)[0]; };
+  // an instant at which it is infeasible lies behind the first one
+  double later = motion.duration();
+  while (found.feasible.kind == PosesVerdict::Kind::fails && later - first(found.feasible) > 1e-6 * motion.duration()) {
+    later = first(found.feasible);
+    PosesCertificate before = until(later, nullptr);
+    found.boxes += before.boxes;
+    if (before.feasible.kind == PosesVerdict::Kind::fails) found.feasible = before.feasible;
+  }
+  for (PosesVerdict* const verdict : {&found.feasible, found.regular ? &*found.regular : nullptr})
+    if (verdict && verdict->where) {
+      verdict->time = first(*verdict);
+      verdict->where = motion.at(*verdict->time).pose;
+    }
+  return found;
 }
 
 }  // namespace pkm::described

@@ -98,13 +98,18 @@ class DescribedMechanism final : public Mechanism,
     return prepare_columns(*this, e_, plan, columns, demand);
   }
   bool take_box() const override { return true; }
+  void refuse_bounds(const SurveyPlan& plan) const override { described::refuse_bounds(e_.model, plan); }
   VolumeBounds volume(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
                       const BoundsOptions& options) const override {
     return bound_volume(*this, e_, parameters, plan, number_of_mode(info(), mode), options);
   }
-  BoxCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
-                     std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
+  PosesCertificate box(std::span<const double> parameters, const SurveyPlan& plan, const std::string& mode,
+                       std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) const override {
     return certify_box(e_, parameters, plan, number_of_mode(info(), mode), ranges, options);
+  }
+  PosesCertificate motion(std::span<const double> parameters, const LimitSpec& limits, const std::string& mode,
+                          const Motion& motion, const BoundsOptions& options) const override {
+    return certify_motion(e_, parameters, limits, number_of_mode(info(), mode), motion, options);
   }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
                                              const std::string& mode) const override {

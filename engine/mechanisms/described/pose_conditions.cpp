@@ -11,13 +11,21 @@ namespace {
 
 using graph::Code, graph::Entry, graph::Term;
 
-/// Whether a node is a number of the design that is not negative.
-bool is_positive(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
-  if ((graph[node].groups & ~Inputs::kDesign) != 0) return false;
+/// What a node comes to where it is a number of the design.
+std::optional<Interval> of_design(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
+  if ((graph[node].groups & ~Inputs::kDesign) != 0) return {};
   std::vector<Interval> registers;
   const graph::Program program(graph, {&node, 1});
   program.run_all<Interval>(inputs, registers);
-  return registers[program.outputs().front()].surely_holds();
+  return registers[program.outputs().front()];
+}
+bool is_positive(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
+  const auto number = of_design(graph, node, inputs);
+  return number && number->surely_holds();
+}
+bool is_angle(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
+  const auto number = of_design(graph, node, inputs);
+  return number && number->surely_holds() && number->upper <= kPi;  // which is less than pi
 }
 
 std::optional<Node> radicand(const Graph& graph, Node node) {
@@ -38,6 +46,28 @@ Node squared(Graph& graph, Node condition, const std::vector<Interval>& inputs) 
     return (Term(graph, *a) - square(right)).node();
   return condition;
 }
+
+/// Without the arc cosine, where an angle acos(u) is compared with one of the design in [0, pi]; of u = k / sqrt(a)
+/// without the quotient. That u is within [-1, 1] is a condition by itself, or goes without saying.
+/// @param value  u where it is a quotient: there has to be one
+Node by_cosine(Graph& graph, Node condition, const std::vector<Interval>& inputs, std::optional<Node>& value) {
+  const Entry entry = graph[condition];
+  if (!entry.operation || entry.operation->code != Code::subtract) return condition;
+  const auto [left, right] = std::pair(entry.arguments[0], entry.arguments[1]);
+  const auto is_acos = [&](Node node) { return graph[node].operation && graph[node].operation->name == "acos"; };
+  const bool most = is_acos(right) && is_angle(graph, left, inputs);
+  if (!most && !(is_acos(left) && is_angle(graph, right, inputs))) return condition;
+  const Term bound = cos(Term(graph, most ? left : right));
+  const Entry u = graph[graph[most ? right : left].arguments[0]];
+  const bool quotient = u.operation && u.operation->code == Code::divide && radicand(graph, u.arguments[1]);
+  if (quotient) value = graph[most ? right : left].arguments[0];
+  const Term over(graph, quotient ? u.arguments[0] : graph[most ? right : left].arguments[0]);
+  const Term least = quotient ? Term(graph, u.arguments[1]) * bound : bound;
+  return (most ? over - least : least - over).node();
+}
+
+/// >= 0 where a node has a value.
+Node exists(Graph& graph, Node node) { return graph.apply(graph::operation("*"), std::array{node, graph.number(0)}); }
 
 class Guard {
  public:
@@ -69,7 +99,12 @@ PoseConditions pose_conditions(const Model& model, const std::vector<Interval>& 
   Graph graph = model.graph;
   std::vector<bounds::NamedCondition> conditions;
   for (const auto* const list : {&model.domains, &model.margins})
-    for (const Result& result : *list) conditions.push_back({result.name, squared(graph, result.node, inputs)});
+    for (const Result& result : *list) {
+      std::optional<Node> value;
+      const Node angle = by_cosine(graph, result.node, inputs, value);
+      conditions.push_back({result.name, squared(graph, angle, inputs)});
+      if (value) conditions.push_back({result.name, exists(graph, *value)});
+    }
   for (const Node node : model.defined) conditions.push_back({"formulas have values", node});
 
   Guard guard(graph, conditions);

@@ -69,7 +69,7 @@ function cards(study) {
   return list.children.length ? list : "";
 }
 
-const isResult = (row) => row.kind === "objective" || row.kind === "report";
+const isResult = (row) => row.kind === "objective" || row.kind === "report" || row.kind === "certain";
 const unitOf = (row) => (isResult(row) ? resultUnit(row.unit).unit : shownUnit(row.unit));
 
 /** A margin that has nothing left to give: below the study's own threshold, and not broken beyond rounding. */
@@ -108,6 +108,7 @@ function designTable({ columns, rows }, variables) {
     objective: "objectives",
     report: "reports",
     constraint: "margins of constraints (≥ 0 holds; active: at its bound)",
+    certain: "the workspace’s volume and certain bounds of it",
   };
   let kind = "";
   const body = element("tbody");

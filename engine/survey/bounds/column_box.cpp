@@ -39,27 +39,22 @@ void merge(std::vector<Segment>& segments) {
 }  // namespace
 
 ColumnExamination::Root ColumnExamination::root_of(std::size_t condition, const Segment& segment, const Place& place,
-                                                   Conditions::Room& room) const {
+                                                   const Place& centre, Room& room) const {
   const std::size_t z = conditions_.axes() - 1;
-  const Slope slope = conditions_.slope(condition, place, room);
+  const Slope slope = conditions_.slope(condition, place[z], room.over);
   if (!slope.value.is_continuous()) return {};
   Root root;
-  Place centre = place;
-  for (std::size_t axis = 0; axis <= z; ++axis) centre[axis] = Interval(place[axis].middle());
   // near the root over the centre, or the end that is nearest to it
-  const auto at = [&](double height) {
-    centre[z] = Interval(height);
-    return conditions_.value(condition, centre, room).middle();
-  };
+  const auto at = [&](double height) { return conditions_.value(condition, Interval(height), room.centre).middle(); };
   const double from = place[z].lower, to = place[z].upper, at_from = at(from), at_to = at(to);
   root.changes = (at_from < 0) != (at_to < 0);
   const double guess = root.changes ? bracketed_root(at, from, at_from, to, at_to, 1e-3 * (to - from))
                                     : (std::fabs(at_from) < std::fabs(at_to) ? from : to);
   root.guess = heights_.below(guess, segment.from, segment.to);
-  centre[z] = Interval(heights_.at(root.guess));
+  const Interval near(heights_.at(root.guess));
   if (root.changes) {
     // about how far the root moves over the box, and half of that
-    const Slope there = conditions_.slope(condition, centre, room);
+    const Slope there = conditions_.slope(condition, near, room.centre);
     double moves = 0;
     for (std::size_t axis = 0; axis < z; ++axis) moves += std::fabs(there.by[axis].middle()) * place[axis].width();
     const double margin = 0.75 * moves / std::fabs(there.by[z].middle());
@@ -70,13 +65,11 @@ ColumnExamination::Root ColumnExamination::root_of(std::size_t condition, const 
   root.is_known = true;
   root.rises = steep.lower > 0;
   if (!slope.is_known) {  // over every place of the box by itself
-    Place level = place;
-    level[z] = centre[z];
-    root.zone = root.mean = centre[z] - conditions_.value(condition, level, room) / steep;
+    root.zone = root.mean = near - conditions_.value(condition, near, room.over) / steep;
     root.is_known = !root.zone.is_empty();
     return root;
   }
-  const Interval over_centre = centre[z] - conditions_.value(condition, centre, room) / steep;
+  const Interval over_centre = near - conditions_.value(condition, near, room.centre) / steep;
   Interval away(0.0), spread(0.0);
   for (std::size_t axis = 0; axis < z; ++axis) {
     const Interval gradient = slope.by[axis] / steep;
@@ -94,20 +87,23 @@ ColumnExamination::Root ColumnExamination::root_of(std::size_t condition, const 
   return root;
 }
 
-void ColumnExamination::examine(ColumnBox& box, Conditions::Room& room, std::vector<Step>* steps) const {
+void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* steps) const {
   const std::size_t z = conditions_.axes() - 1;
   const auto note = [&](Step step) {
     if (steps) steps->push_back(step);
   };
-  Place place;
+  Place place, centre;
   Interval area(1.0);
   double widest = 0;  // of the box's sides, as a share of the whole
   for (std::size_t axis = 0; axis < z; ++axis) {
     const auto [from, to] = box.side[axis];
     place[axis] = {from, to};
+    centre[axis] = Interval(place[axis].middle());
     area = area * (Interval(to) - Interval(from));
     widest = std::max(widest, (to - from) / (whole_[axis][1] - whole_[axis][0]));
   }
+  conditions_.enter(place, room.over);
+  conditions_.enter(centre, room.centre);
   const auto shortest = static_cast<std::int64_t>(0.5 * widest * static_cast<double>(Heights::kSteps));
 
   std::vector<Segment> left = std::move(box.open);
@@ -123,7 +119,7 @@ void ColumnExamination::examine(ColumnBox& box, Conditions::Room& room, std::vec
     bool fails = false;
     for (std::size_t k = 0; k < conditions_.size() && !fails; ++k) {
       if (!segment.open[k]) continue;
-      const Interval value = conditions_.value(k, place, room);
+      const Interval value = conditions_.value(k, place[z], room.over);
       fails = value.surely_fails();
       if (fails) note({Step::Kind::fails, k});
       if (!value.surely_holds()) continue;
@@ -152,7 +148,7 @@ void ColumnExamination::examine(ColumnBox& box, Conditions::Room& room, std::vec
     const std::int64_t size = segment.to - segment.from;
     for (std::size_t k = 0; k < conditions_.size() && !divided; ++k) {
       if (!segment.open[k] || !conditions_.depends(k, z)) continue;
-      root = root_of(k, segment, place, room);
+      root = root_of(k, segment, place, centre, room);
       may_halve = may_halve || !root.is_known;
       if (root.is_known) {
         // a step further than it has to be, for those who round otherwise

@@ -70,8 +70,14 @@ class ColumnExamination {
                     const std::array<std::array<double, 2>, kMostOuter>& whole)
       : conditions_(conditions), heights_(heights), whole_(whole) {}
 
+  /// For one worker.
+  struct Room {
+    Conditions::Room over, centre;  ///< of the box, of its centre
+  };
+  Room room() const { return {conditions_.room(), conditions_.room()}; }
+
   /// @param steps  what was found is appended; null: nobody asks
-  void examine(ColumnBox& box, Conditions::Room& room, std::vector<Step>* steps) const;
+  void examine(ColumnBox& box, Room& room, std::vector<Step>* steps) const;
 
  private:
   struct Root {
@@ -83,7 +89,10 @@ class ColumnExamination {
     double margin = 0;
   };
 
-  Root root_of(std::size_t condition, const Segment& segment, const Place& place, Conditions::Room& room) const;
+  /// @param place  box and segment
+  /// @param centre  of the box
+  Root root_of(std::size_t condition, const Segment& segment, const Place& place, const Place& centre,
+               Room& room) const;
 
   const Conditions& conditions_;
   const Heights heights_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/graph/derivative.hpp"
+#include "engine/graph/interval_step.hpp"
 
 namespace pkm::bounds {
 
@@ -31,53 +32,94 @@ Conditions::Conditions(Graph graph, const std::vector<NamedCondition>& condition
   std::vector<Node> coordinates;
   for (std::size_t axis = 0; axis < axes_.size(); ++axis)
     coordinates.push_back(graph.input(axes_[axis], axis_group(axis)));
+  std::vector<Node> outputs;
   for (std::size_t k = 0; k < roots.size(); ++k) {
     if (std::find(roots.begin(), roots.begin() + static_cast<std::ptrdiff_t>(k), roots[k]) !=
         roots.begin() + static_cast<std::ptrdiff_t>(k))
       continue;  // the same once more
-    Condition made{.name = conditions[k].name,
-                   .node = conditions[k].node,
-                   .value = part_of(graph, {roots[k]}, inputs),
-                   .slope = {}};
-    std::vector<Node> slopes = {roots[k]};
+    Condition made{.name = conditions[k].name, .node = conditions[k].node, .value = {}, .slope = {}};
+    outputs.push_back(roots[k]);
     for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
       made.depends[axis] = (graph[roots[k]].groups & axis_group(axis)) != 0;
-      slopes.push_back(graph::derivative(graph, roots[k], coordinates[axis]));
+      outputs.push_back(graph::derivative(graph, roots[k], coordinates[axis]));
     }
-    made.slope = part_of(graph, slopes, inputs);
     all_.push_back(std::move(made));
   }
+  const Groups last = axis_group(axes_.size() - 1);
+  const Program program(graph, outputs, std::array{kFixed, ~(kFixed | last), last});
+  const std::size_t width = 1 + axes_.size();
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    all_[k].value = part_of(program, k * width, 1);
+    all_[k].slope = part_of(program, k * width, width);
+  }
+  registers_.resize(axes_.size());
+  for (const Program::Stage& stage : program.stages())
+    for (const Program::Input& input : stage.inputs)
+      for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+        if (axes_[axis] == input.position) registers_[axis] = input.to;
+  start_.registers_.resize(program.registers());
+  start_.since_.resize(program.registers());
+  program.start<Interval>(start_.registers_);
+  program.run<Interval>(0, inputs, start_.registers_);
 }
 
-Conditions::Part Conditions::part_of(const Graph& graph, const std::vector<Node>& outputs,
-                                     const std::vector<Interval>& inputs) {
-  constexpr Groups kAxes = ~kFixed;
-  Part part{Program(graph, outputs, std::array{kFixed, kAxes}), start_.size()};
-  start_.resize(start_.size() + part.program.registers());
-  const std::span<Interval> registers = std::span(start_).subspan(part.first);
-  part.program.start(registers);
-  part.program.run<Interval>(0, inputs, registers);
+Conditions::Part Conditions::part_of(const Program& program, std::size_t first_output, std::size_t count) {
+  Part part{.outputs = {}, .outer = {}, .last = {}, .number = start_.computed_.size()};
+  start_.computed_.push_back(0);
+  std::vector<bool> wanted(program.registers());
+  for (std::size_t i = 0; i < count; ++i) {
+    part.outputs.push_back(program.outputs()[first_output + i]);
+    wanted[part.outputs.back()] = true;
+  }
+  const auto collect = [&](const Program::Stage& stage, std::vector<Program::Step>& to) {
+    for (auto step = stage.steps.rbegin(); step != stage.steps.rend(); ++step) {
+      if (!wanted[step->to]) continue;
+      for (std::size_t i = 0; i < step->count; ++i) wanted[step->from[i]] = true;
+      to.push_back(*step);
+    }
+    std::ranges::reverse(to);
+  };
+  collect(program.stages()[2], part.last);
+  collect(program.stages()[1], part.outer);
   return part;
 }
 
-std::span<Interval> Conditions::run(const Part& part, const Place& place, Room& room) const {
-  const std::span<Interval> registers = std::span(room).subspan(part.first, part.program.registers());
-  for (const Program::Input& input : part.program.stages()[1].inputs)
-    for (std::size_t axis = 0; axis < axes_.size(); ++axis)
-      if (axes_[axis] == input.position) registers[input.to] = place[axis];
-  part.program.run(1, registers);
-  return registers;
+void Conditions::enter(const Place& place, Room& room) const {
+  for (std::size_t axis = 0; axis + 1 < axes_.size(); ++axis)
+    if (registers_[axis]) room.registers_[*registers_[axis]] = place[axis];
+  room.box_ = ++room.now_;
+  room.along_ = Interval::empty();  // which is like none
 }
 
-Interval Conditions::value(std::size_t k, const Place& place, Room& room) const {
-  const Part& part = all_[k].value;
-  return run(part, place, room)[part.program.outputs().front()];
+void Conditions::run(const Part& part, const Interval& along, Room& room) const {
+  const auto compute = [&room](const std::vector<Program::Step>& steps, std::uint64_t since) {
+    for (const Program::Step& step : steps) {
+      if (room.since_[step.to] == since) continue;
+      graph::run_step(step, room.registers_);
+      room.since_[step.to] = since;
+    }
+  };
+  if (room.computed_[part.number] != room.box_) {
+    compute(part.outer, room.box_);
+    room.computed_[part.number] = room.box_;
+  }
+  if (along.lower != room.along_.lower || along.upper != room.along_.upper) {
+    room.along_ = along;
+    room.along_since_ = ++room.now_;
+    if (registers_.back()) room.registers_[*registers_.back()] = along;
+  }
+  compute(part.last, room.along_since_);
 }
 
-Slope Conditions::slope(std::size_t k, const Place& place, Room& room) const {
-  const Condition& condition = all_[k];
-  const std::span<Interval> registers = run(condition.slope, place, room);
-  const std::vector<std::uint32_t>& outputs = condition.slope.program.outputs();
+Interval Conditions::value(std::size_t k, const Interval& along, Room& room) const {
+  run(all_[k].value, along, room);
+  return room.registers_[all_[k].value.outputs.front()];
+}
+
+Slope Conditions::slope(std::size_t k, const Interval& along, Room& room) const {
+  run(all_[k].slope, along, room);
+  const std::span<const Interval> registers = room.registers_;
+  const std::vector<std::uint32_t>& outputs = all_[k].slope.outputs;
   Slope slope{.value = registers[outputs[0]], .by = {}};
   slope.is_known = slope.value.is_continuous();
   for (std::size_t axis = 0; axis < kMostAxes; ++axis) {

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +35,16 @@ struct NamedCondition {
 /// Immutable, shared by threads.
 class Conditions {
  public:
-  /// Registers of all programs; for one worker.
-  using Room = std::vector<Interval>;
+  /// Registers of one worker, who looks at one box of the axes but the last at a time: what depends on these alone is
+  /// computed once for all ranges of the last axis, and what conditions share once for all of them.
+  class Room {
+    friend Conditions;
+    std::vector<Interval> registers_;
+    std::vector<std::uint64_t> since_;     ///< by register: when it was computed
+    std::vector<std::uint64_t> computed_;  ///< by part: since when its outer steps are
+    std::uint64_t now_ = 0, box_ = 0, along_since_ = 0;
+    Interval along_;
+  };
 
   /// @param axes    positions of the inputs that the axes are
   /// @param inputs  of the graph: those that are no axes stay
@@ -48,13 +58,18 @@ class Conditions {
   bool depends(std::size_t k, std::size_t axis) const { return all_[k].depends[axis]; }
   Room room() const { return start_; }
 
-  Interval value(std::size_t k, const Place& place, Room& room) const;
-  Slope slope(std::size_t k, const Place& place, Room& room) const;
+  /// Goes to another box. @param place  the last axis is not looked at
+  void enter(const Place& place, Room& room) const;
+  /// Over the box that was entered last. @param along  the last axis
+  Interval value(std::size_t k, const Interval& along, Room& room) const;
+  Slope slope(std::size_t k, const Interval& along, Room& room) const;
 
  private:
+  /// Some outputs of the program: the steps that lead to them.
   struct Part {
-    graph::Program program;
-    std::size_t first = 0;  ///< of its registers
+    std::vector<std::uint32_t> outputs;
+    std::vector<graph::Program::Step> outer, last;
+    std::size_t number = 0;
   };
   struct Condition {
     std::string name;
@@ -63,10 +78,11 @@ class Conditions {
     std::array<bool, kMostAxes> depends{};
   };
 
-  std::span<Interval> run(const Part& part, const Place& place, Room& room) const;
-  Part part_of(const graph::Graph& graph, const std::vector<graph::Node>& outputs, const std::vector<Interval>& inputs);
+  void run(const Part& part, const Interval& along, Room& room) const;
+  Part part_of(const graph::Program& program, std::size_t first_output, std::size_t count);
 
   std::vector<std::size_t> axes_;
+  std::vector<std::optional<std::uint32_t>> registers_;  ///< of the axes, as far as a condition uses them
   std::vector<Condition> all_;
   Room start_;
 };

@@ -78,15 +78,16 @@ class BoxSearch {
             const BoundsOptions& options)
       : conditions_(conditions), matrices_(matrices), ranges_(ranges), options_(options) {
     for (std::size_t i = 0; i < workers(); ++i)
-      rooms_.push_back({conditions.room(), matrices ? matrices->room() : Matrices::Room()});
+      rooms_.push_back(
+          {conditions.room(), conditions.room(), conditions.room(), matrices ? matrices->room() : Matrices::Room()});
   }
 
-  BoxCertificate run() {
+  PosesCertificate run() {
     Box all;
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) all.side[axis] = {ranges_[axis][0], ranges_[axis][1]};
     for (std::size_t k = 0; k < conditions_.size(); ++k) all.open.push_back(k);
     all.regular = !matrices_;
-    BoxCertificate found;
+    PosesCertificate found;
     if (matrices_) found.regular.emplace();
     std::vector<Box> boxes = {all};
     while (!boxes.empty()) {
@@ -98,19 +99,19 @@ class BoxSearch {
       const bool last = found.stopped || found.boxes >= options_.most_boxes;
       std::vector<Box> next;
       for (const Box& box : boxes) {
-        if (box.fails && found.feasible.kind != BoxVerdict::Kind::fails)
-          found.feasible = {BoxVerdict::Kind::fails, conditions_.name(*box.fails), pose(box)};
+        if (box.fails && found.feasible.kind != PosesVerdict::Kind::fails)
+          found.feasible = {PosesVerdict::Kind::fails, conditions_.name(*box.fails), pose(box)};
         if (box.fails || (box.open.empty() && box.regular)) continue;
         const bool halved = !last && halve(box, next);
         if (halved) continue;
-        if (!box.open.empty() && found.feasible.kind == BoxVerdict::Kind::holds)
-          found.feasible = {BoxVerdict::Kind::undecided, conditions_.name(box.open.front()), pose(box)};
-        if (!box.regular && found.regular->kind == BoxVerdict::Kind::holds)
-          found.regular = {BoxVerdict::Kind::undecided, box.singular ? *box.singular : "", pose(box)};
+        if (!box.open.empty() && found.feasible.kind == PosesVerdict::Kind::holds)
+          found.feasible = {PosesVerdict::Kind::undecided, conditions_.name(box.open.front()), pose(box)};
+        if (!box.regular && found.regular->kind == PosesVerdict::Kind::holds)
+          found.regular = {PosesVerdict::Kind::undecided, box.singular ? *box.singular : "", pose(box)};
       }
       boxes = std::move(next);
       // where a pose breaks a condition, what is left is not asked for
-      if (found.feasible.kind == BoxVerdict::Kind::fails) {
+      if (found.feasible.kind == PosesVerdict::Kind::fails) {
         if (found.regular) found.regular.reset();
         return found;
       }
@@ -120,7 +121,7 @@ class BoxSearch {
 
  private:
   struct Room {
-    Conditions::Room conditions;
+    Conditions::Room over, middle, corner;
     Matrices::Room matrices;
   };
 
@@ -136,14 +137,21 @@ class BoxSearch {
     std::vector<std::size_t> open;
     Place middle = box.side;
     for (Interval& side : middle) side = Interval(side.middle());
+    const std::size_t last = ranges_.size() - 1;
+    conditions_.enter(box.side, room.over);
+    conditions_.enter(middle, room.middle);
     for (const std::size_t k : box.open) {
-      const Slope slope = conditions_.slope(k, box.side, room.conditions);
-      if (slope.value.surely_holds()) continue;
-      if (slope.value.surely_fails() || conditions_.value(k, middle, room.conditions).surely_fails()) {
+      const Interval value = conditions_.value(k, box.side[last], room.over);
+      if (value.surely_holds()) continue;
+      const Interval at_middle = conditions_.value(k, middle[last], room.middle);
+      if (value.surely_fails() || at_middle.surely_fails()) {
         box.fails = k;
         return;
       }
-      if (slope.is_known && least(k, box.side, slope, room).surely_holds()) continue;
+      const Slope slope = conditions_.slope(k, box.side[last], room.over);
+      if (slope.is_known &&
+          (around(at_middle, middle, box.side, slope).surely_holds() || least(k, box.side, slope, room).surely_holds()))
+        continue;
       open.push_back(k);
       for (std::size_t axis = 0; axis < ranges_.size(); ++axis)
         steep[axis] += slope.is_known ? magnitude(slope.by[axis]).upper * box.side[axis].width() : 0;
@@ -156,6 +164,12 @@ class BoxSearch {
     box.axis = axis_of(box, steep);
   }
 
+  /// The condition as far from its value in the middle as its slopes lead (the mean value theorem).
+  Interval around(Interval value, const Place& middle, const Place& side, const Slope& slope) const {
+    for (std::size_t axis = 0; axis < ranges_.size(); ++axis) value += slope.by[axis] * (side[axis] - middle[axis]);
+    return value;
+  }
+
   /// The condition at the corner where it is least, as far as its slopes say.
   Interval least(std::size_t k, const Place& side, const Slope& slope, Room& room) const {
     Place corner = side;
@@ -163,7 +177,8 @@ class BoxSearch {
       if (slope.by[axis].lower >= 0) corner[axis] = Interval(side[axis].lower);
       if (slope.by[axis].upper <= 0) corner[axis] = Interval(side[axis].upper);
     }
-    return conditions_.value(k, corner, room.conditions);
+    conditions_.enter(corner, room.corner);
+    return conditions_.value(k, corner[ranges_.size() - 1], room.corner);
   }
 
   /// Where the open conditions change most, as far as that is known; else the side that is most of the whole.
@@ -207,8 +222,8 @@ class BoxSearch {
 
 }  // namespace
 
-BoxCertificate certify(const Conditions& conditions, const Matrices* matrices,
-                       std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) {
+PosesCertificate certify(const Conditions& conditions, const Matrices* matrices,
+                         std::span<const std::array<double, 2>> ranges, const BoundsOptions& options) {
   return BoxSearch(conditions, matrices, ranges, options).run();
 }
 

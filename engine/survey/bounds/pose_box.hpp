@@ -1,7 +1,8 @@
 // Whether conditions hold at every pose of a box, and whether matrices are regular there: boxes are halved until each
 // is decided.
 //
-// A condition that only rises or only falls along each axis, or stays, is least and greatest at corners. A matrix is
+// A condition that only rises or only falls along each axis, or stays, is least and greatest at corners; any other is
+// no further from its value in the middle than its slopes lead. A matrix is
 // regular over a box if, multiplied with an inverse from its middle, it is near enough to the unit matrix: its diagonal
 // outweighs the rest of each row (Levy and Desplanques).
 #pragma once
@@ -43,7 +44,7 @@ class Matrices {
 
 /// @param ranges    by axis
 /// @param matrices  null: nobody asks
-BoxCertificate certify(const Conditions& conditions, const Matrices* matrices,
-                       std::span<const std::array<double, 2>> ranges, const BoundsOptions& options);
+PosesCertificate certify(const Conditions& conditions, const Matrices* matrices,
+                         std::span<const std::array<double, 2>> ranges, const BoundsOptions& options);
 
 }  // namespace pkm::bounds

@@ -18,7 +18,7 @@ class Search {
         whole_{ranges[0], ranges[1]},
         heights_{ranges[outer_][0], ranges[outer_][1]},
         examination_(conditions_, heights_, whole_),
-        rooms_(workers(), conditions.room()) {}
+        rooms_(workers(), examination_.room()) {}
 
   VolumeBounds run() {
     ColumnBox all{.side = whole_};
@@ -101,7 +101,7 @@ class Search {
     return from < middle && middle < to;
   }
 
-  void examine(Leaf& leaf, Conditions::Room& room) {
+  void examine(Leaf& leaf, ColumnExamination::Room& room) {
     if (!tree_) return examination_.examine(leaf.box, room, nullptr);
     std::vector<Step> steps;
     examination_.examine(leaf.box, room, &steps);
@@ -115,7 +115,7 @@ class Search {
   std::array<std::array<double, 2>, kMostOuter> whole_;
   Heights heights_;
   ColumnExamination examination_;
-  std::vector<Conditions::Room> rooms_;
+  std::vector<ColumnExamination::Room> rooms_;
   std::vector<Leaf> boxes_;
 };
 

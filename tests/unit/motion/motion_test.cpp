@@ -58,6 +58,37 @@ TEST(Motions, VelocityAndAccelerationAreTheDerivatives) {
   }
 }
 
+/// The formulas over an interval of times hold every sample in it, and are as narrow as it is short.
+TEST(Motions, FormulasOfTheTimeHoldEverySample) {
+  for (const auto& [name, motion] : every_kind()) {
+    SCOPED_TRACE(name);
+    graph::Graph graph;
+    std::vector<Interval> inputs = {Interval(7.0)};
+    TimeGraph to(graph, inputs);
+    const std::vector<graph::Node> pose = motion->write(to);
+    ASSERT_EQ(pose.size(), 4u);
+    const graph::Program program(graph, pose);
+    const double T = motion->duration();
+    std::vector<Interval> registers;
+    for (const int pieces : {7, 1000}) {
+      for (int k = 0; k < pieces; ++k) {
+        const double from = T * k / pieces, end = T * (k + 1) / pieces;
+        inputs[to.position] = {from, end};
+        program.run_all<Interval>(inputs, registers);
+        for (const double t : {from, 0.7 * from + 0.3 * end, end})
+          for (std::size_t i = 0; i < 4; ++i) {
+            const Interval at = registers[program.outputs()[i]];
+            const double sample = motion->at(std::min(t, T)).pose[i];
+            EXPECT_LE(at.lower, sample + 1e-12) << t;
+            EXPECT_GE(at.upper, sample - 1e-12) << t;
+            EXPECT_LE(at.width(), 40.0 / pieces) << t;
+            EXPECT_TRUE(at.is_defined());
+          }
+      }
+    }
+  }
+}
+
 TEST(Motions, SamplesIncludeBothEnds) {
   for (const auto& [name, motion] : every_kind()) {
     SCOPED_TRACE(name);

@@ -21,7 +21,7 @@ TEST(ProblemErrors, Workspace) {
           {"metod = \"voxels\"",
            "s.toml:4: workspace.metod: found an unknown key; expected one of method, tolerance, nodes, cells, box, "
            "sweep, y, "
-           "limits; did you mean 'method'?"},
+           "limits, certain; did you mean 'method'?"},
           {"tolerance = 1", "s.toml:4: workspace.tolerance: found 1; expected a number in [1e-13, 0.1]"},
           {"tolerance = \"1e-8 m\"",
            "s.toml:4: workspace.tolerance: found \"1e-8 m\"; expected a number, or text such as \"5 %\""},

@@ -3,6 +3,8 @@
 // boxes.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 
@@ -46,6 +48,12 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
   const unsigned designs = asked ? static_cast<unsigned>(std::atoi(asked)) : 5;
   const std::vector<SurveyPlan> all = plans();
   unsigned compared = 0, wrong = 0, vague = 0, wide = 0;
+  const auto start = std::chrono::steady_clock::now();
+  const auto tell = [&] {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    std::cerr << '\r' << GetParam() << ": " << compared << " of " << designs << " designs, " << wrong << " outside, "
+              << wide << " wide, " << std::lround(seconds.count()) << " s   " << std::flush;
+  };
   for (unsigned k = 0; compared < designs && k < 40 * designs; ++k) {
     Stream random(19, 0, k, Stream::Use::start);
     SurveyPlan plan = all[k % 2 == 0 ? 0 : random.below(all.size())];
@@ -66,7 +74,9 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
     wrong += !holds;
     vague += exact.error > 1e-6;
     wide += bounds.gap() > 0.02;
+    if (asked) tell();
   }
+  if (asked) std::cerr << '\n';
   EXPECT_EQ(compared, designs);
   EXPECT_LE(vague, 1 + designs / 10);
   std::cout << GetParam() << ": " << compared << " volumes of " << all.size() << " sweeps, " << wrong

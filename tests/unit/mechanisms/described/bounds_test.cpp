@@ -4,14 +4,16 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
+#include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
+#include "engine/motion/motions.hpp"
 #include "engine/survey/survey_set.hpp"
 #include "tests/unit/mechanisms/described/files.hpp"
 
 namespace pkm {
 namespace {
 
-using Kind = BoxVerdict::Kind;
+using Kind = PosesVerdict::Kind;
 
 SurveyPlan plain_plan(const MechanismInfo& info) {
   SurveyPlan plan;
@@ -155,16 +157,76 @@ TEST(CertainBounds, OfABoxOfPoses) {
     return orthoglide.bounds()->box(defaults(info), plain_plan(info), "",
                                     std::vector<std::array<double, 2>>(3, {from, to}), {.most_boxes = 20000});
   };
-  const BoxCertificate inside = certified(-0.05, 0.03);
+  const PosesCertificate inside = certified(-0.05, 0.03);
   EXPECT_EQ(inside.feasible.kind, Kind::holds);
   ASSERT_TRUE(inside.regular);
   EXPECT_EQ(inside.regular->kind, Kind::holds);
 
-  const BoxCertificate across = certified(-0.1, 0.12);
+  const PosesCertificate across = certified(-0.1, 0.12);
   ASSERT_EQ(across.feasible.kind, Kind::fails);
   const PoseReport report =
       orthoglide.inspect(defaults(info), *across.feasible.where, info.modes.front(), no_limits(info));
   EXPECT_FALSE(report.feasible);
+}
+
+std::shared_ptr<const Motion> straight(const AxisVector<double>& from, const AxisVector<double>& to) {
+  return point_to_point(from, {{0.1, to, 0.5}}, 0.1, TimeLaw::quintic);
+}
+
+/// Every verdict beside many samples.
+TEST(CertainBounds, OfMotions) {
+  int holds = 0, fails = 0;
+  for (const std::string name : {"orthoglide", "five-bar", "gough", "rotary-delta"}) {
+    SCOPED_TRACE(name);
+    const Mechanism& mechanism = *test::described(name);
+    const MechanismInfo& info = mechanism.info();
+    const std::vector<double> p = defaults(info);
+    const auto feasible = [&](const Motion& motion, double t) {
+      return mechanism.inspect(p, motion.at(t).pose, info.modes.front(), no_limits(info)).feasible;
+    };
+    const auto ranges = *mechanism.ranges(p);
+    const auto within = [&](double share, Stream& random) {
+      AxisVector<double> pose(info.coordinates.size());
+      for (std::size_t i = 0; i < pose.size(); ++i)
+        pose[i] = 0.5 * (ranges[i][0] + ranges[i][1]) + share * (random.u01() - 0.5) * (ranges[i][1] - ranges[i][0]);
+      return pose;
+    };
+    for (unsigned k = 0; k < 20; ++k) {
+      Stream random(3, 0, k, Stream::Use::start);
+      const double share = k % 4 < 2 ? 0.2 : 0.6;
+      const auto motion = straight(within(share, random), within(share, random));
+      const PosesCertificate found = mechanism.bounds()->motion(p, no_limits(info), "", *motion, {.most_boxes = 20000});
+      ASSERT_NE(found.feasible.kind, Kind::undecided) << k;
+      const double T = motion->duration();
+      if (found.feasible.kind == Kind::holds) {
+        ++holds;
+        for (int i = 0; i <= 200; ++i) EXPECT_TRUE(feasible(*motion, T * i / 200)) << k;
+        continue;
+      }
+      ++fails;
+      const double t = *found.feasible.time;
+      EXPECT_FALSE(feasible(*motion, t)) << k;
+      EXPECT_EQ((*found.feasible.where)[0], motion->at(t).pose[0]);
+      for (int i = 0; i < 200; ++i) EXPECT_TRUE(feasible(*motion, (t - 1e-5 * T) * i / 200) || t < 1e-5 * T) << k;
+    }
+  }
+  EXPECT_GE(holds, 5);
+  EXPECT_GE(fails, 20);
+}
+
+TEST(CertainBounds, OfMotionsThatEndWhereTheyMay) {
+  const Mechanism& five_bar = *test::described("five-bar");
+  const auto certified = [&](double y) {
+    return five_bar.bounds()->motion(defaults(five_bar.info()), no_limits(five_bar.info()), "",
+                                     *straight({0.0, 0.3}, {0.0, y}), {.most_boxes = 20000});
+  };
+  EXPECT_EQ(certified(1e-9).feasible.kind, Kind::holds);
+  const PosesCertificate touches = certified(0);
+  EXPECT_EQ(touches.feasible.kind, Kind::undecided) << "exactly 0 at the end";
+  EXPECT_NEAR(*touches.feasible.time, 0.6, 1e-3);
+  const PosesCertificate leaves = certified(-1e-6);
+  EXPECT_EQ(leaves.feasible.kind, Kind::fails);
+  EXPECT_EQ(leaves.feasible.what, "on its side of the pivots");
 }
 
 TEST(CertainBounds, NameASingularityThatABoxMayHold) {
@@ -182,10 +244,20 @@ TEST(CertainBounds, NameASingularityThatABoxMayHold) {
                 .regular;
   };
   EXPECT_EQ(regular(0.1, 0.9).kind, Kind::holds);
-  const BoxVerdict across = regular(-0.1, 0.9);
+  const PosesVerdict across = regular(-0.1, 0.9);
   EXPECT_EQ(across.kind, Kind::undecided);
   EXPECT_THAT(across.what, ::testing::HasSubstr("parallel"));
   EXPECT_NEAR((*across.where)[1], 0, 0.1);
+  const auto along = [&](double from, double to) {
+    return *legs->bounds()
+                ->motion(defaults(legs->info()), no_limits(legs->info()), "", *straight({0.4, from}, {0.6, to}),
+                         {.most_boxes = 20000})
+                .regular;
+  };
+  EXPECT_EQ(along(0.1, 0.9).kind, Kind::holds);
+  const PosesVerdict through = along(0.5, -0.5);
+  EXPECT_EQ(through.kind, Kind::undecided);
+  EXPECT_NEAR(*through.time, 0.35, 1e-3);
 }
 
 }  // namespace
