@@ -12,6 +12,11 @@ inline constexpr double kTie = 1e-13;  ///< places that are nearer than this are
 
 inline Signs bit(std::size_t surface) { return Signs{1} << surface; }
 
+/// By t and s.
+inline std::array<double, 2> gradient(const Conic& P, double t, double s) {
+  return {P.c[1] + 2 * t * P.c[3] + s * P.c[4], P.c[2] + t * P.c[4] + 2 * s * P.c[5]};
+}
+
 /// Of the corners at a place, the one that ends arcs of a surface; a condition along v ends all of them.
 std::uint32_t corner_of(std::size_t surface, std::size_t first, double t, const SectionRoom& room);
 

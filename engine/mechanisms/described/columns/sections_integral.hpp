@@ -6,7 +6,7 @@
 #pragma once
 
 #include "engine/math/quadrature.hpp"
-#include "engine/mechanisms/described/columns/section.hpp"
+#include "engine/mechanisms/described/columns/break_motion.hpp"
 
 namespace pkm::described {
 
@@ -39,7 +39,8 @@ struct SlicePart {
   double unresolved = 0;  ///< error that smaller parts do not mend
 };
 
-inline constexpr int kDeepest = 10;  ///< parts within parts
+inline constexpr int kDeepest = 10;        ///< parts within parts
+inline constexpr double kSettled = 1e-11;  ///< of the range: beyond a break, where structures can be told
 
 /// What an integral overwrites.
 struct IntegralRoom {
@@ -53,7 +54,9 @@ struct IntegralRoom {
   };
   SectionRoom section;
   std::vector<double> registers, adjoints, own;
+  std::vector<Dual4> moving, along;  ///< registers, where nodes move with the design, and with an outer coordinate
   std::vector<Level> levels;
+  bool measured = false;  ///< then what is looked at changes nothing
   long sections = 0;
   long most = 0;  ///< sections, after which what is not known counts as error
 };
@@ -69,11 +72,14 @@ class SectionsIntegral {
   Integral<double> measure(std::span<const double> inputs, IntegralRoom& room, long most = 0) const;
   /// Adds derivatives of measure(), after it, by the graph's inputs.
   void add_slopes(std::span<double> by_input, IntegralRoom& room) const;
-  /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure().
-  template <class Visit>
-  void for_each_node(const GaussRule& outer, const GaussRule& inner, IntegralRoom& room, const Visit& visit) const {
-    std::vector<double> place;
-    visit_nodes(0, 1, outer, inner, place, room, visit);
+  /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure(). S is
+  /// double or Dual4: nodes move along with their columns, so that sums over them have derivatives.
+  template <class S, class Visit>
+  void for_each_node(std::span<const S> inputs, const GaussRule& outer, const GaussRule& inner, IntegralRoom& room,
+                     const Visit& visit) const {
+    if constexpr (Derivative<S>) start_moving(inputs, room);
+    std::vector<S> place;
+    visit_nodes(0, S(1.0), outer, inner, place, room, visit);
   }
 
  private:
@@ -94,22 +100,46 @@ class SectionsIntegral {
 
   void add_slopes(std::size_t level, double factor, IntegralRoom& room) const;
   void add_side(std::size_t level, const SlicePart& part, bool upper, double factor, IntegralRoom& room) const;
+  double slope_of_plain(std::size_t level, Closing closing, double at, IntegralRoom& room) const;
+
+  void start_moving(std::span<const Dual4> inputs, IntegralRoom& room) const;
+  void set_moving(std::size_t level, const Dual4& at, IntegralRoom& room) const;
+  static std::vector<Piece<double>> pieces(std::size_t level, const IntegralRoom& room) {
+    std::vector<Piece<double>> all;
+    for (const SlicePart& part : room.levels[level].parts) all.push_back(part.piece);
+    return all;
+  }
+  std::vector<Piece<Dual4>> moving_pieces(std::size_t level, IntegralRoom& room) const;
+  Dual4 moving_end(std::size_t level, const SlicePart& part, bool upper, IntegralRoom& room) const;
 
   /// After inside(level).
-  template <class Visit>
-  void visit_nodes(std::size_t level, double weight, const GaussRule& outer, const GaussRule& inner,
-                   std::vector<double>& place, IntegralRoom& room, const Visit& visit) const {
+  template <class S, class Visit>
+  void visit_nodes(std::size_t level, const S& weight, const GaussRule& outer, const GaussRule& inner,
+                   std::vector<S>& place, IntegralRoom& room, const Visit& visit) const {
     if (level == levels()) {
-      section_.for_each_node(outer, inner, room.section,
-                             [&](double v, double z, double own) { visit(place, v, z, weight * own); });
+      const auto ends = [&] {
+        if constexpr (Derivative<S>)
+          return SectionMotion(section_, room.section, room.moving, room.registers);
+        else
+          return SectionAtRest{room.section};
+      }();
+      section_.for_each_node(outer, inner, room.section, ends,
+                             [&](const S& v, const S& z, const S& own) { visit(place, v, z, weight * own); });
       return;
     }
-    for (const SlicePart& part : room.levels[level].parts)
+    const auto all = [&] {
+      if constexpr (Derivative<S>)
+        return moving_pieces(level, room);
+      else
+        return pieces(level, room);
+    }();
+    for (const Piece<S>& piece : all)
       for (std::size_t i = 0; i < outer.node.size(); ++i) {
-        const auto [at, jacobian] = map_node(part.piece, outer.node[i]);
-        slice(level, at, room);
+        const auto [at, jacobian] = map_node(piece, outer.node[i]);
+        slice(level, value_of(at), room);
+        if constexpr (Derivative<S>) set_moving(level, at, room);
         place.push_back(at);
-        visit_nodes(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
+        visit_nodes<S>(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
         place.pop_back();
       }
   }
