@@ -36,13 +36,28 @@ std::array<double, kMostThatMeet> factors_of(std::span<const SectionMotion::Boun
   return along_t ? std::array{meet[1].t, -meet[0].t, 0.0} : std::array{meet[1].s, -meet[0].s, 0.0};
 }
 
+/// @param size  of one gradient's terms
+bool depend(std::span<const SectionMotion::Boundary> meet, const std::array<double, kMostThatMeet>& factors,
+            double size) {
+  double t = 0, s = 0;
+  for (std::size_t i = 0; i < meet.size(); ++i) {
+    t += factors[i] * meet[i].t;
+    s += factors[i] * meet[i].s;
+    if (meet.size() > 1) size += std::fabs(factors[i]) * std::hypot(meet[i].t, meet[i].s);
+  }
+  return std::hypot(t, s) <= kOnePlace * size;
+}
+
 }  // namespace
 
 std::vector<ArcEnd> arc_ends(const Section& section, const SectionRoom& room) {
   std::vector<ArcEnd> ends;
   section.for_each_arc_end(room, [&](EndLabel end, std::size_t first, double t) {
-    ends.push_back({corner_of(end >> 1U, first, t, room), end >> 1U, room.v[0] + room.v[1] * t,
-                    room.z[0] + room.z[1] * end_at(end, t, room)});
+    const std::uint32_t surface = end >> 1U, label = corner_of(surface, first, t, room);
+    const Conic& P = room.conics[surface];
+    const bool turns = (label & kKind) == kExtreme && !P.is_straight();  // both roots, but for rounding
+    const double s = turns ? -0.5 * (P.c[2] + t * P.c[4]) / P.c[5] : end_at(end, t, room);
+    ends.push_back({label, surface, room.v[0] + room.v[1] * t, room.z[0] + room.z[1] * s});
   });
   return ends;
 }
@@ -80,6 +95,7 @@ Dual4 moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> ou
   std::vector<SectionMotion::Boundary> meet;
   for (const std::uint32_t bound : bounds) meet.push_back(by_design.boundary(bound, t, s));
   const auto factors = factors_of(meet);
+  if (!depend(meet, factors, meet.size() == 1 ? room.conics[bounds[0] & ~kKind].scale : 0)) return at;
   Components<4> change;
   double slope = 0, size = 0;  // of the sum, and of its terms
   for (std::size_t i = 0; i < meet.size(); ++i) {

@@ -1,4 +1,4 @@
-// How the parts of an integral move with the design: nodes of the outer coordinates move along.
+// The parts on which an integral's nodes are, and how they move with the design: the nodes move along.
 #include "engine/mechanisms/described/columns/sections_integral.hpp"
 
 namespace pkm::described {
@@ -15,26 +15,27 @@ void SectionsIntegral::set_moving(std::size_t level, const Dual4& at, IntegralRo
   plan().program.run<Dual4>(level + 1, std::span<Dual4>(room.moving));
 }
 
-/// Parts that halving made of one divide it as they do, wherever its ends move.
-std::vector<Piece<Dual4>> SectionsIntegral::moving_pieces(std::size_t level, IntegralRoom& room) const {
-  const std::vector<SlicePart>& parts = room.levels[level].parts;
-  const auto goes_on = [](const SlicePart& part, const SlicePart& next) {
-    return part.piece.upper == next.piece.lower && part.above.hash == next.below.hash;
-  };
-  std::vector<Piece<Dual4>> all;
-  for (std::size_t first = 0, end; first < parts.size(); first = end) {
-    for (end = first + 1; end < parts.size() && goes_on(parts[end - 1], parts[end]);) ++end;
-    const Dual4 lower = moving_end(level, parts[first], false, room),
-                upper = moving_end(level, parts[end - 1], true, room);
-    const auto between = [&](double at) -> Dual4 {
-      return {at, lower.v + (upper.v - lower.v) * ((at - lower.a) / (upper.a - lower.a))};
-    };
-    for (std::size_t i = first; i < end; ++i) {
-      const Piece<double>& piece = parts[i].piece;
-      all.push_back({between(piece.lower), between(piece.upper), piece.root_lower, piece.root_upper});
+std::vector<SlicePart> SectionsIntegral::whole_parts(std::size_t level, const IntegralRoom& room) {
+  std::vector<SlicePart> whole;
+  for (const SlicePart& part : room.levels[level].parts) {
+    SlicePart* const last = whole.empty() ? nullptr : &whole.back();
+    if (!last || last->piece.upper != part.piece.lower || last->above.hash != part.below.hash) {
+      whole.push_back(part);
+      continue;
     }
+    last->piece.upper = part.piece.upper;
+    last->piece.root_upper = part.piece.root_upper;
+    last->above = part.above;
+    last->upper = part.upper;
   }
-  return all;
+  return whole;
+}
+
+Piece<Dual4> SectionsIntegral::moving_piece(std::size_t level, const SlicePart& part, const Dual4* below,
+                                            IntegralRoom& room) const {
+  const bool goes_on = below && part.lower == kChange && below->a == part.piece.lower;
+  return {goes_on ? *below : moving_end(level, part, false, room), moving_end(level, part, true, room),
+          part.piece.root_lower, part.piece.root_upper};
 }
 
 /// An end of a part. A break of breaks, further out, stays: the slices go on there, so that the sum's derivative is

@@ -168,7 +168,10 @@ double Section::length(const SectionRoom::Piece& piece, double t, const SectionR
 }
 
 bool Section::is_round(std::size_t corner, const SectionRoom& room) {
-  return corner < room.corners.size() && (room.corners[corner].label & kKind) == kExtreme;
+  constexpr double kNear = 1e-7;  // where conics touch, crossings are beside their extreme, on either side
+  return corner < room.corners.size() && std::ranges::any_of(room.corners, [&](const SectionRoom::Corner& other) {
+           return (other.label & kKind) == kExtreme && std::fabs(other.t - room.corners[corner].t) <= kNear;
+         });
 }
 
 }  // namespace pkm::described

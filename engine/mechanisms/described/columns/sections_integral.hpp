@@ -104,12 +104,10 @@ class SectionsIntegral {
 
   void start_moving(std::span<const Dual4> inputs, IntegralRoom& room) const;
   void set_moving(std::size_t level, const Dual4& at, IntegralRoom& room) const;
-  static std::vector<Piece<double>> pieces(std::size_t level, const IntegralRoom& room) {
-    std::vector<Piece<double>> all;
-    for (const SlicePart& part : room.levels[level].parts) all.push_back(part.piece);
-    return all;
-  }
-  std::vector<Piece<Dual4>> moving_pieces(std::size_t level, IntegralRoom& room) const;
+  /// Those that halving made of one are one: sums over nodes change with the design without jumps.
+  static std::vector<SlicePart> whole_parts(std::size_t level, const IntegralRoom& room);
+  /// @param below  where the part before ends; null: there is none
+  Piece<Dual4> moving_piece(std::size_t level, const SlicePart& part, const Dual4* below, IntegralRoom& room) const;
   Dual4 moving_end(std::size_t level, const SlicePart& part, bool upper, IntegralRoom& room) const;
 
   /// After inside(level).
@@ -127,13 +125,14 @@ class SectionsIntegral {
                              [&](const S& v, const S& z, const S& own) { visit(place, v, z, weight * own); });
       return;
     }
-    const auto all = [&] {
+    Piece<S> piece;
+    const S* below = nullptr;
+    for (const SlicePart& part : whole_parts(level, room)) {
       if constexpr (Derivative<S>)
-        return moving_pieces(level, room);
+        piece = moving_piece(level, part, below, room);
       else
-        return pieces(level, room);
-    }();
-    for (const Piece<S>& piece : all)
+        piece = part.piece;
+      below = &piece.upper;
       for (std::size_t i = 0; i < outer.node.size(); ++i) {
         const auto [at, jacobian] = map_node(piece, outer.node[i]);
         slice(level, value_of(at), room);
@@ -142,6 +141,7 @@ class SectionsIntegral {
         visit_nodes<S>(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
         place.pop_back();
       }
+    }
   }
 
   Section section_;
