@@ -408,7 +408,7 @@ TEST_P(PaperMechanism, HasTheSameSlopesOfSamples) {
   if (GetParam() != "3crr-r-cru") GTEST_SKIP() << "the mean is infinite, or takes more nodes along other coordinates";
   // Far from where limbs stretch and fold, and inertia runs to infinity.
   static const std::map<std::string, double> limits = {{"s_min", 0.3}, {"c_min", 0.2}};
-  SurveyPlan there = test::columns(info, {.nodes = {20, 20}}), here = test::columns(file().info(), {.nodes = {20, 20}});
+  SurveyPlan there = test::columns(info, {.nodes = {24, 24}}), here = test::columns(file().info(), {.nodes = {24, 24}});
   for (std::size_t i = 0; i < info.limits.size(); ++i)
     if (const auto limit = limits.find(info.limits[i].name); limit != limits.end())
       there.limits.given[i] = limit->second;
