@@ -27,7 +27,7 @@ void drop_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const SectionRo
   });
 }
 
-/// Factors with which gradients add up to nothing; none that add up to it.
+/// Factors with which the gradients add up to nothing, where there are some.
 std::array<double, kMostThatMeet> factors_of(std::span<const SectionMotion::Boundary> meet) {
   const auto cross = [&](std::size_t i, std::size_t j) { return meet[i].t * meet[j].s - meet[i].s * meet[j].t; };
   if (meet.size() == 1) return {1, 0, 0};
@@ -36,7 +36,7 @@ std::array<double, kMostThatMeet> factors_of(std::span<const SectionMotion::Boun
   return along_t ? std::array{meet[1].t, -meet[0].t, 0.0} : std::array{meet[1].s, -meet[0].s, 0.0};
 }
 
-/// @param size  of one gradient's terms
+/// Whether they do. @param size  of a single gradient's terms
 bool depend(std::span<const SectionMotion::Boundary> meet, const std::array<double, kMostThatMeet>& factors,
             double size) {
   double t = 0, s = 0;
@@ -86,7 +86,7 @@ Dual4 moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> ou
     if (kind == kCrossing) {
       add(number & 255U);
       add(number >> 8U);
-    } else {
+    } else if (end.label != 0) {
       add(kind == kSide || kind == kPlain ? end.label : number);
     }
   }
