@@ -46,4 +46,17 @@ void run_backwards(const Program& program, std::size_t stage, std::span<const do
   }
 }
 
+double slope_along(const Program& program, std::size_t stage, std::uint32_t of, std::span<const double> registers,
+                   std::vector<double>& by) {
+  by.assign(program.registers(), 0);
+  by[of] = 1;
+  run_backwards(program, stage, registers, by);
+  double slope = 0;
+  for (const auto& input : program.stages()[stage].inputs) {
+    slope += by[input.to];
+    by[input.to] = 0;
+  }
+  return slope;
+}
+
 }  // namespace pkm::graph

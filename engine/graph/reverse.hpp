@@ -12,4 +12,9 @@ namespace pkm::graph {
 void run_backwards(const Program& program, std::size_t stage, std::span<const double> registers,
                    std::span<double> adjoints);
 
+/// How much a register that a stage computes changes with the stage's inputs, which move as one.
+/// @param by  overwritten: by register, how much it changes with what was computed before the stage
+double slope_along(const Program& program, std::size_t stage, std::uint32_t of, std::span<const double> registers,
+                   std::vector<double>& by);
+
 }  // namespace pkm::graph

@@ -115,7 +115,7 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   };
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
   tell(mechanism.columns(), "exact workspace by columns",
-       "workspace.method = \"columns\", with derivatives of the volume", mechanism.why_no_columns());
+       "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
   tell(mechanism.bounds(), "certain bounds of the workspace", "pkmopt certify, by intervals", "");
   tell(!mechanism.info().characteristic_length.empty(), "conditioning", "",
        "[platform] characteristic_length is missing, and the freedoms are of both kinds");

@@ -61,5 +61,32 @@ every = 0
   EXPECT_EQ(first_difference(read("one.h5"), read("straight.h5")), "");
 }
 
+/// Of what is sampled; the start of the last is a point of the trade-off.
+TEST_F(DescribedStudy, EndsAtTheOptimumOfWhatColumnsSample) {
+  const std::string problem = "[mechanism]\nfile = \"" + kMechanisms + R"(/3-rpr.toml"
+[variables]
+B1x = { min = -0.15, max = -0.05 }
+B2x = { min = 0.05, max = 0.15 }
+[workspace]
+method = "columns"
+)";
+  const auto expect_optimal = [&](const std::string& name, const std::string& study) {
+    SCOPED_TRACE(name);
+    std::ofstream(path("study.toml")) << problem << study;
+    ASSERT_EQ(run({"run", "study.toml", "--quiet", "--output", name + ".h5"}), 0) << output_;
+    const StageRecord& stage = read(name + ".h5").stages.back();
+    ASSERT_FALSE(stage.starts.empty());
+    for (const auto& start : stage.starts) EXPECT_LT(start.optimality, 1e-6) << start.message;
+  };
+  const std::string slsqp = "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"slsqp\"\n";
+  expect_optimal("conditioning", "[[objective]]\ntype = \"conditioning\"\n" + slsqp);
+  expect_optimal("coupling", "[[objective]]\ntype = \"dci-uniformity\"\nlimb = \"1\"\n" + slsqp);
+  expect_optimal("inertia", "[[objective]]\ntype = \"inertia-condition\"\n[[stage]]\noptimiser = \"ipopt\"\n");
+  expect_optimal("front",
+                 "[[objective]]\ntype = \"conditioning\"\n[[objective]]\ntype = \"inertia-condition\"\n"
+                 "[[stage]]\noptimiser = \"nsga2\"\npopulation = 12\ngenerations = 2\n" +
+                     slsqp + "start = \"pareto\"\nstarts = 2\n");
+}
+
 }  // namespace
 }  // namespace pkm::testing

@@ -23,12 +23,16 @@ class Equations {
     for (const DescribedArm& arm : model.arms) turns_.push_back(turn_of(arm));
   }
 
+  std::vector<Node> jacobian() {
+    std::vector<Node> J;
+    for (const Node joint : model_.joints)
+      for (Rates& by : by_) J.push_back(by.of(joint).node());
+    return J;
+  }
+
   EquationNodes found() {
-    EquationNodes e;
-    for (const Node joint : model_.joints) {
-      for (Rates& by : by_) e.J.push_back(by.of(joint).node());
-      e.J_rate_X.push_back(along_.of(along_.of(joint)).node());
-    }
+    EquationNodes e{.J = jacobian()};
+    for (const Node joint : model_.joints) e.J_rate_X.push_back(along_.of(along_.of(joint)).node());
     std::vector<Term> G(n_, number(0));
     for (const DescribedBody& body : model_.bodies) {
       for (std::size_t i = 0; i < n_; ++i) G[i] = G[i] + model_.term(body.mass) * kGravity * by_[i].of(body.centre[2]);
@@ -160,5 +164,7 @@ class Equations {
 }  // namespace
 
 EquationNodes equations_of(Model& model) { return Equations(model).found(); }
+
+std::vector<Node> jacobian_of(Model& model) { return Equations(model).jacobian(); }
 
 }  // namespace pkm::described

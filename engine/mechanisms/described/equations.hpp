@@ -15,4 +15,7 @@ namespace pkm::described {
 
 EquationNodes equations_of(Model& model);
 
+/// EquationNodes::J alone.
+std::vector<Node> jacobian_of(Model& model);
+
 }  // namespace pkm::described

@@ -58,7 +58,9 @@ void InertiaRows::finish(InertiaRoom& room, Survey<double>& to) const {
       to.fields, [](const auto& field) { return field.first->needs_inertia() && field.first != &kCouplingIndex; });
   for (std::size_t k = 0; k < count; ++k) {
     if (room.found[k] == 0) {
-      add_inertia(one_by_one(k, room), to);
+      add_inertia(
+          one_by_one<double>([&](std::size_t output) { return PoseRows::value(rows_.operand(output), k, room.poses); }),
+          to);
       continue;
     }
     for (std::size_t i = 0; indices && i < n_; ++i) indices[i].push_back(room.indices[i * kRow + k]);
@@ -70,16 +72,26 @@ void InertiaRows::finish(InertiaRoom& room, Survey<double>& to) const {
   room.poses.count = 0;
 }
 
-AxisMatrix<double> InertiaRows::one_by_one(std::size_t pose, const InertiaRoom& room) const {
-  PoseDynamics<double> d;
-  d.J = d.M_X = AxisMatrix<double>(n_, n_);
+template <class S, class OutputOf>
+AxisMatrix<S> InertiaRows::one_by_one(const OutputOf& output) const {
+  PoseDynamics<S> d;
+  d.J = d.M_X = AxisMatrix<S>(n_, n_);
   for (std::size_t i = 0; i < n_ * n_; ++i) {
-    d.J[i] = PoseRows::value(J_[i], pose, room.poses);
-    d.M_X[i] = PoseRows::value(M_X_[i], pose, room.poses);
+    d.J[i] = output(i);
+    d.M_X[i] = output(n_ * n_ + i);
   }
-  AxisMatrix<double> M_q = joint_inertia(d);
+  AxisMatrix<S> M_q = joint_inertia(d);
   for (std::size_t i = 0; i < n_; ++i) M_q(i, i) += rotors_[i];
   return M_q;
+}
+
+void InertiaRows::start(const std::vector<Dual4>& inputs, InertiaRoom& room) const {
+  rows_.start<Dual4>(inputs, room.moving);
+}
+
+void InertiaRows::add(const Pose<Dual4>& pose, InertiaRoom& room, Survey<Dual4>& to) const {
+  rows_.run<Dual4>(pose, room.moving);
+  add_inertia(one_by_one<Dual4>([&](std::size_t output) { return room.moving[rows_.outputs()[output]]; }), to);
 }
 
 }  // namespace pkm::described

@@ -10,6 +10,7 @@ struct InertiaRoom {
   PoseRowsRoom poses;
   std::vector<double> found;
   graph::Rows M_q, indices;
+  std::vector<Dual4> moving;  ///< registers with derivatives
 };
 
 class InertiaRows {
@@ -24,9 +25,15 @@ class InertiaRows {
   /// Adds the pose's values to the fields of a survey, in the order of the poses, after the last one by finish().
   void add(const Pose<double>& pose, InertiaRoom& room, Survey<double>& to) const;
   void finish(InertiaRoom& room, Survey<double>& to) const;
+  /// The same with derivatives, one by one.
+  void start(const std::vector<Dual4>& inputs, InertiaRoom& room) const;
+  void add(const Pose<Dual4>& pose, InertiaRoom& room, Survey<Dual4>& to) const;
+  void finish(InertiaRoom&, Survey<Dual4>&) const {}
 
  private:
-  AxisMatrix<double> one_by_one(std::size_t pose, const InertiaRoom& room) const;
+  /// @param output  [](std::size_t), of rows_
+  template <class S, class OutputOf>
+  AxisMatrix<S> one_by_one(const OutputOf& output) const;
 
   std::size_t n_;
   std::vector<double> rotors_;

@@ -4,26 +4,16 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "engine/mechanisms/described/clearance.hpp"
+#include "engine/mechanisms/described/conditioning.hpp"
+#include "engine/mechanisms/described/eigen_matrix.hpp"
 #include "engine/model/singular.hpp"
 
 namespace pkm::described {
 namespace {
 
 using graph::Program;
-
-/// Allocates nothing.
-using EigenMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostJoints, kMostJoints>;
-
-EigenMatrix eigen(const AxisMatrix<double>& A) {
-  EigenMatrix same(A.rows(), A.cols());
-  for (std::size_t i = 0; i < A.rows(); ++i)
-    for (std::size_t j = 0; j < A.cols(); ++j)
-      same(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = A(i, j);
-  return same;
-}
 
 /// Derivatives of a program's outputs by the inputs from `first` on, count of them.
 AxisMatrix<double> derivatives(const Program& program, std::span<const double> inputs, std::size_t first,
@@ -40,56 +30,6 @@ AxisMatrix<double> derivatives(const Program& program, std::span<const double> i
     }
     return D;
   });
-}
-
-/// A turn's angular velocity by the rates of three angles about moving axes, inverted: rates for an angular velocity.
-/// Of fewer rotations the rates are the components themselves, for their axes are normal to each other.
-AxisMatrix<double> rates_of_turns(const Model& model, const Pose<double>& pose) {
-  const std::size_t n = pose.size();
-  AxisMatrix<double> rates = AxisMatrix<double>::identity(n);
-  std::array<std::size_t, 3> turns{};  // there are no more
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (model.turns_about[i]) turns[count++] = i;
-  if (count < 3) return rates;
-  using Fixed3 = Matrix<double, 3, 3>;
-  Fixed3 R = Fixed3::identity(), axes;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t axis = *model.turns_about[turns[k]], i = (axis + 1) % 3, j = (axis + 2) % 3;
-    for (std::size_t row = 0; row < 3; ++row) axes(row, k) = R(row, axis);
-    const auto [sine, cosine] = sincos(pose[turns[k]]);
-    Fixed3 turn = Fixed3::identity();
-    turn(i, i) = turn(j, j) = cosine;
-    turn(i, j) = -sine;
-    turn(j, i) = sine;
-    R = R * turn;
-  }
-  const Fixed3 inverse = solve(axes, Fixed3::identity());
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) rates(turns[i], turns[j]) = inverse(i, j);
-  return rates;
-}
-
-/// Of the Jacobian by the twist, its turns in units of the characteristic length, turning drives of the radius.
-std::optional<double> conditioning_of(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
-                                      const AxisMatrix<double>& J) {
-  const MechanismInfo& info = e.model.info;
-  const auto turns = [](const AxisInfo& axis) { return axis.turns(); };
-  const bool mixed = std::ranges::any_of(info.coordinates, turns) && !std::ranges::all_of(info.coordinates, turns);
-  const bool mixed_drives = std::ranges::any_of(info.joints, turns) && !std::ranges::all_of(info.joints, turns);
-  const auto length = e.of_design<double>(e.length, parameters), radius = e.of_design<double>(e.radius, parameters);
-  if ((mixed && !length) || (mixed_drives && !radius)) return {};
-  AxisMatrix<double> scaled = J * rates_of_turns(e.model, pose);
-  for (std::size_t i = 0; i < J.rows(); ++i)
-    for (std::size_t j = 0; j < J.cols(); ++j) {
-      if (mixed && info.coordinates[j].turns()) scaled(i, j) /= *length;
-      if (mixed_drives && info.joints[i].turns()) scaled(i, j) *= *radius;
-      if (!std::isfinite(scaled(i, j))) return {};
-    }
-  const Eigen::JacobiSVD<EigenMatrix> decomposition(eigen(scaled));
-  const auto& singular = decomposition.singularValues();
-  const double greatest = singular(0), least = singular(singular.size() - 1);
-  return J.rows() >= J.cols() && greatest > 0 ? least / greatest : 0;
 }
 
 AxisVector<double> as_axes(std::span<const double> values) {
@@ -178,7 +118,7 @@ void add_jacobians(const Evaluation& e, std::span<const double> parameters, cons
   if (at.joints == at.coordinates) report.det_G = eigen(G).determinant();
   if (is_singular(Jq)) return;
   report.J = derivatives(e.joints, inputs, at.coordinate(0), at.coordinates);
-  report.conditioning = conditioning_of(e, parameters, pose, *report.J);
+  report.conditioning = conditioning_of(e.model, characteristic_lengths(e, parameters), pose, *report.J);
 }
 
 }  // namespace

@@ -173,6 +173,7 @@ class DescribedMechanism final : public Mechanism,
 
 std::shared_ptr<const Mechanism> make_mechanism(Model model) {
   if (!model.bodies.empty()) model.equations = equations_of(model);
+  model.jacobian = model.equations ? model.equations->J : jacobian_of(model);
   return std::make_shared<const DescribedMechanism>(std::move(model));
 }
 

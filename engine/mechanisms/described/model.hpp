@@ -142,6 +142,7 @@ struct Model {
   std::vector<MassCheck> masses;
   std::optional<std::array<Node, 3>> wrench_point;  ///< where a wrench acts on the platform
   std::optional<EquationNodes> equations;           ///< where there are bodies
+  std::vector<Node> jacobian;                       ///< EquationNodes::J, with bodies or without
 
   limbs::Term term(Node node) { return {graph, node}; }
 };

@@ -28,6 +28,21 @@ class PoseRows {
   /// room.count to 0 when it has read them. @return  whole lanes
   std::size_t run(PoseRowsRoom& room) const;
 
+  /// The same of one pose after the other, for any scalar: the outputs are in these registers.
+  template <class S>
+  void start(std::span<const S> inputs, std::vector<S>& registers) const {
+    registers.resize(program_.registers());
+    program_.start<S>(registers);
+    program_.run<S>(0, inputs, registers);
+  }
+  template <class S>
+  void run(const Pose<S>& pose, std::span<S> registers) const {
+    const auto& inputs = program_.stages()[1].inputs;
+    for (std::size_t i = 0; i < inputs.size(); ++i) registers[inputs[i].to] = pose[coordinates_[i].number];
+    program_.run<S>(1, registers);
+  }
+  const std::vector<std::uint32_t>& outputs() const { return program_.outputs(); }
+
   /// Where an output is.
   graph::Operand operand(std::size_t output) const { return stage_->operand(program_.outputs()[output]); }
   static double value(const graph::Operand& of, std::size_t pose, const PoseRowsRoom& room) {

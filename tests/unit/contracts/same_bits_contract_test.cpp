@@ -79,7 +79,7 @@ class SameBitsContract : public testing::TestWithParam<std::string> {
     for (int i = 0; i < 2; ++i) {
       const std::vector<double> design = test::random_design(info(), random);
       plan.limits = test::random_limits(info(), random);
-      // Columns of files have derivatives of the volume alone.
+      // Samples of files have no kernels: sample_slopes_test.cpp.
       const test::Of of = test::is_of_file(info()) ? test::Of::volume : test::Of::kinematics;
       const DesignProblem problem = test::everything(test::mechanism_called(GetParam()), plan, of, centre);
       add(bits, problem.slopes(design, problem.parts().varies));

@@ -6,6 +6,7 @@
 
 #include "engine/math/hash.hpp"
 #include "engine/mechanisms/described/columns/polynomial.hpp"
+#include "engine/mechanisms/described/columns/section_motion.hpp"
 
 namespace pkm::described {
 namespace {
@@ -214,6 +215,28 @@ void Column::add_slopes(double factor, std::span<double> registers, std::span<do
       double g = along / slope_of(coefficients_of(surface, registers), z);
       for (std::size_t i = 0; i < kCoefficients; ++i, g *= z) adjoints[surface.coefficients[i]] += g;
     }
+}
+
+Dual4 Column::moving_end(const std::pair<double, EndLabel>& end, std::span<Dual4> moving) const {
+  const auto [z, label] = end;
+  const Surface& surface = plan_.surfaces[label >> 1U];
+  Dual4 f;
+  double slope = 0;
+  if (surface.is_curve) {
+    const graph::Program& program = plan_.program;
+    for (const auto& input : program.stages().back().inputs) moving[input.to] = z;
+    program.run<Dual4>(program.stages().size() - 1, moving);
+    f = moving[surface.coefficients[0]];
+    slope = moving[surface.coefficients[1]].a;
+  } else {
+    double power = 1;
+    for (std::size_t i = 0; i < kCoefficients; ++i, power *= z) {
+      const Dual4& c = moving[surface.coefficients[i]];
+      f = f + c * power;
+      if (i + 1 < kCoefficients) slope += static_cast<double>(i + 1) * moving[surface.coefficients[i + 1]].a * power;
+    }
+  }
+  return moved(z, f.v, slope);
 }
 
 }  // namespace pkm::described

@@ -2,6 +2,7 @@
 // crank and a rod, a torus, lets one say exactly; or roots of any formulas, which intervals isolate.
 #pragma once
 
+#include "engine/math/dual.hpp"
 #include "engine/math/interval.hpp"
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/ends.hpp"
@@ -31,13 +32,16 @@ class Column {
   double measure(std::span<double> registers, ColumnRoom& room) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
   void add_slopes(double factor, std::span<double> registers, std::span<double> adjoints, const ColumnRoom& room) const;
-  /// Calls visit(z, weight) with nodes inside the column, after measure().
-  template <class Visit>
-  void for_each_node(const GaussRule& along_z, const ColumnRoom& room, const Visit& visit) const {
-    for (const auto& [lower, upper] : room.pieces)
+  /// An end with its derivatives, after measure(). @param moving  registers after all stages but that of z
+  Dual4 moving_end(const std::pair<double, EndLabel>& end, std::span<Dual4> moving) const;
+  /// Calls visit(z, weight) with nodes inside the column, after measure(). @param end_of  an end as S
+  template <class S, class EndOf, class Visit>
+  void for_each_node(const GaussRule& along_z, const ColumnRoom& room, const EndOf& end_of, const Visit& visit) const {
+    for (const auto& piece : room.pieces) {
+      const S lower = end_of(piece.lower), length = end_of(piece.upper) - lower;
       for (std::size_t j = 0; j < along_z.node.size(); ++j)
-        visit(lower.first + (upper.first - lower.first) * along_z.node[j],
-              (upper.first - lower.first) * along_z.weight[j]);
+        visit(lower + length * along_z.node[j], length * along_z.weight[j]);
+    }
   }
 
  private:

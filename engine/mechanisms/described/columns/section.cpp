@@ -111,11 +111,6 @@ void Section::find_pieces(bool plain, std::span<double> registers, SectionRoom& 
 
 void Section::find_structure(SectionRoom& room) const {
   Structure& structure = room.structure;
-  const auto goes_on = [&](const SectionRoom::Piece& piece, EndLabel end, bool above) {
-    return std::any_of(room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first),
-                       room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first + piece.count),
-                       [&](const SectionRoom::Span& span) { return (above ? span.upper : span.lower) == end; });
-  };
   Signs round = 0, cut = 0;  // surfaces whose arcs go on beyond extremes, and those that have other corners
   const auto add = [&](std::size_t surface, std::size_t first, double t) {
     const std::uint32_t label = corner_of(surface, first, t, room);
@@ -130,17 +125,7 @@ void Section::find_structure(SectionRoom& room) const {
     corner.add(label);
     structure.hash += corner.value();
   };
-  for (std::size_t p = 0; p < room.pieces.size(); ++p) {
-    const auto& piece = room.pieces[p];
-    const auto* const before = p > 0 && room.pieces[p - 1].to == piece.from ? &piece - 1 : nullptr;
-    const auto* const after = p + 1 < room.pieces.size() && room.pieces[p + 1].from == piece.to ? &piece + 1 : nullptr;
-    for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
-      for (const bool above : {false, true}) {
-        const EndLabel end = above ? room.spans[i].upper : room.spans[i].lower;
-        if (!before || !goes_on(*before, end, above)) add(end >> 1U, piece.from_corner, piece.from);
-        if (!after || !goes_on(*after, end, above)) add(end >> 1U, piece.to_corner, piece.to);
-      }
-  }
+  for_each_arc_end(room, [&](EndLabel end, std::size_t first, double t) { add(end >> 1U, first, t); });
   for (Signs whole = round & ~cut; whole != 0; whole &= whole - 1) {
     Fnv1a conic;
     conic.add(static_cast<std::uint64_t>(std::countr_zero(whole)));
@@ -183,7 +168,10 @@ double Section::length(const SectionRoom::Piece& piece, double t, const SectionR
 }
 
 bool Section::is_round(std::size_t corner, const SectionRoom& room) {
-  return corner < room.corners.size() && (room.corners[corner].label & kKind) == kExtreme;
+  constexpr double kNear = 1e-7;  // where conics touch, crossings are beside their extreme, on either side
+  return corner < room.corners.size() && std::ranges::any_of(room.corners, [&](const SectionRoom::Corner& other) {
+           return (other.label & kKind) == kExtreme && std::fabs(other.t - room.corners[corner].t) <= kNear;
+         });
 }
 
 }  // namespace pkm::described

@@ -2,6 +2,8 @@
 // roots, and between those the ends of columns are arcs whose areas are closed forms.
 #pragma once
 
+#include <algorithm>
+
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/conic.hpp"
 #include "engine/mechanisms/described/columns/ends.hpp"
@@ -18,6 +20,7 @@ struct SectionRoom {
     double t;
     std::uint32_t label;
     bool touches = false;  ///< a crossing of conics that touch there
+    double s = 0;          ///< of crossings and extremes
   };
   struct Span {
     EndLabel lower, upper;
@@ -46,6 +49,20 @@ struct SectionRoom {
   Structure structure;
 };
 
+/// An end of columns at t.
+inline double end_at(EndLabel end, double t, const SectionRoom& room) {
+  return place_on(room.conics[end >> 1U], static_cast<int>(end & 1U), t);
+}
+
+/// Ends of pieces and columns of one design (SectionMotion: of designs that move).
+struct SectionAtRest {
+  using Scalar = double;
+  const SectionRoom& room;
+
+  double corner(std::size_t, double t) const { return t; }
+  double end(EndLabel end, double t) const { return end_at(end, t, room); }
+};
+
 class Section {
  public:
   explicit Section(SectionPlan plan) : plan_(std::move(plan)) {}
@@ -55,18 +72,19 @@ class Section {
   double measure(std::span<double> registers, SectionRoom& room) const;
   /// Adds the derivatives of factor * measure(), after it, to the adjoints of the program's registers.
   void add_slopes(double factor, std::span<double> registers, std::span<double> adjoints, SectionRoom& room) const;
-  /// Calls visit(v, z, weight) with nodes inside the columns, after measure().
-  template <class Visit>
-  void for_each_node(const GaussRule& along_v, const GaussRule& along_z, const SectionRoom& room,
+  /// Calls visit(v, z, weight) with nodes inside the columns, after measure(). @param ends  SectionAtRest or -Motion
+  template <class Ends, class Visit>
+  void for_each_node(const GaussRule& along_v, const GaussRule& along_z, const SectionRoom& room, const Ends& ends,
                      const Visit& visit) const {
+    using S = typename Ends::Scalar;
     for (const auto& piece : room.pieces) {
-      const Piece<double> range{piece.from, piece.to, is_round(piece.from_corner, room),
-                                is_round(piece.to_corner, room)};
+      const Piece<S> range{ends.corner(piece.from_corner, piece.from), ends.corner(piece.to_corner, piece.to),
+                           is_round(piece.from_corner, room), is_round(piece.to_corner, room)};
       for (std::size_t i = 0; i < along_v.node.size(); ++i) {
         const auto [t, jacobian] = map_node(range, along_v.node[i]);
         for (std::size_t k = piece.first; k < piece.first + piece.count; ++k) {
-          const double low = end_at(room.spans[k].lower, t, room), high = end_at(room.spans[k].upper, t, room);
-          const double weight = room.v[1] * room.z[1] * jacobian * along_v.weight[i] * (high - low);
+          const S low = ends.end(room.spans[k].lower, t), high = ends.end(room.spans[k].upper, t);
+          const S weight = room.v[1] * room.z[1] * jacobian * along_v.weight[i] * (high - low);
           for (std::size_t j = 0; j < along_z.node.size(); ++j)
             visit(room.v[0] + room.v[1] * t, room.z[0] + room.z[1] * (low + (high - low) * along_z.node[j]),
                   weight * along_z.weight[j]);
@@ -74,6 +92,31 @@ class Section {
       }
     }
   }
+
+  /// Calls visit(end, first corner there, t) wherever an arc ends, after measure().
+  template <class Visit>
+  void for_each_arc_end(const SectionRoom& room, const Visit& visit) const {
+    const auto goes_on = [&](const SectionRoom::Piece& piece, EndLabel end, bool above) {
+      return std::any_of(room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first),
+                         room.spans.begin() + static_cast<std::ptrdiff_t>(piece.first + piece.count),
+                         [&](const SectionRoom::Span& span) { return (above ? span.upper : span.lower) == end; });
+    };
+    for (std::size_t p = 0; p < room.pieces.size(); ++p) {
+      const auto& piece = room.pieces[p];
+      const auto* const before = p > 0 && room.pieces[p - 1].to == piece.from ? &piece - 1 : nullptr;
+      const auto* const after =
+          p + 1 < room.pieces.size() && room.pieces[p + 1].from == piece.to ? &piece + 1 : nullptr;
+      for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
+        for (const bool above : {false, true}) {
+          const EndLabel end = above ? room.spans[i].upper : room.spans[i].lower;
+          if (!before || !goes_on(*before, end, above)) visit(end, piece.from_corner, piece.from);
+          if (!after || !goes_on(*after, end, above)) visit(end, piece.to_corner, piece.to);
+        }
+    }
+  }
+  /// How much plain condition k changes with v, at t. @param by  as graph::slope_along()
+  double slope_of_plain(std::size_t k, double t, std::span<double> registers, const SectionRoom& room,
+                        std::vector<double>& by) const;
 
  private:
   bool load(std::span<const double> registers, SectionRoom& room) const;
@@ -91,9 +134,6 @@ class Section {
   void find_structure(SectionRoom& room) const;
   /// Whether columns close like a root there.
   static bool is_round(std::size_t corner, const SectionRoom& room);
-  static double end_at(EndLabel end, double t, const SectionRoom& room) {
-    return place_on(room.conics[end >> 1U], static_cast<int>(end & 1U), t);
-  }
   std::size_t stage_of_v() const { return plan_.program.stages().size() - 1; }
 
   SectionPlan plan_;

@@ -11,11 +11,8 @@ std::uint32_t crossing(std::size_t k, std::size_t l) { return kCrossing | static
 
 /// Whether two conics that meet at a place touch there, but for rounding.
 bool touch(const Conic& P, const Conic& Q, double t, double s) {
-  const auto gradient = [&](const Conic& of) {
-    return std::array{of.c[1] + 2 * t * of.c[3] + s * of.c[4], of.c[2] + t * of.c[4] + 2 * s * of.c[5]};
-  };
-  const auto [pt, ps] = gradient(P);
-  const auto [qt, qs] = gradient(Q);
+  const auto [pt, ps] = gradient(P, t, s);
+  const auto [qt, qs] = gradient(Q, t, s);
   return std::fabs(pt * qs - ps * qt) <= 1e-5 * std::hypot(pt, ps) * std::hypot(qt, qs);
 }
 
@@ -49,7 +46,7 @@ void Section::add_corner(double t, double s, Signs of, std::uint32_t label, Sect
     if ((maybe & one_of) == 0) return;
   const bool crosses = (label & kKind) == kCrossing;
   room.corners.push_back(
-      {t, label, crosses && touch(room.conics[label & 255U], room.conics[(label & ~kKind) >> 8U], t, s)});
+      {t, label, crosses && touch(room.conics[label & 255U], room.conics[(label & ~kKind) >> 8U], t, s), s});
 }
 
 void Section::find_corners(SectionRoom& room) const {

@@ -29,19 +29,8 @@ void Section::add_slopes(double factor, std::span<double> registers, std::span<d
       slopes[k][1] += g * t;
       slopes[k][3] += g * t * t;
     } else if ((label & kKind) == kPlain) {
-      const graph::Program& program = plan_.program;
-      const auto& stage = program.stages()[stage_of_v()];
-      set_v(t, registers, room);
       std::vector<double>& own = room.other_adjoints;
-      own.assign(program.registers(), 0);
-      own[plan_.plain.back()[k]] = 1;
-      run_backwards(program, stage_of_v(), registers, own);
-      double slope = 0;
-      for (const auto& input : stage.inputs) {
-        slope += own[input.to];
-        own[input.to] = 0;
-      }
-      const double g = -factor * room.z[1] * columns / slope;
+      const double g = -factor * room.z[1] * columns / slope_of_plain(k, t, registers, room, own);
       for (std::size_t i = 0; i < own.size(); ++i) adjoints[i] += g * own[i];
     }
   };
@@ -67,6 +56,12 @@ void Section::add_slopes(double factor, std::span<double> registers, std::span<d
                               zm * zm * d[0] + 2 * zm * zh * d[2] + zh * zh * d[5]};
     for (std::size_t i = 0; i < 6; ++i) adjoints[plan_.surfaces[k].coefficients[i]] += of_v_z[i];
   }
+}
+
+double Section::slope_of_plain(std::size_t k, double t, std::span<double> registers, const SectionRoom& room,
+                               std::vector<double>& by) const {
+  set_v(t, registers, room);
+  return slope_along(plan_.program, stage_of_v(), plan_.plain.back()[k], registers, by);
 }
 
 }  // namespace pkm::described

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kNear = 1e-15;         // of the range: how well breaks are known
 constexpr double kNearInLines = 1e-11;  // the same where sections are lines: measures go on where structures change
-constexpr double kSettled = 1e-11;      // of the range: beyond a break, where structures can be told
 constexpr double kNarrow = 1e-12;       // of the range: parts that are not looked at
 constexpr double kFar = 1e-3;           // of the range: slices that are further from a break may differ in small parts
 constexpr double kJump = 1e-7;          // of the greatest slice: what is no rounding
@@ -42,7 +41,9 @@ Integral<double> SectionsIntegral::measure(std::span<const double> inputs, Integ
   for (IntegralRoom::Level& level : room.levels) level.greatest = 0;
   program.start<double>(room.registers);
   program.run<double>(0, inputs, room.registers);
+  room.measured = false;
   const Slice all = inside(0, room.levels.back().structure, room);
+  room.measured = true;
   return {all.measure, all.error, room.sections};
 }
 
@@ -76,7 +77,7 @@ Slice SectionsIntegral::slice(std::size_t level, double at, IntegralRoom& room) 
   set(level, at, room);
   Slice found = inside(level + 1, room.levels[level].structure, room);
   found.at = at;
-  room.levels[level].greatest = std::max(room.levels[level].greatest, found.measure);
+  if (!room.measured) room.levels[level].greatest = std::max(room.levels[level].greatest, found.measure);
   return found;
 }
 
@@ -421,17 +422,15 @@ void SectionsIntegral::add_side(std::size_t level, const SlicePart& part, bool u
     room.adjoints[plan().range[level][upper ? 1 : 0]] += sign * measure;
     return;
   }
-  set(level, at, room);
-  room.own.assign(room.adjoints.size(), 0);
-  room.own[plan().plain[level + 1][closing - 1]] = 1;
-  run_backwards(plan().program, level + 1, room.registers, room.own);
-  double slope = 0;
-  for (const auto& input : plan().program.stages()[level + 1].inputs) {
-    slope += room.own[input.to];
-    room.own[input.to] = 0;
-  }
+  const double slope = slope_of_plain(level, closing, at, room);
   if (slope == 0) return;
   for (std::size_t i = 0; i < room.own.size(); ++i) room.adjoints[i] -= sign * measure / slope * room.own[i];
+}
+
+/// How much the plain condition that closes a part changes there with the coordinate; room.own: with the registers.
+double SectionsIntegral::slope_of_plain(std::size_t level, Closing closing, double at, IntegralRoom& room) const {
+  set(level, at, room);
+  return slope_along(plan().program, level + 1, plan().plain[level + 1][closing - 1], room.registers, room.own);
 }
 
 }  // namespace pkm::described

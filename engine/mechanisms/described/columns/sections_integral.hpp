@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "engine/math/quadrature.hpp"
+#include "engine/mechanisms/described/columns/break_motion.hpp"
 #include "engine/mechanisms/described/columns/column.hpp"
-#include "engine/mechanisms/described/columns/section.hpp"
 
 namespace pkm::described {
 
@@ -43,7 +43,8 @@ struct SlicePart {
   double unresolved = 0;  ///< error that smaller parts do not mend
 };
 
-inline constexpr int kDeepest = 10;  ///< parts within parts
+inline constexpr int kDeepest = 10;        ///< parts within parts
+inline constexpr double kSettled = 1e-11;  ///< of the range: beyond a break, where structures can be told
 
 /// What an integral overwrites.
 struct IntegralRoom {
@@ -68,8 +69,10 @@ struct IntegralRoom {
   SectionRoom section;
   ColumnRoom column;
   std::vector<double> registers, adjoints, own;
+  std::vector<Dual4> moving, along;  ///< registers, where nodes move with the design, and with an outer coordinate
   std::vector<Level> levels;
   bool is_scanning = false;  ///< the outermost coordinate is looked at first
+  bool measured = false;     ///< then what is looked at changes nothing
   long sections = 0;
   long most = 0;  ///< sections, after which what is not known counts as error
 };
@@ -90,11 +93,14 @@ class SectionsIntegral {
   Integral<double> measure(std::span<const double> inputs, IntegralRoom& room, long most = 0) const;
   /// Adds derivatives of measure(), after it, by the graph's inputs.
   void add_slopes(std::span<double> by_input, IntegralRoom& room) const;
-  /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure().
-  template <class Visit>
-  void for_each_node(const GaussRule& outer, const GaussRule& inner, IntegralRoom& room, const Visit& visit) const {
-    std::vector<double> place;
-    visit_nodes(0, 1, outer, inner, place, room, visit);
+  /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure(). S is
+  /// double or Dual4: nodes move along with their columns, so that sums over them have derivatives.
+  template <class S, class Visit>
+  void for_each_node(std::span<const S> inputs, const GaussRule& outer, const GaussRule& inner, IntegralRoom& room,
+                     const Visit& visit) const {
+    if constexpr (Derivative<S>) start_moving(inputs, room);
+    std::vector<S> place;
+    visit_nodes(0, S(1.0), outer, inner, place, room, visit);
   }
 
  private:
@@ -122,29 +128,60 @@ class SectionsIntegral {
 
   void add_slopes(std::size_t level, double factor, IntegralRoom& room) const;
   void add_side(std::size_t level, const SlicePart& part, bool upper, double factor, IntegralRoom& room) const;
+  double slope_of_plain(std::size_t level, Closing closing, double at, IntegralRoom& room) const;
+
+  void start_moving(std::span<const Dual4> inputs, IntegralRoom& room) const;
+  void set_moving(std::size_t level, const Dual4& at, IntegralRoom& room) const;
+  /// Those that halving made of one are one: sums over nodes change with the design without jumps.
+  static std::vector<SlicePart> whole_parts(std::size_t level, const IntegralRoom& room);
+  /// @param below  where the part before ends; null: there is none
+  Piece<Dual4> moving_piece(std::size_t level, const SlicePart& part, const Dual4* below, IntegralRoom& room) const;
+  Dual4 moving_end(std::size_t level, const SlicePart& part, bool upper, IntegralRoom& room) const;
 
   /// After inside(level).
-  template <class Visit>
-  void visit_nodes(std::size_t level, double weight, const GaussRule& outer, const GaussRule& inner,
-                   std::vector<double>& place, IntegralRoom& room, const Visit& visit) const {
+  template <class S, class Visit>
+  void visit_nodes(std::size_t level, const S& weight, const GaussRule& outer, const GaussRule& inner,
+                   std::vector<S>& place, IntegralRoom& room, const Visit& visit) const {
     if (level == levels()) {
-      if (const auto* const section = std::get_if<Section>(&innermost_))
-        section->for_each_node(outer, inner, room.section,
-                               [&](double v, double z, double own) { visit(place, v, z, weight * own); });
-      else
-        std::get<Column>(innermost_).for_each_node(inner, room.column, [&](double z, double own) {
-          visit(place, 0, z, weight * own);
-        });
+      if (const auto* const section = std::get_if<Section>(&innermost_)) {
+        const auto ends = [&] {
+          if constexpr (Derivative<S>)
+            return SectionMotion(*section, room.section, room.moving, room.registers);
+          else
+            return SectionAtRest{room.section};
+        }();
+        section->for_each_node(outer, inner, room.section, ends,
+                               [&](const S& v, const S& z, const S& own) { visit(place, v, z, weight * own); });
+      } else {
+        const Column& column = std::get<Column>(innermost_);
+        const auto end_of = [&](const std::pair<double, EndLabel>& end) -> S {
+          if constexpr (Derivative<S>)
+            return column.moving_end(end, room.moving);
+          else
+            return end.first;
+        };
+        column.for_each_node<S>(inner, room.column, end_of,
+                                [&](const S& z, const S& own) { visit(place, S(0), z, weight * own); });
+      }
       return;
     }
-    for (const SlicePart& part : room.levels[level].parts)
+    Piece<S> piece;
+    const S* below = nullptr;
+    for (const SlicePart& part : whole_parts(level, room)) {
+      if constexpr (Derivative<S>)
+        piece = moving_piece(level, part, below, room);
+      else
+        piece = part.piece;
+      below = &piece.upper;
       for (std::size_t i = 0; i < outer.node.size(); ++i) {
-        const auto [at, jacobian] = map_node(part.piece, outer.node[i]);
-        slice(level, at, room);
+        const auto [at, jacobian] = map_node(piece, outer.node[i]);
+        slice(level, value_of(at), room);
+        if constexpr (Derivative<S>) set_moving(level, at, room);
         place.push_back(at);
-        visit_nodes(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
+        visit_nodes<S>(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
         place.pop_back();
       }
+    }
   }
 
   std::variant<Section, Column> innermost_;

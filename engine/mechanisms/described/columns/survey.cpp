@@ -5,10 +5,9 @@
 
 #include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/columns/sections_integral.hpp"
+#include "engine/mechanisms/described/conditioning.hpp"
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/inertia_rows.hpp"
-#include "engine/mechanisms/described/kinematics.hpp"
-#include "engine/survey/cell_samples.hpp"
 #include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/with_slopes.hpp"
 
@@ -93,14 +92,8 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     // Derivatives lose digits where the measure has a kink that no structure tells: with conics two more are cheap.
     const double tolerance = (best.order.v ? 0.01 : 0.1) * columns.tolerance;
     integral_.emplace(std::move(best), tolerance);
+    if (demand.has(kConditioning)) conditioning_.emplace(evaluation, moving(), mode_);
     if (demand.needs_inertia()) inertia_.emplace(evaluation, moving(), mode_, demand.rotors);
-  }
-
-  const SlopeSurveyor* slopes() const override { return demand_.needs_samples() ? nullptr : this; }
-  std::string why_no_slopes() const override {
-    return "columns of mechanism " + mechanism_.info().name +
-           ", which is a file, have derivatives of the volume, not of what is asked of every pose; take an optimiser "
-           "without gradients";
   }
 
  private:
@@ -114,10 +107,15 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     Integral<double> volume;
   };
   struct Room {
-    std::vector<double> inputs, of_sample;
+    std::vector<double> inputs;
     IntegralRoom integral;
     InertiaRoom inertia;
     Known known;
+  };
+  template <class S>
+  struct SampleRoom {
+    std::vector<S> inputs;
+    SampleConditioning::Room<S> conditioning;
   };
 
   /// The coordinates that differ from sample to sample.
@@ -179,25 +177,20 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
   template <class S>
   void run(std::span<const S> parameters, Scratch& scratch, Survey<S>& survey) const {
     Room& room = scratch.get<Room>();
+    SampleRoom<S>& samples = scratch.get<SampleRoom<S>>();
     survey.clear(demand_.fields);
+    fill_inputs<S>(parameters, samples.inputs);
+    room.inputs.resize(samples.inputs.size());
+    std::ranges::transform(samples.inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
     if constexpr (std::is_same_v<S, double>) {
-      fill_inputs<double>(parameters, room.inputs);
+      room.known.of = nullptr;
+      take(integral_->measure(room.inputs, room.integral), survey);
     } else {
-      std::vector<S>& inputs = scratch.get<std::vector<S>>();
-      fill_inputs<S>(parameters, inputs);
-      room.inputs.resize(inputs.size());
-      std::ranges::transform(inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
+      take(with_slopes(samples.inputs, room), survey);
+      for (std::size_t i = 0; i < samples.inputs.size(); ++i)
+        survey.volume.v = survey.volume.v + samples.inputs[i].v * room.known.by_input[i];
     }
-    if constexpr (std::is_same_v<S, double>) {
-      const Integral<double> volume = integral_->measure(room.inputs, room.integral);
-      take(volume, survey);
-      if (demand_.needs_samples()) add_samples(parameters, room, survey);
-    } else {
-      const std::vector<S>& inputs = scratch.get<std::vector<S>>();
-      take(with_slopes(inputs, room), survey);
-      for (std::size_t i = 0; i < inputs.size(); ++i)
-        survey.volume.v = survey.volume.v + inputs[i].v * room.known.by_input[i];
-    }
+    if (demand_.needs_samples()) add_samples(parameters, samples, room, survey);
   }
 
   template <class S>
@@ -223,29 +216,29 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     return known.volume;
   }
 
-  void add_samples(std::span<const double> parameters, Room& room, Survey<double>& survey) const {
-    const Inputs& at = e_.model.inputs;
+  template <class S>
+  void add_samples(std::span<const S> parameters, SampleRoom<S>& samples, Room& room, Survey<S>& survey) const {
+    const std::vector<S>& inputs = samples.inputs;
     const SectionOrder& order = integral_->plan().order;
     if (inertia_) {
       check_masses(e_, parameters);
-      inertia_->start(room.inputs, room.inertia);
+      inertia_->start(inputs, room.inertia);
     }
-    integral_->for_each_node(outer_rule_, inner_rule_, room.integral,
-                             [&](const std::vector<double>& outer, double v, double z, double weight) {
-                               Pose<double> pose(at.coordinates);
-                               std::copy_n(&room.inputs[at.coordinate(0)], pose.size(), pose.begin());
-                               for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
-                               if (order.v) pose[*order.v] = v;
-                               pose[order.z] = z;
-                               survey.weight.push_back(weight);
-                               if (demand_.poses) survey.pose.push_back(pose);
-                               std::vector<double>& inputs = room.of_sample;
-                               inputs = room.inputs;
-                               std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(at.coordinate(0)));
-                               if (demand_.has(kConditioning))
-                                 add_reported(report_of_sample(e_, parameters, pose, inputs), at.joints, survey);
-                               if (inertia_) inertia_->add(pose, room.inertia, survey);
-                             });
+    if (conditioning_) conditioning_->start(parameters, inputs, samples.conditioning);
+    Pose<S> pose(e_.model.inputs.coordinates);
+    std::copy_n(&inputs[e_.model.inputs.coordinate(0)], pose.size(), pose.begin());
+    std::vector<S>* const conditioning = survey.find(kConditioning);
+    integral_->for_each_node<S>(inputs, outer_rule_, inner_rule_, room.integral,
+                                [&](const std::vector<S>& outer, const S& v, const S& z, const S& weight) {
+                                  for (std::size_t i = 0; i < outer.size(); ++i) pose[order.outer[i]] = outer[i];
+                                  if (order.v) pose[*order.v] = v;
+                                  pose[order.z] = z;
+                                  survey.weight.push_back(weight);
+                                  if (demand_.poses) survey.pose.push_back(pose);
+                                  if (conditioning)
+                                    conditioning->push_back(conditioning_->at(pose, samples.conditioning));
+                                  if (inertia_) inertia_->add(pose, room.inertia, survey);
+                                });
     if (inertia_) inertia_->finish(room.inertia, survey);
   }
 
@@ -257,7 +250,8 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
   std::size_t mode_;
   GaussRule inner_rule_, outer_rule_;
   std::optional<SectionsIntegral> integral_;
-  std::optional<InertiaRows> inertia_;  ///< where fields of inertia are demanded
+  std::optional<SampleConditioning> conditioning_;  ///< where they are demanded
+  std::optional<InertiaRows> inertia_;
 };
 
 }  // namespace

@@ -386,6 +386,55 @@ TEST_P(PaperMechanism, HasTheSameExactVolumes) {
   EXPECT_GT(exact, 0.95 * compared);
 }
 
+/// What each joint feels while the others are free to stay: smooth, unlike coupling indices and condition numbers.
+constexpr PoseQuantity kOwnInertia = {
+    .name = "own_inertia",
+    .unit = "kg",
+    .meaning = "inertia of a joint",
+    .least = -INFINITY,
+    .greatest = INFINITY,
+    .worst = PoseQuantity::Worst::greatest,
+    .without_value = 0,
+    .per_joint = true,
+    .of_inertia =
+        [](const auto& M_q, auto* inertia) {
+          for (std::size_t i = 0; i < M_q.rows(); ++i) inertia[i] = M_q(i, i);
+        },
+};
+
+/// Along four directions of all parameters, from nodes of their own.
+TEST_P(PaperMechanism, HasTheSameSlopesOfSamples) {
+  const MechanismInfo& info = own().info();
+  if (GetParam() != "3crr-r-cru") GTEST_SKIP() << "the mean is infinite, or takes more nodes along other coordinates";
+  // Far from where limbs stretch and fold, and inertia runs to infinity.
+  static const std::map<std::string, double> limits = {{"s_min", 0.3}, {"c_min", 0.2}};
+  SurveyPlan there = test::columns(info, {.nodes = {24, 24}}), here = test::columns(file().info(), {.nodes = {24, 24}});
+  for (std::size_t i = 0; i < info.limits.size(); ++i)
+    if (const auto limit = limits.find(info.limits[i].name); limit != limits.end())
+      there.limits.given[i] = limit->second;
+  here.limits = of_file(there.limits);
+  Stream random(17, 0, 0, Stream::Use::start);
+  std::vector<Dual4> moving;  // beside the nominal design, where nothing is symmetric
+  for (const double p : test::nominal(info)) {
+    moving.emplace_back(p * (1 + 0.02 * random.u01()));
+    for (int k = 0; k < 4; ++k) moving.back().v[k] = (2 * random.u01() - 1) * p;
+  }
+  std::vector<Dual4> of_file;
+  for (const Parameter& p : file().info().parameters)
+    of_file.push_back(moving[static_cast<std::size_t>(find_named(info.parameters, p.name) - info.parameters.data())]);
+  const Demand demand{.fields = {&kOwnInertia}};
+  Survey<Dual4> mine, theirs;
+  survey_once<Dual4>(*prepare_survey(file(), here, demand), of_file, mine);
+  survey_once<Dual4>(*prepare_survey(own(), there, demand), moving, theirs);
+  for (std::size_t joint = 0; joint < info.joints.size(); ++joint) {
+    const Dual4 here_mean = weighted_mean(mine.weight, mine.of(kOwnInertia, joint)),
+                there_mean = weighted_mean(theirs.weight, theirs.of(kOwnInertia, joint));
+    EXPECT_GT(there_mean.a, 0);
+    EXPECT_NEAR(here_mean.a / there_mean.a, 1, 1e-6);
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(here_mean.v[k] / there_mean.a, there_mean.v[k] / there_mean.a, 1e-6) << k;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, PaperMechanism,
                          ::testing::Values("4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"),
                          [](const auto& name) { return test::test_name(name.param); });
