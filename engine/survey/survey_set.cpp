@@ -108,12 +108,15 @@ std::unique_ptr<const Surveyor> prepare_survey(const Mechanism& mechanism, const
   return std::make_unique<SurveySet>(std::move(members), demand, plan.columns() != nullptr);
 }
 
-VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) {
+std::unique_ptr<const VoxelSurveyor> prepare_map(const Mechanism& mechanism, const SurveyPlan& plan) {
   sweep_of(mechanism.info(), plan);
   const VoxelOptions& voxels = *plan.voxels();
-  const auto surveyor = mechanism.voxels() ? mechanism.voxels()->prepare(plan, voxels, {})
-                                           : prepare_plain_voxels(mechanism, plan, voxels, {});
-  return surveyor->map(parameters);
+  if (mechanism.voxels()) return mechanism.voxels()->prepare(plan, voxels, {});
+  return prepare_plain_voxels(mechanism, plan, voxels, {});
+}
+
+VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) {
+  return prepare_map(mechanism, plan)->map(parameters);
 }
 
 }  // namespace pkm
