@@ -74,6 +74,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   }
   bool take_rotors() const override { return true; }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
+  bool take_obstacles() const override { return bare_->voxels()->take_obstacles(); }
                                           const Demand& demand) const override {
     if (demand.needs_inertia() && has_rotors() && !bare_->columns()->take_rotors())
       throw std::invalid_argument("column surveys of mechanism " + info().name +

@@ -53,6 +53,7 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
 
 void add_clearance(MechanismDraft& draft) {
   described::Model& model = draft.model;
+  model.moving_links = described::moving_links(model.graph, model.links);
   model.link_pairs = described::pairs_to_keep_clear(model.graph, model.links);
   if (model.link_pairs.empty()) return;
   model.clearance_limit = model.info.limits.size();

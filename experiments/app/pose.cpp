@@ -88,8 +88,8 @@ void write_links(const Target& target, const std::string& mode, const Pose<doubl
     out.json["files"].push_back(file);
     out.text += "\nwrote " + file + '\n';
   };
-  if (!arguments.stl.empty()) write(arguments.stl, links_stl(links, title));
-  if (!arguments.dxf.empty()) write(arguments.dxf, links_dxf(links));
+  if (!arguments.stl.empty()) write(arguments.stl, links_stl(links, target.limits.obstacles, title));
+  if (!arguments.dxf.empty()) write(arguments.dxf, links_dxf(links, target.limits.obstacles));
 }
 
 /// Errors of the joints that --joint-error gives: one for all, or by name.

@@ -107,6 +107,7 @@ class DescribedMechanism final : public Mechanism,
     return certify_box(e_, parameters, plan, number_of_mode(info(), mode), ranges, options);
   }
   std::optional<Influence<double>> influence(std::span<const double> parameters, const Pose<double>& pose,
+  bool take_obstacles() const override { return true; }
                                              const std::string& mode) const override {
     return influence_at(e_, parameters, pose, number_of_mode(info(), mode));
   }

@@ -147,3 +147,4 @@ struct Model {
 };
 
 }  // namespace pkm::described
+  std::vector<std::size_t> moving_links;       ///< which keep clear of obstacles
