@@ -28,21 +28,32 @@ std::vector<JointColumns> columns_of(const NewtonEuler& system) {
   return columns;
 }
 
-/// Components of a joint's couple along x, y, z; none where the null space reaches it.
-std::array<std::optional<double>, 3> couple_of(const JointColumns& at, const LeastNorm& solution) {
-  std::array<std::optional<double>, 3> couple;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double value = 0;
-    Eigen::RowVectorXd free = Eigen::RowVectorXd::Zero(solution.null_space.cols());
-    for (Index k = 0; k < at.couple_count; ++k) {
-      const double share = at.joint.couples[static_cast<std::size_t>(k)][axis];
-      value += share * solution.x[at.couples + k];
-      // a matrix without columns has no address to count its rows from
-      if (free.size() > 0) free += share * solution.null_space.row(at.couples + k);
-    }
-    if (free.norm() < kUniqueTolerance) couple[axis] = value;
+/// A component of a joint's force, or of its couple, along a direction: how much of the unknowns from a column on.
+struct Component {
+  Index first;
+  Eigen::VectorXd share;
+
+  double in(const Eigen::VectorXd& solution) const { return share.dot(solution.segment(first, share.size())); }
+  /// Whether no null vector of length 1 moves it.
+  bool is_determined(const LeastNorm& solution) const {
+    if (solution.null_space.cols() == 0 || share.size() == 0) return true;
+    const auto rows = solution.null_space.middleRows(first, share.size());
+    return (share.transpose() * rows).norm() < kUniqueTolerance;
   }
-  return couple;
+  std::optional<double> determined(const LeastNorm& solution) const {
+    return is_determined(solution) ? std::optional(in(solution.x)) : std::nullopt;
+  }
+};
+Component force_along(const JointColumns& at, const Eigen::Vector3d& direction) { return {at.first, direction}; }
+Component couple_along(const JointColumns& at, const Eigen::Vector3d& direction) {
+  Component component{at.couples, Eigen::VectorXd(at.couple_count)};
+  for (Index k = 0; k < at.couple_count; ++k)
+    component.share[k] = direction.dot(eigen(at.joint.couples[static_cast<std::size_t>(k)]));
+  return component;
+}
+Component of_actuator(const JointColumns& at) {
+  const Eigen::Vector3d axis = eigen(at.joint.actuator->axis);
+  return at.joint.actuator->turns ? couple_along(at, axis) : force_along(at, axis);
 }
 
 }  // namespace
@@ -115,22 +126,20 @@ AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd
   AxisVector<double> forces(actuators);
   for (const JointColumns& at : columns_of(system))
     if (const auto& actuator = at.joint.actuator)
-      forces[actuator->joint] = eigen(actuator->axis).dot(solution.segment<3>(at.first)) + actuator->on_slide;
+      forces[actuator->joint] += of_actuator(at).in(solution) + actuator->on_slide;
   return forces;
 }
 
 Reactions reactions(const NewtonEuler& system) {
   const LeastNorm solution = least_norm(system);
   const std::vector<JointColumns> columns = columns_of(system);
-  const bool forces_are_unique = solution.null_space.cols() == 0 || std::ranges::all_of(columns, [&](const auto& at) {
-                                   const auto freedom = solution.null_space.middleRows<3>(at.first);
-                                   return freedom.rowwise().norm().maxCoeff() < kUniqueTolerance;
-                                 });
+  const bool drives_are_determined = std::ranges::all_of(
+      columns, [&](const JointColumns& at) { return !at.joint.actuator || of_actuator(at).is_determined(solution); });
   Reactions found;
   found.equations = static_cast<int>(6 * system.bodies.size());
   found.unknowns = static_cast<int>(solution.x.size());
   found.rank = solution.rank;
-  if (found.rank < found.equations || !solution.x.allFinite() || !forces_are_unique) {
+  if (found.rank < found.equations || !solution.x.allFinite() || !drives_are_determined) {
     found.reason =
         "the mechanism is at a singularity, where the equations of its bodies do not determine the forces (" +
         std::to_string(found.equations) + " equations of rank " + std::to_string(found.rank) + ")";
@@ -138,9 +147,13 @@ Reactions reactions(const NewtonEuler& system) {
   }
   found.drive_forces = drive_forces(system, solution.x);
   for (const JointColumns& at : columns) {
-    const auto force = solution.x.segment<3>(at.first);
-    found.joints.push_back(
-        {at.joint.name, system.bodies[at.joint.on].name, {force[0], force[1], force[2]}, couple_of(at, solution)});
+    JointReaction joint{at.joint.name, system.bodies[at.joint.on].name, {}, {}};
+    for (Index axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      joint.force[k] = force_along(at, Eigen::Vector3d::Unit(axis)).determined(solution);
+      joint.couple[k] = couple_along(at, Eigen::Vector3d::Unit(axis)).determined(solution);
+    }
+    found.joints.push_back(std::move(joint));
   }
   return found;
 }

@@ -4,8 +4,8 @@
 //
 // A mechanism whose joints constrain it more often than necessary has more unknowns than equations. The rank-revealing
 // solution tells what is determined all the same: an unknown is where its row of a basis of the null space vanishes.
-// What then remains of a null space are couples that bodies hold against each other; forces, and with them those of
-// the actuators, are unique.
+// What then remains of a null space are forces and couples that bodies hold against each other; those of the actuators
+// are unique.
 //
 // Source: Transactions of the Chinese Society for Agricultural Machinery 54 (9), 2023, 448-458, section 2.4 with its
 // errata (60 equations have 64 unknowns there, not 60).
@@ -23,13 +23,15 @@
 
 namespace pkm {
 
-/// Which component of a joint's force an actuator exerts.
+/// Which component of a joint's force an actuator exerts, or of its couple, which the joint then carries. Those of one
+/// number together are one drive.
 struct Actuator {
   std::size_t joint;       ///< number among the mechanism's actuated joints
   Vector<double, 3> axis;  ///< of unit length; forces along it are positive
   /// What the actuator spends before the joint, on a slide of its own: mass times (acceleration - g) along the axis
   /// [N].
   double on_slide = 0;
+  bool turns = false;
 };
 
 /// Between two bodies, or a body and the ground. It transmits a force in every direction.
@@ -71,7 +73,7 @@ double couple_length(const NewtonEuler& system);
 inline constexpr double kRankTolerance = 1e-10;
 LeastNorm least_norm(const NewtonEuler& system);
 
-/// Forces of the actuators in a solution, by the number of their joints [N].
+/// Forces of the actuators in a solution, by the number of their joints [N, N m].
 AxisVector<double> drive_forces(const NewtonEuler& system, const Eigen::VectorXd& solution);
 
 /// Everything that is determined, by the solution of least norm. An unknown is when no null vector of length 1 moves

@@ -57,6 +57,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   const Links* links() const override { return bare_->links(); }
   const Dynamics* dynamics() const override { return this; }
   const JointReactions* reactions() const override { return bare_->reactions(); }
+  std::string why_no_reactions() const override { return bare_->why_no_reactions(); }
   const AuxiliaryChain* chain() const override { return bare_->chain(); }
   const DriveTrains* drive_trains() const override { return &trains_; }
 
@@ -75,6 +76,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
     return bare_->voxels()->prepare(plan, voxels, with_rotors(demand));
   }
   bool take_rotors() const override { return true; }
+  bool take_obstacles() const override { return bare_->voxels()->take_obstacles(); }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
                                           const Demand& demand) const override {
     if (demand.needs_inertia() && has_rotors() && !bare_->columns()->take_rotors())

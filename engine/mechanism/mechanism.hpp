@@ -94,6 +94,7 @@ class Mechanism {
   virtual const Links* links() const { return nullptr; }
   virtual const Dynamics* dynamics() const { return nullptr; }
   virtual const JointReactions* reactions() const { return nullptr; }
+  virtual std::string why_no_reactions() const { return ""; }  ///< "": there is nothing to say about it
   virtual const AuxiliaryChain* chain() const { return nullptr; }
   virtual const DriveTrains* drive_trains() const { return nullptr; }
   virtual const CertainBounds* bounds() const { return nullptr; }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/mechanism/pose_quantity.hpp"
+#include "engine/model/obstacle.hpp"
 
 namespace pkm {
 
@@ -18,6 +19,7 @@ namespace pkm {
 struct LimitSpec {
   std::vector<std::optional<double>> given;  ///< threshold set by the study
   std::vector<bool> derived;                 ///< computed from the design's parameters by the mechanism's formula
+  Obstacles obstacles = {};                  ///< what links keep clear of beside each other
 };
 
 /// One coordinate that is not swept over: held at a value, at the design's own middle, at each of several values (one

@@ -106,18 +106,20 @@ void check_held(const ProblemParts& parts, const std::vector<std::vector<double>
   }
 }
 
-/// What the swept coordinates of a design can be, by the box that surveys without one derive.
-std::optional<Box> derived_box(const Mechanism& mechanism, const std::vector<double>& design, SurveyPlan plan) {
+/// Widens the hull by what the swept coordinates of the designs can be: the box that surveys without one derive.
+void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<double>>& designs, SurveyPlan plan,
+                    Box& hull) {
   std::visit([](auto& method) { method.box.reset(); }, plan.method);
   SurveyPlan picture = picture_plan(mechanism.info(), plan, {1, 1, 1});
   std::get<VoxelOptions>(picture.method).cells = {1, 1, 1};
   try {
-    const VoxelMap map = voxel_map(mechanism, design, picture);
-    Box box;
-    for (std::size_t axis = 0; axis < 3; ++axis) box[axis] = {map.lower[axis], map.upper[axis]};
-    return box;
+    const auto surveyor = prepare_map(mechanism, picture);
+    for (const auto& design : designs) {
+      const VoxelMap map = surveyor->map(design);
+      for (std::size_t axis = 0; axis < 3; ++axis) widen(hull[axis], {map.lower[axis], map.upper[axis]});
+    }
   } catch (const std::invalid_argument&) {
-    return {};  // the mechanism does not say where its workspace is
+    // the mechanism does not say where its workspace is
   }
 }
 
@@ -133,10 +135,7 @@ void check_box(const ProblemParts& parts, const std::vector<std::vector<double>>
     }
   Box hull;
   hull.fill(kNothing);
-  for (const auto& design : designs)
-    for (const SurveyPlan& one : plans)
-      if (const auto box = derived_box(*parts.mechanism, design, one))
-        for (std::size_t axis = 0; axis < 3; ++axis) widen(hull[axis], (*box)[axis]);
+  for (const SurveyPlan& one : plans) widen_by_reach(*parts.mechanism, designs, one, hull);
   const MechanismInfo& info = parts.mechanism->info();
   const std::vector<int>& swept = sweep_of(info, plan).swept;
   for (std::size_t axis = 0; axis < swept.size(); ++axis) {

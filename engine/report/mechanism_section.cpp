@@ -76,10 +76,13 @@ void add_motion(const Motion& motion, std::vector<Pose<double>>& poses) {
 
 std::vector<DrawnPose> draw(const Views& views, const View& view, const std::vector<Pose<double>>& poses) {
   std::vector<DrawnPose> drawn(poses.size());
+  const std::vector<PlacedLink> obstacles = drawn_obstacles(views.limits.obstacles);
   share_pieces(poses.size(), [&](std::size_t pose, std::size_t end) {
     for (; pose < end; ++pose) {
       drawn[pose].report = views.mechanism.inspect(view.parameters, poses[pose], views.mode, views.limits);
-      drawn[pose].links = views.mechanism.links()->place(view.parameters, poses[pose], views.mode);
+      std::vector<PlacedLink>& links = drawn[pose].links;
+      links = views.mechanism.links()->place(view.parameters, poses[pose], views.mode);
+      if (!links.empty()) links.insert(links.end(), obstacles.begin(), obstacles.end());
     }
   });
   return drawn;

@@ -128,6 +128,27 @@ std::vector<Row> limit_rows(const Study& study) {
   return rows;
 }
 
+std::vector<Row> obstacle_rows(const Obstacles& obstacles) {
+  const auto triple = [](const Point3<double>& p) {
+    return "(" + shortest(p[0]) + ", " + shortest(p[1]) + ", " + shortest(p[2]) + ") m";
+  };
+  std::vector<Row> rows;
+  for (const Obstacle& obstacle : obstacles) {
+    if (const auto* const box = std::get_if<SolidBox>(&obstacle.shape)) {
+      const auto& h = box->half;
+      rows.push_back(
+          {obstacle.name, "box", "centre " + triple(box->centre), "sizes " + triple({2 * h[0], 2 * h[1], 2 * h[2]})});
+      continue;
+    }
+    const auto& [axis, radius] = std::get<Capsule<double>>(obstacle.shape);
+    const bool is_sphere = axis.from == axis.to;
+    rows.push_back({obstacle.name, is_sphere ? "sphere" : "capsule",
+                    is_sphere ? "centre " + triple(axis.from) : triple(axis.from) + " to " + triple(axis.to),
+                    "radius " + with_unit(radius, "m")});
+  }
+  return rows;
+}
+
 void write_options(std::ostream& out, const std::vector<OptionSpec>& specs, const Options& options) {
   std::vector<Row> rows;
   for (const auto& spec : specs) {
@@ -186,6 +207,8 @@ std::string describe(const Study& study) {
   for (const NamedMotion& named : study.motions)
     motions.push_back({named.name, "takes " + with_unit(named.motion->duration(), "s")});
   if (!motions.empty()) out << titled("motions", motions);
+  if (const Obstacles& obstacles = parts.plan.limits.obstacles; !obstacles.empty())
+    out << titled("obstacles, of which all links that move keep clear", obstacle_rows(obstacles));
   out << titled("limits of a pose", limit_rows(study));
   write_entries(out, "objectives", study.objectives);
   write_entries(out, "constraints", study.constraints);

@@ -131,7 +131,7 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
   const Refusal no_forces = no_joint_forces(mechanism);
   tell(!no_forces, "forces and coupling", "", no_forces ? no_forces->c_str() : "");
-  tell(mechanism.reactions(), "forces in the joints", "", "a file does not say which couples its joints carry");
+  tell(mechanism.reactions(), "forces in the joints", "pkmopt dynamics --reactions", mechanism.why_no_reactions());
   out << titled("available", can);
   out << titled("not available, and why", cannot);
 }

@@ -15,8 +15,6 @@ namespace {
 using described::DescribedBody;
 using limbs::Term, limbs::Vector3;
 
-std::array<graph::Node, 3> nodes(const Vector3& v) { return {v[0].node(), v[1].node(), v[2].node()}; }
-
 bool has_length(const std::string& part) { return part == "crank" || part == "rod" || part.ends_with("_link"); }
 bool is_telescopic(const std::string& part) { return part == "cylinder" || part == "piston"; }
 
@@ -172,13 +170,16 @@ void add_part_body(const ConfigValue& table, const std::string& limb, const Limb
                                 : draft.zero();
   if (const auto own = table.find(part.name + "_inertia")) inertia = draft.scope.of_design(*own, "kg m^2", what);
   checked(draft, inertia, "the inertia of " + what, "kg m^2", true);
+  const graph::Node none = draft.zero().node(), across = inertia.node();
   if (part.length) {
     draft.model.bodies.push_back(thin_body(part, mass, inertia, what, draft));
+    draft.model.bodies.back().inertia = {none, across, across};
   } else if (part.line) {
     const std::string from = part.name == "cylinder" ? "A" : "B";
     const Term along = draft.scope.of_design(
         table.at(part.name + "_centre", "the distance of its centre of mass from " + from), "m", what);
     draft.model.bodies.push_back(telescopic_body(part, mass, along, inertia, what));
+    draft.model.bodies.back().inertia = {none, across, across};
   } else {
     draft.model.bodies.push_back(body_at(part.from, mass, what));
   }
@@ -194,6 +195,7 @@ void add_link_body(const ConfigValue& table, const std::string& name, const Vect
   if (inertia) {
     const Term I = draft.scope.of_design(*inertia, "kg m^2", name);
     body.line_turns.push_back({nodes(to - from), checked(draft, I, "the inertia of " + name, "kg m^2", true).node()});
+    body.inertia = {draft.zero().node(), I.node(), I.node()};
   }
   draft.model.bodies.push_back(std::move(body));
 }
@@ -206,7 +208,11 @@ void read_platform_body(const ConfigValue& platform, MechanismDraft& draft) {
   if (!mass) return;
   const Term m = checked(draft, draft.scope.of_design(*mass, "kg", "mass"), "the mass of the platform", "kg", false);
   DescribedBody body = body_at(at, m, "platform");
-  if (inertia) add_turns_of_platform(read_inertia(*inertia, "the platform", draft), body, draft);
+  if (inertia) {
+    const std::array<Term, 3> values = read_inertia(*inertia, "the platform", draft);
+    add_turns_of_platform(values, body, draft);
+    body.inertia = {values[0].node(), values[1].node(), values[2].node()};
+  }
   draft.model.bodies.push_back(std::move(body));
 }
 
@@ -227,9 +233,10 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
                               "the mass of " + name, "kg", true);
     DescribedBody body = body_at(centre, mass, name);
     const auto rotation = table.find("rotation");
-    if (rotation) rotation->word(names);
+    if (rotation) body.part_of = rotation->word(names);
     if (const auto value = table.find("inertia")) {
       const std::array<Term, 3> inertia = read_inertia(*value, name, draft);
+      body.inertia = {inertia[0].node(), inertia[1].node(), inertia[2].node()};
       if (rotation && rotation->text("a name") == "platform") {
         add_turns_of_platform(inertia, body, draft);
       } else if (rotation) {

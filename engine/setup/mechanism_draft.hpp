@@ -12,6 +12,8 @@
 
 namespace pkm {
 
+inline std::array<graph::Node, 3> nodes(const limbs::Vector3& v) { return {v[0].node(), v[1].node(), v[2].node()}; }
+
 /// A part of a limb, or a link: what may have a mass, and what [[body]] calls "arm1.crank".
 struct LimbPart {
   std::string name;                         ///< "crank", "rod", "slider"
@@ -34,6 +36,13 @@ struct NamedLimb {
   std::string group;                             ///< "arm": all copies
   std::map<std::string, limbs::Vector3> points;  ///< "A", "B", "C", "S"
   std::vector<LimbPart> parts;
+
+  std::string drive = "formula";
+  std::size_t joint = 0;                        ///< its number among the mechanism's
+  std::optional<limbs::Vector3> axis = {};      ///< of the crank's pivot, or along the slide
+  std::optional<limbs::Vector3> revolute = {};  ///< the axis of its joints, where they are parallel revolutes
+  std::optional<limbs::Vector3> beside = {};    ///< from its rod to one of a pair
+  std::string end_on = "";                      ///< the body that carries its end; "": the file does not say
 };
 
 /// A limb's own parameter in the graph.
@@ -101,6 +110,8 @@ void add_link_body(const ConfigValue& table, const std::string& name, const limb
 void read_platform_body(const ConfigValue& platform, MechanismDraft& draft);
 /// [[body]]. @param links  names of [[link]]s with their directions
 void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, MechanismDraft& draft);
+/// [[joint]], and the joints of limbs, for the forces in them.
+void add_joints(const ConfigValue& root, MechanismDraft& draft);
 /// [x, y, z] or a limb's point, "arm1.C".
 limbs::Vector3 read_point(const ConfigValue& value, const std::string& what, MechanismDraft& draft);
 

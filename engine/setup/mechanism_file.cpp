@@ -181,7 +181,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
     throw ConfigError({file_name, 0, ""}, "an empty file",
                       "a mechanism: [mechanism], [parameters], [platform], [[limb]]");
   root.allow({"mechanism", "parameters", "platform", "survey", "modes", "let", "limb", "limit", "margin", "design",
-              "link", "body"});
+              "link", "body", "joint"});
   MechanismDraft draft;
   read_names(root, draft);
   read_parameters(root, own, draft);
@@ -204,6 +204,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   draft.scope.note_domains();
   list_modes(draft);
   add_clearance(draft);
+  add_joints(root, draft);
   return described::make_mechanism(std::move(draft.model));
 }
 

@@ -50,14 +50,14 @@ class LimbReader {
       also({"joints", "joint", "unit"});
     } else {
       also({"copies", "base", "platform", "end", "across", "across_in", "radius", "joint_base", "joint_platform",
-            "joint_name"});
+            "joint_name", "end_on"});
       for (const std::string& part : names_of_parts()) {
         const std::vector<std::string> of_mass = mass_keys(part);
         keys.insert(keys.end(), of_mass.begin(), of_mass.end());
       }
     }
-    if (drive_ == "slider") also({"direction", "along", "rod", "links", "axis", "branch"});
-    if (drive_ == "crank") also({"axis", "zero", "crank", "rod", "branch"});
+    if (drive_ == "slider") also({"direction", "along", "rod", "links", "axis", "branch", "pair"});
+    if (drive_ == "crank") also({"axis", "zero", "crank", "rod", "branch", "pair"});
     table_.allow(keys);
   }
 
@@ -203,6 +203,7 @@ class LimbReader {
 
   Limb crank(const limbs::Ends& at, const Rotation& copy, const Term& q, std::string& form) {
     const Vector3 axis = direction(table_.at("axis", "the pivot's axis [x, y, z]"), copy, false);
+    e_ = axis;
     const Vector3 zero_way = direction(table_.at("zero", "the crank's direction at q = 0, [x, y, z]"), copy, false);
     refuse_oblique(zero_way, axis, "zero", "`axis`");
     if (at.across) {
@@ -284,11 +285,41 @@ class LimbReader {
     }
     add_passive_joint("joint_base", name, limb.C, at.B);
     add_passive_joint("joint_platform", name, at.B, limb.C);
-    draft_.limbs.push_back({name, name_, {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}}, parts(limb, at)});
+    draft_.limbs.push_back({.name = name,
+                            .group = name_,
+                            .points = {{"A", at.A}, {"B", at.B}, {"C", limb.C}, {"S", limb.S}},
+                            .parts = parts(limb, at)});
+    add_kind(at, draft_.limbs.back());
     const NamedLimb named = draft_.limbs.back();
     for (const LimbPart& part : named.parts) add_part_body(table_, named.name, part, draft_);
     add_links(name, limb, at);
     add_reach(at, model.info.joints.back().unit);
+  }
+
+  /// What its joints are.
+  void add_kind(const limbs::Ends& at, NamedLimb& limb) const {
+    limb.drive = drive_;
+    limb.joint = draft_.model.joints.size() - 1;
+    limb.axis = e_;
+    limb.revolute = table_.has("links") ? e_ : at.across;
+    const auto end_on = table_.find("end_on");
+    if (end_on && !table_.has("end"))
+      throw end_on->refusal("a limb that ends at `platform` ends on the platform; `end_on` belongs to `end`");
+    limb.end_on = end_on ? end_on->text("\"platform\" or the name of a body") : table_.has("end") ? "" : "platform";
+    const auto pair = table_.find("pair");
+    if (!pair) return;
+    const bool is_crank = drive_ == "crank";
+    pair->expect_table("a table { spacing = .., along = [x, y, z] }").allow({"spacing", "along"});
+    if (limb.revolute || !table_.has("rod"))
+      throw pair->refusal("a pair is of rods with ball joints: of a `rod` without `across`");
+    const auto along = pair->find("along");
+    if (is_crank && along) throw along->refusal("the rods of a pair are side by side along the crank's axis");
+    const auto& about = draft_.model.turns_about;
+    if (limb.end_on == "platform" && std::ranges::any_of(about, [](const auto& axis) { return axis.has_value(); }))
+      throw pair->refusal("a pair of rods stays parallel where the platform does not turn, and this one does");
+    const Vector3 side =
+        is_crank ? *e_ : direction(pair->at("along", "the direction from one rod to the other"), last_copy_, false);
+    limb.beside = side * (draft_.scope.of_design(pair->at("spacing", "the rods' distance"), "m", limb.name) * 0.5);
   }
 
   /// Its bodies, as [[body]] names them.
@@ -327,7 +358,6 @@ class LimbReader {
     return draft_.scope.of_design(table_.find("links")->elements("two lengths [l_1, l_2]")[which], "m", name_);
   }
   void add_arm(const limbs::Arm& arm, const limbs::Ends& at, const Limb& limb) {
-    const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
     draft_.model.arms.push_back({nodes(arm.arm), nodes(arm.axis), nodes(arm.rod), nodes(at.B),
                                  drive_ == "crank" ? std::optional(limb.joint.node()) : std::nullopt});
   }
@@ -337,7 +367,6 @@ class LimbReader {
     if (!radius) return;
     const Term r = draft_.scope.of_design(*radius, "m", name);
     const auto link = [&](const std::string& what, const std::string& part, const Vector3& from, const Vector3& to) {
-      const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
       const std::string& group = part == kPlatformPart ? part : name;
       draft_.model.links.push_back({what + " of " + name, part, nodes(from), nodes(to), r.node(), {group}});
     };
@@ -390,7 +419,7 @@ class LimbReader {
       if (joints->keys().empty()) throw joints->error("at least one joint");
       for (const std::string& name : joints->keys()) read_formula(name, *joints->find(name), in);
     }
-    draft_.limbs.push_back({name_, name_, {}, {}});
+    draft_.limbs.push_back({.name = name_, .group = name_, .points = {}, .parts = {}});
     draft_.reaches.emplace_back();
   }
   void read_formula(const std::string& name, const ConfigValue& text, const std::string& unit) {
@@ -410,7 +439,7 @@ class LimbReader {
   std::size_t about_ = 2, copies_read_ = 0;
   bool is_copied_ = false;
   Rotation last_copy_ = limbs::turn_about(2, draft_.zero(), limbs::Term(draft_.model.graph, 1.0));
-  std::optional<Vector3> e_;    ///< of the slide
+  std::optional<Vector3> e_;    ///< along the slide, or the crank's axis
   std::optional<Term> beyond_;  ///< how far from A, or from the slide, B can be
 };
 

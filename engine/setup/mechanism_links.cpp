@@ -43,7 +43,6 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
       part = in.front();
       in.insert(in.end(), copies.begin(), copies.end());
     }
-    const auto nodes = [](const Vector3& p) { return std::array{p[0].node(), p[1].node(), p[2].node()}; };
     draft.model.links.push_back({name, part, nodes(from), nodes(to), radius.node(), in});
     add_link_body(table, name, from, to, draft);
     links.push_back({.name = name, .from = from, .to = to, .line = to - from});
@@ -54,6 +53,7 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
 void add_clearance(MechanismDraft& draft) {
   described::Model& model = draft.model;
   model.link_pairs = described::pairs_to_keep_clear(model.graph, model.links);
+  model.moving_links = described::moving_links(model.graph, model.links);
   if (model.link_pairs.empty()) return;
   model.clearance_limit = model.info.limits.size();
   model.info.limits.push_back({described::kClearanceLimit, "m", kNoClearance, kNoClearance, 100, "clearance", "",

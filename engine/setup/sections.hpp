@@ -44,6 +44,8 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft);
 void set_usual(const MechanismInfo& info, SurveyPlan& plan);
 /// The [[constraint]]s that cut the workspace: they complete the survey plan, so they come before what uses it.
 void read_pose_constraints(const ConfigValue& root, StudyDraft& draft);
+/// [[obstacle]]: what stands fixed in the base, of which links keep clear.
+void read_obstacles(const ConfigValue& root, StudyDraft& draft);
 /// [[region]]: named parts of the workspace with surveys of their own, under the study's limits of a pose.
 void read_regions(const ConfigValue& root, StudyDraft& draft);
 /// [[motion]]

@@ -129,7 +129,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
                       "a study, which names such a file in [mechanism] file = \"..\"");
   const ConfigValue root(document, file_name, "");
   root.allow({"study", "mechanism", "variables", "baseline", "workspace", "region", "motion", "objective", "constraint",
-              "report", "reference", "drive_train", "stage", "checkpoint", "final", "override"},
+              "report", "reference", "drive_train", "obstacle", "stage", "checkpoint", "final", "override"},
              "section");
 
   StudyDraft draft{catalogues, find_description, {}, {}};
@@ -146,6 +146,7 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
   read_baseline(root, draft);
   read_workspace(root, draft);
   read_pose_constraints(root, draft);
+  read_obstacles(root, draft);
   read_regions(root, draft);
   read_motions(root, draft);
   read_quantities(root, draft);

@@ -28,8 +28,9 @@ class Cells {
         pose_[at] = held_value(mechanism, parameters, plan, coordinate);
         continue;
       }
-      if (!ranges_) no_ranges(mechanism);
-      const auto [lower, upper] = (*ranges_)[at];
+      const auto range = ranges_ ? std::optional((*ranges_)[at]) : mechanism.reach(parameters, coordinate);
+      if (!range) no_ranges(mechanism);
+      const auto [lower, upper] = *range;
       held_.push_back({at, lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
       measure_ *= held_.back().step;
       slices_ *= held.cells;

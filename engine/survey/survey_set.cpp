@@ -59,6 +59,15 @@ class SurveySet final : public WithSlopes<SurveySet> {
   bool alone_;
 };
 
+/// Whether the mechanism's own voxels serve the plan; else it is surveyed cell by cell.
+bool has_voxels(const Mechanism& mechanism, const SurveyPlan& plan) {
+  const auto& limits = mechanism.info().limits;
+  bool obstructed = false;
+  for (std::size_t i = 0; !plan.limits.obstacles.empty() && i < limits.size(); ++i)
+    obstructed = obstructed || (limits[i].group == "clearance" && asks_clearance(plan, i));
+  return mechanism.voxels() && (!obstructed || mechanism.voxels()->take_obstacles());
+}
+
 std::unique_ptr<const Surveyor> prepare_one(const Mechanism& mechanism, const SurveyPlan& plan, const Demand& demand) {
   sweep_of(mechanism.info(), plan);  // refuses what it has no sweep for
   const PoseQuantity* const foreign = of_cells_only(demand);
@@ -74,7 +83,7 @@ std::unique_ptr<const Surveyor> prepare_one(const Mechanism& mechanism, const Su
                                   " cannot be cut by a box; take workspace.method = \"voxels\"");
     return mechanism.columns()->prepare(plan, *columns, demand);
   }
-  if (mechanism.voxels() && !foreign) return mechanism.voxels()->prepare(plan, *plan.voxels(), demand);
+  if (has_voxels(mechanism, plan) && !foreign) return mechanism.voxels()->prepare(plan, *plan.voxels(), demand);
   return prepare_plain_voxels(mechanism, plan, *plan.voxels(), demand);
 }
 
@@ -108,12 +117,15 @@ std::unique_ptr<const Surveyor> prepare_survey(const Mechanism& mechanism, const
   return std::make_unique<SurveySet>(std::move(members), demand, plan.columns() != nullptr);
 }
 
-VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) {
+std::unique_ptr<const VoxelSurveyor> prepare_map(const Mechanism& mechanism, const SurveyPlan& plan) {
   sweep_of(mechanism.info(), plan);
   const VoxelOptions& voxels = *plan.voxels();
-  const auto surveyor = mechanism.voxels() ? mechanism.voxels()->prepare(plan, voxels, {})
-                                           : prepare_plain_voxels(mechanism, plan, voxels, {});
-  return surveyor->map(parameters);
+  if (has_voxels(mechanism, plan)) return mechanism.voxels()->prepare(plan, voxels, {});
+  return prepare_plain_voxels(mechanism, plan, voxels, {});
+}
+
+VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) {
+  return prepare_map(mechanism, plan)->map(parameters);
 }
 
 }  // namespace pkm

@@ -17,6 +17,9 @@ std::unique_ptr<const Surveyor> prepare_survey(const Mechanism& mechanism, const
 /// made of reports of poses, other than conditioning. Null: none.
 const PoseQuantity* of_cells_only(const Demand& demand);
 
+/// What shows the cells of a voxel plan, for many designs. It throws the same.
+std::unique_ptr<const VoxelSurveyor> prepare_map(const Mechanism& mechanism, const SurveyPlan& plan);
+
 /// The cells of a voxel plan for one design (the plan's cells; box as in a survey). It throws the same.
 VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan);
 

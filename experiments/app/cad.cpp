@@ -52,6 +52,23 @@ void add_capsule(const Capsule<double>& capsule, Isosurface& surface) {
     }
 }
 
+/// Each face of two triangles that turn their backs to the box.
+void add_box(const SolidBox& box, Isosurface& surface) {
+  const auto first = static_cast<std::uint32_t>(surface.vertices.size());
+  for (std::size_t bits = 0; bits < 8; ++bits) {
+    Point3<double>& corner = surface.vertices.emplace_back(box.centre);
+    for (std::size_t i = 0; i < 3; ++i) corner[i] += bits >> i & 1 ? box.half[i] : -box.half[i];
+  }
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t u = 1U << (i + 1) % 3, v = 1U << (i + 2) % 3;  // u, v and the axis i are right-handed
+    for (const std::uint32_t side : {0U, 1U}) {
+      const std::uint32_t a = first + side * (1U << i), b = a + (side ? u : v), c = a + (side ? v : u);
+      surface.triangles.push_back({a, b, a + u + v});
+      surface.triangles.push_back({a, a + u + v, c});
+    }
+  }
+}
+
 std::string pair(int code, const std::string& value) { return std::to_string(code) + '\n' + value + '\n'; }
 
 /// A point by its group codes: x at `code`, y ten further, z ten further.
@@ -70,18 +87,25 @@ std::string layer_name(std::string part) {
 
 }  // namespace
 
-std::string links_stl(const std::vector<PlacedLink>& links, const std::string& title) {
+std::string links_stl(const std::vector<PlacedLink>& links, const Obstacles& obstacles, const std::string& title) {
   Isosurface surface;
   for (const PlacedLink& link : links) add_capsule(link.body, surface);
+  for (const Obstacle& obstacle : obstacles)
+    if (const auto* const box = std::get_if<SolidBox>(&obstacle.shape))
+      add_box(*box, surface);
+    else
+      add_capsule(std::get<Capsule<double>>(obstacle.shape), surface);
   return stl_file(surface, title);
 }
 
-std::string links_dxf(const std::vector<PlacedLink>& links) {
+std::string links_dxf(const std::vector<PlacedLink>& links, const Obstacles& obstacles) {
   constexpr const char* kMetres = "6";
   std::string text = pair(0, "SECTION") + pair(2, "HEADER") + pair(9, "$ACADVER") + pair(1, "AC1009") +
                      pair(9, "$INSUNITS") + pair(70, kMetres) + pair(0, "ENDSEC") + pair(0, "SECTION") +
                      pair(2, "ENTITIES");
-  for (const PlacedLink& link : links) {
+  std::vector<PlacedLink> all = drawn_obstacles(obstacles);
+  all.insert(all.begin(), links.begin(), links.end());
+  for (const PlacedLink& link : all) {
     const Segment<double>& axis = link.body.axis;
     const bool is_point = axis.from == axis.to;
     text += pair(0, is_point ? "POINT" : "LINE") + pair(8, layer_name(link.part)) + point(10, axis.from);

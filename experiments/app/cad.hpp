@@ -8,10 +8,11 @@
 
 namespace pkm {
 
-/// The links' surfaces as binary STL: tubes with round ends, a ball where a link is a point.
-std::string links_stl(const std::vector<PlacedLink>& links, const std::string& title);
+/// The surfaces of links and obstacles as binary STL: tubes with round ends, a ball where a link is a point.
+std::string links_stl(const std::vector<PlacedLink>& links, const Obstacles& obstacles, const std::string& title);
 
-/// The links' axes as DXF of release 12: a line each, a point where a link is one, on a layer for each part.
-std::string links_dxf(const std::vector<PlacedLink>& links);
+/// The links' axes as DXF of release 12: a line each, a point where a link is one, on a layer for each part; of a box
+/// its edges.
+std::string links_dxf(const std::vector<PlacedLink>& links, const Obstacles& obstacles);
 
 }  // namespace pkm

@@ -71,6 +71,27 @@ Json workspace_json(const MechanismInfo& info, const SurveyPlan& plan) {
   return json;
 }
 
+Json obstacles_json(const Obstacles& obstacles) {
+  Json json = Json::array();
+  for (const Obstacle& obstacle : obstacles) {
+    if (const auto* const box = std::get_if<SolidBox>(&obstacle.shape)) {
+      const auto& h = box->half;
+      json.push_back({{"name", obstacle.name},
+                      {"shape", "box"},
+                      {"centre", box->centre},
+                      {"size", {2 * h[0], 2 * h[1], 2 * h[2]}}});
+      continue;
+    }
+    const auto& [axis, radius] = std::get<Capsule<double>>(obstacle.shape);
+    if (axis.from == axis.to)
+      json.push_back({{"name", obstacle.name}, {"shape", "sphere"}, {"centre", axis.from}, {"radius", radius}});
+    else
+      json.push_back(
+          {{"name", obstacle.name}, {"shape", "capsule"}, {"from", axis.from}, {"to", axis.to}, {"radius", radius}});
+  }
+  return json;
+}
+
 Json study_json(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const MechanismInfo& info = parts.mechanism->info();
@@ -93,6 +114,7 @@ Json study_json(const Study& study) {
   json["workspace"] = workspace_json(info, parts.plan);
   json["regions"] = Json::object();
   for (const Region& region : parts.regions) json["regions"][region.name] = workspace_json(info, region.plan);
+  json["obstacles"] = obstacles_json(parts.plan.limits.obstacles);
   json["objectives"] = entries_json(study.objectives);
   json["constraints"] = entries_json(study.constraints);
   json["reports"] = entries_json(study.reports);

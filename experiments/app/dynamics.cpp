@@ -62,14 +62,17 @@ void tell_reactions(const Reactions& reactions, Printout& out) {
   Json joints = Json::object();
   std::vector<Row> rows = {{"", "on", "Fx", "Fy", "Fz", "Mx", "My", "Mz"}};
   for (const JointReaction& joint : reactions.joints) {
-    Json couple = Json::array();
     Row row = {joint.name, joint.on};
-    for (const double force : joint.force) row.push_back(number(force));
-    for (const auto& component : joint.couple) {
-      couple.push_back(json_or_null(component));
-      row.push_back(component ? number(*component) : "undetermined");
-    }
-    joints[joint.name] = {{"on", joint.on}, {"force", joint.force}, {"couple", couple}};
+    const auto list = [&row](const std::array<std::optional<double>, 3>& components) {
+      Json json = Json::array();
+      for (const auto& component : components) {
+        json.push_back(json_or_null(component));
+        row.push_back(component ? number(*component) : "undetermined");
+      }
+      return json;
+    };
+    const Json force = list(joint.force), couple = list(joint.couple);
+    joints[joint.name] = {{"on", joint.on}, {"force", force}, {"couple", couple}};
     rows.push_back(row);
   }
   out.json["reactions"] = {{"joints", joints},
@@ -92,7 +95,9 @@ std::string dynamics(const Target& target, const DynamicsArguments& arguments, P
   if (const Refusal reason = no_joint_forces(mechanism))
     throw ConfigError({"", 0, "dynamics"}, *reason + ", so no dynamics");
   if (arguments.reactions && !mechanism.reactions())
-    throw ConfigError({"", 0, "--reactions"}, "mechanism " + info.name + " has no model of the forces in its joints");
+    throw ConfigError({"", 0, "--reactions"},
+                      "mechanism " + info.name + " has no model of the forces in its joints" +
+                          (mechanism.why_no_reactions().empty() ? "" : ": " + mechanism.why_no_reactions()));
   const std::string mode = known_mode(info, arguments);
   const MotionSample at = parse_motion(mechanism, arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);

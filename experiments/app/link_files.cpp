@@ -47,8 +47,8 @@ void write_links(const Target& target, const std::string& mode, const Pose<doubl
     out.json["files"].push_back(file);
     out.text += "\nwrote " + file + '\n';
   };
-  if (!files.stl.empty()) write(files.stl, links_stl(links, title));
-  if (!files.dxf.empty()) write(files.dxf, links_dxf(links));
+  if (!files.stl.empty()) write(files.stl, links_stl(links, target.limits.obstacles, title));
+  if (!files.dxf.empty()) write(files.dxf, links_dxf(links, target.limits.obstacles));
   if (!files.urdf.empty())
     write(files.urdf, links_urdf(links, moved_links(mechanism, target, mode, pose), info.name,
                                  title + ", at " + axes_text(info.coordinates, pose)));

@@ -1,8 +1,9 @@
-// Driving forces of the Delta and the Gough platform of experiments/mechanisms against Simbody's: along a cycle and at
-// random states under wrenches.
+// Driving forces of the Delta and the Gough platform of experiments/mechanisms, and forces in the joints at their
+// platforms, against Simbody's: along a cycle and at random states under wrenches.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/dynamics/pose_dynamics.hpp"
@@ -79,6 +80,8 @@ class Comparison {
       off = std::max(off, std::fabs(ours[i] - theirs.drive_forces[i]));
     }
     EXPECT_LE(off, kAccuracy * largest) << "at " << pose[0] << ", " << pose[1] << ", " << pose[2];
+    check_joints(theirs,
+                 mechanism_.reactions()->find(design_, mechanism_.info().modes.front(), state, acceleration, wrench));
     EXPECT_LE(theirs.open, 1e-9);
     EXPECT_LE(theirs.unbalanced, 1e-9 * largest);
     ++compared_;
@@ -105,6 +108,27 @@ class Comparison {
   }
 
  private:
+  /// Forces on the limbs at the platform; of a pair of rods together.
+  void check_joints(const LoopSolution& theirs, const Reactions& ours) {
+    ASSERT_EQ(ours.reason, "");
+    ASSERT_EQ(theirs.at_platform.size(), 3 * theirs.drive_forces.size());
+    std::map<std::string, Vector<double, 3>> sum;
+    std::vector<std::string> limbs;
+    for (const JointReaction& joint : ours.joints) {
+      const auto end = joint.name.find(".B");
+      if (end == std::string::npos) continue;
+      const std::string limb = joint.name.substr(0, end);
+      if (!sum.contains(limb)) limbs.push_back(limb);
+      for (std::size_t k = 0; k < 3; ++k) sum[limb][k] += joint.force[k].value();
+    }
+    ASSERT_EQ(limbs.size(), theirs.drive_forces.size());
+    double largest = 0;
+    for (const double force : theirs.at_platform) largest = std::max(largest, std::fabs(force));
+    for (std::size_t i = 0; i < limbs.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR(sum[limbs[i]][k], theirs.at_platform[3 * i + k], kAccuracy * largest) << limbs[i];
+  }
+
   const Mechanism& mechanism_;
   std::vector<double> design_;
   DescribedLoops loops_;

@@ -170,7 +170,8 @@ LoopSolution DescribedLoops::solve(const LoopCase& at) const {
   const Model& m = *model_;
   const LoopForces found =
       loop_forces(m.system, m.matter, m.place(at), m.platform, m.motion(at), Vec3(0), at.wrench, m.drives);
-  return {{found.drives.data(), found.drives.data() + found.drives.size()}, found.open, found.unbalanced};
+  const auto list = [](const Eigen::VectorXd& v) { return std::vector<double>(v.data(), v.data() + v.size()); };
+  return {list(found.drives), list(found.multipliers), found.open, found.unbalanced};
 }
 
 }  // namespace pkm::simbody

@@ -30,6 +30,7 @@ struct LoopCase {
 
 struct LoopSolution {
   std::vector<double> drive_forces;  ///< of the limbs in the file's order
+  std::vector<double> at_platform;   ///< what the balls there carry: x, y, z of each limb
   double open = 0, unbalanced = 0;
 };
 

@@ -95,6 +95,7 @@ LoopForces loop_forces(const SimTK::MultibodySystem& system, const SimTK::Simbod
   const VectorXd forces = Least(carried).solve(eigen(needed));
   note(found.unbalanced, carried * forces - eigen(needed));
   found.drives = forces.head(count);
+  found.multipliers = forces.tail(G.rows());
   return found;
 }
 

@@ -16,7 +16,8 @@ struct PlatformMotion {
 };
 
 struct LoopForces {
-  Eigen::VectorXd drives;  ///< [N, N m]
+  Eigen::VectorXd drives;       ///< [N, N m]
+  Eigen::VectorXd multipliers;  ///< of the constraints: of a ball the force along x, y, z of the ground
   int constraints = 0, constraint_rank = 0;
   double open = 0;        ///< greatest error of the loops' closure, as given and in rates [m, rad; per s, per s^2]
   double unbalanced = 0;  ///< greatest residual of the equations of motion [N, N m]

@@ -28,6 +28,8 @@ class Voxels {
                                                        const Demand& demand) const = 0;
   /// Whether they count Demand::rotors.
   virtual bool take_rotors() const { return false; }
+  /// Whether they know obstacles under a clearance.
+  virtual bool take_obstacles() const { return false; }
 };
 
 }  // namespace pkm

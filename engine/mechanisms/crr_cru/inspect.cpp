@@ -57,7 +57,7 @@ PoseReport inspect(const Geometry<double>& g, const LinkRadii<double>& radii, co
     least_sine = std::fmin(least_sine, std::fabs(limb.sin_2));
   }
   report.margins.emplace_back(kMarginNames[kSine], least_sine - l.s_min);
-  const Nearest<double> nearest = nearest_links(links(g, radii, limbs));
+  const Nearest<double> nearest = nearest_bodies(links(g, radii, limbs), l.obstacles);
   report.angles.emplace_back("clearance", nearest.clearance);
   if (l.clearance_min) report.margins.emplace_back(kMarginNames[kClear], nearest.clearance - *l.clearance_min);
   const auto broken = std::ranges::find_if(report.margins, [](const auto& margin) { return !(margin.second >= 0); });
@@ -65,8 +65,10 @@ PoseReport inspect(const Geometry<double>& g, const LinkRadii<double>& radii, co
   if (report.feasible) return report;
   report.reason = "limit " + broken->first + " is broken";
   if (broken->first == kMarginNames[kClear])
-    report.reason += ": " + link_name(nearest.first, g.platform) + " and " + link_name(nearest.second, g.platform) +
-                     (nearest.clearance < 0 ? " overlap" : " are too near");
+    report.reason +=
+        ": " + link_name(nearest.first, g.platform) + " and " +
+        (nearest.second < kLinks ? link_name(nearest.second, g.platform) : l.obstacles[nearest.second - kLinks].name) +
+        (nearest.clearance < 0 ? " overlap" : " are too near");
   return report;
 }
 

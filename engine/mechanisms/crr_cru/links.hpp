@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/mechanisms/crr_cru/model.hpp"
+#include "engine/model/obstacle.hpp"
 #include "engine/model/placed_link.hpp"
 
 namespace pkm::crr_cru {
@@ -70,17 +71,28 @@ inline constexpr std::array<LinkPair, kLinkPairs> kPairs = [] {
   return pairs;
 }();
 
+/// All but the rails.
+inline constexpr std::array<std::size_t, kLinks - 4> kMoving = [] {
+  std::array<std::size_t, kLinks - 4> moving{};
+  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = i < kFirstRail ? i : i + 4;
+  return moving;
+}();
+
+/// `second` is kLinks and more for obstacles.
 template <class S>
-Nearest<S> nearest_links(const Links<S>& all) {
-  return nearest_of(all, [](const auto& visit) {
+Nearest<S> nearest_bodies(const Links<S>& all, const Obstacles& obstacles) {
+  const Nearest<S> link = nearest_of(all, [](const auto& visit) {
     for (const LinkPair& pair : kPairs) visit(pair.first, pair.second);
   });
+  const Nearest<S> other = nearest_obstacle<S>(all, kMoving, obstacles);
+  if (!(value_of(other.clearance) < value_of(link.clearance))) return link;
+  return {other.clearance, other.first, kLinks + other.second};
 }
 
-/// Whether no pair is nearer than `least` [m].
-inline bool keep_clear(const Links<double>& all, double least) {
+/// Whether no pair is nearer than `least` [m], and no link to an obstacle.
+inline bool keep_clear(const Links<double>& all, double least, const Obstacles& obstacles) {
   std::array<Bounds<double>, kLinks> box;
-  return pkm::keep_clear(all, kPairs, least, box);
+  return pkm::keep_clear(all, kPairs, least, box) && keep_clear_of(obstacles, all, kMoving, least);
 }
 
 /// "rod 12", "rail 3", "middle platform", "moving platform", "platform".

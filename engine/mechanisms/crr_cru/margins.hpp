@@ -50,14 +50,16 @@ void add_margins(const Design<S>& d, std::span<const pkm::Pose<double>> poses, s
     });
 }
 
-/// Appends the margin of a clearance limit [m] per pose. A pose that does not assemble has none: its reach is broken.
+/// Appends the margin of the clearance limit [m], which there is, per pose. A pose that does not assemble has none: its
+/// reach is broken.
 template <class S>
-void add_clearances(const Geometry<S>& g, const LinkRadii<S>& radii, double least, const WorkingMode& mode,
+void add_clearances(const Geometry<S>& g, const LinkRadii<S>& radii, const Limits& l, const WorkingMode& mode,
                     std::span<const pkm::Pose<double>> poses, std::vector<S>& margins) {
   for (const auto& pose : poses) {
     const Pose<double> at = schoenflies(pose);
     const Limbs<S> limbs = inverse(g, Pose<S>{S(at.x), S(at.y), S(at.z), S(at.angle)}, mode);
-    if (limbs.assembles) margins.push_back(nearest_links(links(g, radii, limbs)).clearance - least);
+    if (limbs.assembles)
+      margins.push_back(nearest_bodies(links(g, radii, limbs), l.obstacles).clearance - *l.clearance_min);
   }
 }
 

@@ -127,6 +127,7 @@ class CrrCru final : public MechanismWith<Voxels, Columns, PoseMarginsOf<CrrCru>
   }
   bool take_box() const override { return true; }
   bool take_rotors() const override { return true; }
+  bool take_obstacles() const override { return true; }
 
   std::optional<pkm::Influence<double>> influence(std::span<const double> p, const pkm::Pose<double>& pose,
                                                   const std::string& mode) const override {
@@ -180,7 +181,7 @@ class CrrCru final : public MechanismWith<Voxels, Columns, PoseMarginsOf<CrrCru>
     const auto g = geometry(platform_, p);
     const Limits l = limits(spec);
     add_margins(design(g, l), poses, margins);
-    if (l.clearance_min) add_clearances(g, link_radii(p), *l.clearance_min, mode_called(""), poses, margins);
+    if (l.clearance_min) add_clearances(g, link_radii(p), l, mode_called(""), poses, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const pkm::MotionState<S>> states,

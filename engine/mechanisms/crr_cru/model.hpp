@@ -85,10 +85,11 @@ Geometry<S> geometry(Platform platform, std::span<const S> p) {
 struct Limits {
   double s_min = 0, c_min = 0;
   std::optional<double> clearance_min = std::nullopt;  ///< [m]; none: no capsule is looked at
+  Obstacles obstacles = {};
 };
 
 inline Limits limits(const LimitSpec& spec) {
-  return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0), spec.given[kClearanceMin]};
+  return {spec.given[kSMin].value_or(0), spec.given[kCMin].value_or(0), spec.given[kClearanceMin], spec.obstacles};
 }
 
 /// Axes of a limb's frame: numbers of the world axes along e, p, q and the signs of p and q.

@@ -30,6 +30,7 @@ struct ClearanceTest {
   LinkRadii<double> radii;
   WorkingMode mode;
   double least;  ///< [m]
+  const Obstacles* obstacles;
 };
 
 /// A design on its grid.
@@ -55,7 +56,8 @@ struct Gridded {
     for_each_bit(row, [&](std::size_t v) {
       cell[axes.v] = static_cast<std::int64_t>(v);
       const Limbs<double> limbs = inverse(d.g, pose_of(cell), test->mode);
-      if (!keep_clear(links(d.g, test->radii, limbs), test->least)) row[v / 64] &= ~(std::uint64_t{1} << v % 64);
+      if (!keep_clear(links(d.g, test->radii, limbs), test->least, *test->obstacles))
+        row[v / 64] &= ~(std::uint64_t{1} << v % 64);
     });
     return std::ranges::any_of(row, [](std::uint64_t word) { return word != 0; });
   }
@@ -115,7 +117,8 @@ class OfVoxels final : public VoxelSurveyor {
               .test = {}};
     for (std::size_t k = 0, axis = 0; k < 4; ++k)
       if (k != s.held) s.swept[axis++] = k;
-    if (planned_.limits.clearance_min) s.test = {link_radii(parameters), planned_.mode, *planned_.limits.clearance_min};
+    if (const Limits& l = planned_.limits; l.clearance_min)
+      s.test = {link_radii(parameters), planned_.mode, *l.clearance_min, &l.obstacles};
     return s;
   }
 

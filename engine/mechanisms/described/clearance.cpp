@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace pkm::described {
@@ -50,6 +51,13 @@ std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<
   return pairs;
 }
 
+std::vector<std::size_t> moving_links(const Graph& graph, const std::vector<DescribedLink>& links) {
+  std::vector<std::size_t> moving;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    if (!stands_still(graph, links[i])) moving.push_back(i);
+  return moving;
+}
+
 std::vector<JoinedLinks> joined_links(const Model& model) {
   std::vector<JoinedLinks> all;
   if (model.link_pairs.empty()) return all;
@@ -81,27 +89,33 @@ std::vector<Capsule<double>> capsules_at(const Evaluation& e, const std::vector<
   return links;
 }
 
-std::optional<Nearest<double>> nearest_links(const Evaluation& e, const std::vector<double>& inputs) {
-  if (e.model.link_pairs.empty()) return {};
+std::optional<NearestBodies> nearest_bodies(const Evaluation& e, const std::vector<double>& inputs,
+                                            const Obstacles& obstacles) {
+  const Model& model = e.model;
+  if (model.link_pairs.empty() && (obstacles.empty() || model.moving_links.empty())) return {};
   const std::vector<Capsule<double>> links = capsules_at(e, inputs);
-  if (links.empty()) return Nearest<double>{std::nan("")};
+  if (links.empty()) return NearestBodies{std::nan(""), "", ""};
   std::vector<Bounds<double>> box;
   for (const Capsule<double>& link : links) box.push_back(bounds_of(link.axis));
   Nearest<double> nearest{std::numeric_limits<double>::infinity()};
-  for (const auto& [first, second] : e.model.link_pairs) {
+  for (const auto& [first, second] : model.link_pairs) {
     // not nearer than their boxes are
     const double radii = links[first].radius + links[second].radius;
     if (distance_of_bounds(box[first], box[second]) - radii > nearest.clearance) continue;
     const double found = capsule_distance(links[first], links[second]);
     if (found < nearest.clearance) nearest = {found, first, second};
   }
-  return nearest;
+  const Nearest<double> other = nearest_obstacle<double>(links, model.moving_links, obstacles);
+  if (other.clearance < nearest.clearance)
+    return NearestBodies{other.clearance, model.links[other.first].name, obstacles[other.second].name};
+  return NearestBodies{nearest.clearance, model.links[nearest.first].name, model.links[nearest.second].name};
 }
 
 ClearanceRows::ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
-                             double least)
-    : pairs_(evaluation.model.link_pairs),
+                             double least, const Obstacles& obstacles)
+    : model_(evaluation.model),
       least_(least),
+      obstacles_(obstacles),
       rows_(evaluation.model, nodes_of(evaluation.model.links), swept, mode) {
   for (std::size_t i = 0; i < kNumbers * evaluation.model.links.size(); ++i) operands_.push_back(rows_.operand(i));
 }
@@ -120,7 +134,8 @@ bool ClearanceRows::is_clear(std::size_t pose, Room& room) const {
       finite = finite && std::isfinite(value);
       return value;
     });
-  return finite && keep_clear(room.links, pairs_, least_, room.box);
+  return finite && keep_clear(room.links, model_.link_pairs, least_, room.box) &&
+         keep_clear_of(obstacles_, room.links, model_.moving_links, least_);
 }
 
 }  // namespace pkm::described

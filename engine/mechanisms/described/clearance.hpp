@@ -8,6 +8,9 @@ namespace pkm::described {
 /// All but links that stand still both, that have a group in common, or that end in the same point: a joint.
 std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<DescribedLink>& links);
 
+/// The links that do not stand still.
+std::vector<std::size_t> moving_links(const Graph& graph, const std::vector<DescribedLink>& links);
+
 /// Of each link, in their order, those that it need not keep clear of; empty where there are no pairs.
 std::vector<JoinedLinks> joined_links(const Model& model);
 
@@ -21,9 +24,15 @@ void refuse_clearance(const Model& model, const LimitSpec& limits, const std::st
 /// @param inputs  of the graph, with the pose
 std::vector<Capsule<double>> capsules_at(const Evaluation& evaluation, const std::vector<double>& inputs);
 
-/// The pair that is nearest; its clearance is not a number where the place of a link has no value. None: no two links
-/// have to keep clear.
-std::optional<Nearest<double>> nearest_links(const Evaluation& evaluation, const std::vector<double>& inputs);
+/// What is nearest to each other of what has to keep clear.
+struct NearestBodies {
+  double clearance;  ///< [m], negative where they overlap; not a number where the place of a link has no value
+  std::string first, second;
+};
+
+/// Of links, and of links and obstacles. None: nothing has to keep clear.
+std::optional<NearestBodies> nearest_bodies(const Evaluation& evaluation, const std::vector<double>& inputs,
+                                            const Obstacles& obstacles);
 
 /// A clearance limit in a survey, 64 poses at a time.
 class ClearanceRows {
@@ -34,7 +43,8 @@ class ClearanceRows {
     std::vector<Bounds<double>> box;
   };
 
-  ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode, double least);
+  ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode, double least,
+                const Obstacles& obstacles);
 
   void start(const std::vector<double>& inputs, Room& room) const;
   /// @return  whether 64 poses wait
@@ -52,8 +62,9 @@ class ClearanceRows {
  private:
   bool is_clear(std::size_t pose, Room& room) const;
 
-  const std::vector<LinkPair>& pairs_;
+  const Model& model_;
   double least_;
+  Obstacles obstacles_;
   PoseRows rows_;
   std::vector<graph::Operand> operands_;  ///< seven of each link
 };

@@ -53,7 +53,7 @@ std::string first_broken(const NamedValues& conditions, const std::string& words
   return "";
 }
 
-void add_clearance(const Model& model, const Nearest<double>& nearest, const LimitSpec& limits, PoseReport& report) {
+void add_clearance(const Model& model, const NearestBodies& nearest, const LimitSpec& limits, PoseReport& report) {
   report.angles.emplace_back("clearance", nearest.clearance);
   const auto least = clearance_of(model, limits);
   if (!least) return;
@@ -61,8 +61,8 @@ void add_clearance(const Model& model, const Nearest<double>& nearest, const Lim
   if (nearest.clearance >= *least || !report.reason.empty()) return;
   report.reason = std::string(kClearanceLimit) + " is broken";
   if (nearest.clearance == nearest.clearance)
-    report.reason += ": " + model.links[nearest.first].name + " and " + model.links[nearest.second].name +
-                     (nearest.clearance < 0 ? " overlap" : " are too near");
+    report.reason +=
+        ": " + nearest.first + " and " + nearest.second + (nearest.clearance < 0 ? " overlap" : " are too near");
 }
 
 /// Adds Jq, G, J and what follows from them. @param inputs  with the pose and its joints
@@ -96,7 +96,7 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
   report.margins.insert(report.margins.end(), margins.begin(), margins.end());
   if (!report.assembles) return report;
   report.reason = first_broken(margins, " is broken");
-  if (const auto nearest = nearest_links(e, inputs)) add_clearance(model, *nearest, limits, report);
+  if (const auto nearest = nearest_bodies(e, inputs, limits.obstacles)) add_clearance(model, *nearest, limits, report);
   report.feasible = report.reason.empty();
 
   std::ranges::copy(*report.joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));

@@ -9,6 +9,7 @@
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/equations.hpp"
 #include "engine/mechanisms/described/forward.hpp"
+#include "engine/mechanisms/described/joints.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
 #include "engine/mechanisms/described/voxels.hpp"
 
@@ -26,6 +27,7 @@ class DescribedMechanism final : public Mechanism,
                                  Links,
                                  DesignTests,
                                  Size,
+                                 JointReactions,
                                  DynamicsOf<DescribedMechanism> {
  public:
   explicit DescribedMechanism(Model model)
@@ -70,6 +72,8 @@ class DescribedMechanism final : public Mechanism,
   const DesignTests* design_tests() const override { return e_.model.tests.empty() ? nullptr : this; }
   const Size* size() const override { return e_.model.size ? this : nullptr; }
   const Dynamics* dynamics() const override { return e_.model.equations ? this : nullptr; }
+  const JointReactions* reactions() const override { return e_.model.jointed ? this : nullptr; }
+  std::string why_no_reactions() const override { return e_.model.why_no_reactions; }
 
  private:
   friend DynamicsOf<DescribedMechanism>;
@@ -88,11 +92,22 @@ class DescribedMechanism final : public Mechanism,
     return model == mass_model() ? shared_from_this() : nullptr;
   }
 
+  Reactions find(std::span<const double> parameters, const std::string& mode, const MotionState<double>& state,
+                 const AxisVector<double>& acceleration, const Wrench<double>& wrench) const override {
+    const PoseReport report = inspect(parameters, state.pose, mode, no_limits(info()));
+    if (report.assembles)
+      return pkm::reactions(newton_euler(e_, parameters, number_of_mode(info(), mode), state, acceleration, wrench));
+    Reactions none;
+    none.reason = report.reason;
+    return none;
+  }
+
   std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                const Demand& demand) const override {
     return prepare_voxels(*this, e_, plan, voxels, demand);
   }
   bool take_rotors() const override { return true; }
+  bool take_obstacles() const override { return true; }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
                                           const Demand& demand) const override {
     return prepare_columns(*this, e_, plan, columns, demand);

@@ -96,6 +96,44 @@ struct DescribedBody {
   std::vector<Product> products;
   std::vector<ArmTurn> arm_turns;
   std::vector<LineTurn> line_turns;
+  std::optional<std::array<Node, 3>> inertia{};  ///< about the centre: along and across a line, or of the platform
+  std::string part_of{};                         ///< the body that it turns with as one; "": it is one itself
+};
+
+/// One body of Newton's and Euler's equations.
+struct DescribedSolid {
+  std::string name;
+  std::vector<std::size_t> bodies{};            ///< of the model, that it is made of; none: it has no mass
+  double share = 1;                             ///< of their masses and inertias: half for one of two rods
+  std::array<Node, 3> place;                    ///< a point of it
+  std::optional<std::array<Node, 3>> line{};    ///< that it turns with, without spin about it
+  std::optional<std::array<Node, 3>> beside{};  ///< where its centre lies beside that of its bodies
+  bool with_platform = false;                   ///< it turns with the platform
+};
+
+/// A joint of two of them, or of one and the base.
+struct DescribedJoint {
+  enum class Couples { along, all_but_about };
+  struct Drive {
+    std::size_t joint;
+    std::array<Node, 3> axis;
+    bool turns = false;
+    std::optional<std::size_t> slide{};  ///< a point mass of the model that it moves, too
+  };
+  std::string name;
+  std::array<Node, 3> point;
+  std::size_t on;                   ///< solid
+  std::optional<std::size_t> from;  ///< none: the base
+  Couples couples;                  ///< that it carries: along some axes, or all but those about the axes it turns on
+  std::vector<std::array<Node, 3>> axes;
+  std::optional<Drive> drive{};
+};
+
+/// All bodies and joints, where a file describes them enough for the forces in the joints.
+struct DescribedJoints {
+  std::vector<DescribedSolid> solids;
+  std::vector<DescribedJoint> joints;
+  std::array<std::array<Node, 3>, 3> turn;  ///< of the platform, by rows
 };
 
 /// A number that has to be positive for a design to have masses.
@@ -125,6 +163,7 @@ struct Model {
   std::vector<CoveredFolds> folds;
   std::vector<DescribedLink> links;
   std::vector<LinkPair> link_pairs;            ///< those that have to keep clear
+  std::vector<std::size_t> moving_links;       ///< which keep clear of obstacles
   std::optional<std::size_t> clearance_limit;  ///< where there are some: its place among the limits, behind those of
                                                ///< the graph
   std::vector<DesignMarginInfo> tests;
@@ -143,6 +182,8 @@ struct Model {
   std::optional<std::array<Node, 3>> wrench_point;  ///< where a wrench acts on the platform
   std::optional<EquationNodes> equations;           ///< where there are bodies
   std::vector<Node> jacobian;                       ///< EquationNodes::J, with bodies or without
+  std::optional<DescribedJoints> jointed;           ///< where there are bodies, and joints for them
+  std::string why_no_reactions;
 
   limbs::Term term(Node node) { return {graph, node}; }
 };

@@ -35,7 +35,7 @@ class DescribedVoxels final : public VoxelSurveyor {
                                   " has its own characteristic length only; leave out characteristic_length");
     if (demand.needs_inertia()) inertia_.emplace(evaluation, sweep_.swept, mode_, demand.rotors);
     if (const auto least = clearance_of(evaluation.model, plan.limits))
-      clearance_.emplace(evaluation, sweep_.swept, mode_, *least);
+      clearance_.emplace(evaluation, sweep_.swept, mode_, *least, plan.limits.obstacles);
   }
 
   void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {

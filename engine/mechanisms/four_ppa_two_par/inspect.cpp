@@ -37,7 +37,8 @@ void add_velocities(const Geometry<double>& g, const Velocity<double>& v, PoseRe
 
 }  // namespace
 
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode) {
+PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Obstacles& obstacles,
+                   const Pose<double>& pose, WorkingMode mode) {
   PoseReport report;
   const Limbs<double> limb = inverse(g, pose, mode);
   report.assembles = limb.assembles;
@@ -56,7 +57,11 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
   for (std::size_t j = 0; j < 2; ++j)
     report.angles.emplace_back("beta_" + std::to_string(j + 1), beta(limb, j, mode[j]));
   for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("z_c_" + std::to_string(j + 1), limb.z_c[j]);
-  const Nearest<double> nearest = nearest_links(links(g, placement(limb, sincos(pose.angle).sin, mode)));
+  const Links<double> all = links(g, placement(limb, sincos(pose.angle).sin, mode));
+  Nearest<double> nearest = nearest_links(all);
+  const Nearest<double> other = nearest_obstacle(all, pose.y, obstacles);
+  const bool is_obstacle = other.clearance < nearest.clearance;
+  if (is_obstacle) nearest = other;
   report.angles.emplace_back("clearance", nearest.clearance);
   if (l.clearance_min) margin[kFirstLimit + kClearanceMin] = nearest.clearance - *l.clearance_min;
 
@@ -68,7 +73,8 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
     if (report.feasible && !(margin[i] >= 0)) {
       report.reason = std::string("limit ") + kMarginNames[i] + " is broken";
       if (clearance)
-        report.reason += ": " + link_name(nearest.first) + " and " + link_name(nearest.second) +
+        report.reason += ": " + link_name(nearest.first) + " and " +
+                         (is_obstacle ? obstacles[nearest.second].name : link_name(nearest.second)) +
                          (nearest.clearance < 0 ? " overlap" : " are too near");
     }
     report.feasible = report.feasible && margin[i] >= 0;

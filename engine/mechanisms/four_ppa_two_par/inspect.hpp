@@ -5,6 +5,7 @@
 
 namespace pkm::four_ppa_two_par {
 
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose, WorkingMode mode);
+PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Obstacles& obstacles,
+                   const Pose<double>& pose, WorkingMode mode);
 
 }  // namespace pkm::four_ppa_two_par

@@ -1,11 +1,23 @@
 #include "engine/mechanisms/four_ppa_two_par/links.hpp"
 
+#include <numeric>
+
 namespace pkm::four_ppa_two_par {
 
 Placement<double> lower_placement(const Geometry<double>& g, double x, double z, double sin_theta, double cos_theta) {
   Limbs<double> limbs;
   for (std::size_t j = 0; j < 2; ++j) place_limb(g, x, 0.0, z, {sin_theta, cos_theta}, kLowerMode[j], j, limbs);
   return placement(limbs, sin_theta, kLowerMode);
+}
+
+Nearest<double> nearest_obstacle(Links<double> all, double y, const Obstacles& obstacles) {
+  for (Capsule<double>& link : all) {
+    link.axis.from[1] += y;
+    link.axis.to[1] += y;
+  }
+  std::array<std::size_t, kLinks> moving;
+  std::iota(moving.begin(), moving.end(), std::size_t{0});
+  return pkm::nearest_obstacle<double>(all, moving, obstacles);
 }
 
 std::string link_name(std::size_t link) {

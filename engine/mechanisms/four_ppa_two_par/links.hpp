@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/mechanisms/four_ppa_two_par/model.hpp"
+#include "engine/model/obstacle.hpp"
 #include "engine/model/placed_link.hpp"
 
 namespace pkm::four_ppa_two_par {
@@ -121,6 +122,10 @@ Nearest<S> nearest_links(const Links<S>& all) {
     for (const GroupPair& pair : kPairs) visit_links(pair, visit);
   });
 }
+
+/// Of links and obstacles; `second` is the obstacle.
+/// @param all  at a pose of the platform at this y
+Nearest<double> nearest_obstacle(Links<double> all, double y, const Obstacles& obstacles);
 
 /// "slider 1", "upper bar of slider 3", "lower connector of limb 2", "platform".
 std::string link_name(std::size_t link);

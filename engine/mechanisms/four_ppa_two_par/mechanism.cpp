@@ -1,4 +1,6 @@
 // 4PPa-2PaR as a mechanism of the catalogue.
+#include <stdexcept>
+
 #include "engine/core/options.hpp"
 #include "engine/mechanism/both_scalars.hpp"
 #include "engine/mechanism/with_abilities.hpp"
@@ -115,7 +117,7 @@ class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTe
   PoseReport inspect(std::span<const double> p, const pkm::Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
     const auto g = geometry(p);
-    return four_ppa_two_par::inspect(g, limits(g, spec), schoenflies(pose), mode_called(mode));
+    return four_ppa_two_par::inspect(g, limits(g, spec), spec.obstacles, schoenflies(pose), mode_called(mode));
   }
 
  private:
@@ -128,6 +130,11 @@ class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTe
   }
   std::unique_ptr<const Surveyor> prepare(const SurveyPlan& plan, const ColumnOptions& columns,
                                           const Demand& demand) const override {
+    if (asks_clearance(plan, kClearanceMin) && !plan.limits.obstacles.empty())
+      throw std::invalid_argument("mechanism " + info_.name +
+                                  " has no column surveys under a clearance (clearance_min) from obstacles, because "
+                                  "links that meet them end columns where no formula says; take workspace.method = "
+                                  "\"voxels\"");
     return make_column_surveyor(plan, columns, demand);
   }
 

@@ -63,8 +63,8 @@ void add_transmission(const Geometry<double>& g, const Pose<double>& pose, const
 
 }  // namespace
 
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose,
-                   const WorkingMode& mode, int branch) {
+PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Obstacles& obstacles,
+                   const Pose<double>& pose, const WorkingMode& mode, int branch) {
   PoseReport report;
   const Joints<double> j = inverse(g, pose, mode);
   const Margins<double> m = margins(g, l, pose, mode, branch);
@@ -86,6 +86,13 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pos
         "limit " + std::string(kMarginNames[static_cast<std::size_t>(broken - m.begin())].name) + " is broken";
   else if (!(pose.z > 0))
     report.reason = "the platform is not above the base";
+  if (!obstacles.empty()) {
+    const auto [clearance, link, obstacle] = nearest_obstacle(g, pose, j, shaft(g, pose), obstacles);
+    report.margins.emplace_back(kObstacleMargin, clearance - l.clearance_min);
+    if (report.reason.empty() && !(clearance >= l.clearance_min))
+      report.reason = "limit " + std::string(kObstacleMargin) + " is broken: " + kLinkNames[link] + " and " +
+                      obstacles[obstacle].name + (clearance < 0 ? " overlap" : " are too near");
+  }
   report.feasible = report.reason.empty();
   return report;
 }

@@ -5,8 +5,11 @@
 
 namespace pkm::hybrid {
 
+/// The margin of obstacles.
+inline constexpr const char* kObstacleMargin = "cap_obstacle";
+
 /// @param branch  required sign of N2, +1 or -1
-PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Pose<double>& pose,
-                   const WorkingMode& mode, int branch);
+PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Obstacles& obstacles,
+                   const Pose<double>& pose, const WorkingMode& mode, int branch);
 
 }  // namespace pkm::hybrid

@@ -5,9 +5,11 @@
 // Pairs that share a joint are not tested. The carriage's y shifts all of them: they do not depend on it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/mechanisms/hybrid/chain.hpp"
+#include "engine/model/obstacle.hpp"
 #include "engine/model/placed_link.hpp"
 
 namespace pkm::hybrid {
@@ -48,6 +50,22 @@ inline constexpr std::array<LinkPair, kLinkPairs> kPairs = {{{kLinkA, kLinkB},
 template <class S>
 S link_distance(const Links<S>& link, const LinkPair& pair) {
   return capsule_distance(link[pair.first], link[pair.second]);
+}
+
+inline constexpr std::array<std::size_t, kLinks> kMoving = {kLinkA, kLinkB, kLinkC, kLinkF, kLinkP};
+inline constexpr std::array<const char*, kLinks> kLinkNames = {"link A", "link B", "link C", "telescopic shaft",
+                                                               "platform"};
+
+/// What is nearest of the links and obstacles, of which there are some.
+template <class S>
+Nearest<S> nearest_obstacle(const Geometry<S>& g, const Pose<S>& pose, const Joints<S>& j, const Shaft<S>& shaft,
+                            const Obstacles& obstacles) {
+  Links<S> all = links(g, pose, j, shaft);
+  for (Capsule<S>& link : all) {
+    link.axis.from[1] += pose.y;
+    link.axis.to[1] += pose.y;
+  }
+  return pkm::nearest_obstacle<S>(all, kMoving, obstacles);
 }
 
 /// The robot as it is drawn at a pose: these links, and what carries them and is carried. Empty where the pose does not

@@ -102,7 +102,7 @@ class Hybrid final : public MechanismWith<Voxels, Columns, Size, PoseMarginsOf<H
   PoseReport inspect(std::span<const double> p, const pkm::Pose<double>& pose, const std::string& mode,
                      const LimitSpec& spec) const override {
     const Mode& named = mode_called(mode);
-    return hybrid::inspect(geometry(p), limits(p, spec), schoenflies(pose), named.signs, named.branch);
+    return hybrid::inspect(geometry(p), limits(p, spec), spec.obstacles, schoenflies(pose), named.signs, named.branch);
   }
 
  private:
@@ -191,6 +191,9 @@ class Hybrid final : public MechanismWith<Voxels, Columns, Size, PoseMarginsOf<H
       const Margins<S> found = hybrid::margins(g, l, pose, mode.signs, mode.branch);
       for (std::size_t i = 0; i < kMargins; ++i)  // in one unit: lengths as they are, angles and ratios at the length e
         margins.push_back(kMarginNames[i].kind == MarginKind::length ? found[i] : S(found[i] * g.e));
+      if (spec.obstacles.empty()) continue;
+      const Joints<S> j = inverse(g, pose, mode.signs);
+      margins.push_back(nearest_obstacle(g, pose, j, shaft(g, pose), spec.obstacles).clearance - l.clearance_min);
     }
   }
 

@@ -34,7 +34,8 @@ TEST(StudyErrors, Document) {
            "expected a study in TOML"},
           {"[mechansim]\ntype = \"slider\"\n",
            "s.toml:1: mechansim: found an unknown section; expected one of study, mechanism, variables, baseline, "
-           "workspace, region, motion, objective, constraint, report, reference, drive_train, stage, checkpoint, "
+           "workspace, region, motion, objective, constraint, report, reference, drive_train, obstacle, stage, "
+           "checkpoint, "
            "final, override; did you mean 'mechanism'?"},
           {"[study]\nname = \"x\"\n",
            "s.toml:1: mechanism: found nothing; expected a table [mechanism] with type = one of slider, or file = the "

@@ -136,7 +136,8 @@ TEST(CrrCruClearance, IsTheLeastDistanceOfPointsStrewnOverTheLinks) {
     const double found = clearance_of(report(drawn.name, drawn.p, drawn.pose, {}, drawn.mode));
     EXPECT_LE(found, least + kRoundoff);
     EXPECT_GE(found, least - spacing);
-    for (const double limit : {found - 1e-9, found + 1e-9}) EXPECT_EQ(keep_clear(all, limit), limit < found) << limit;
+    for (const double limit : {found - 1e-9, found + 1e-9})
+      EXPECT_EQ(keep_clear(all, limit, {}), limit < found) << limit;
   }
 }
 

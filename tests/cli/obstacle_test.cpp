@@ -1,0 +1,151 @@
+// [[obstacle]] of studies: what is understood, what is refused, what is drawn, what is stored.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/cli/study_program.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kTable = R"([[obstacle]]
+name = "table"
+shape = "box"
+centre = [0, 0, "-700 mm"]
+size = ["1 m", "1 m", "100 mm"]
+)";
+const std::string kBall = R"([[obstacle]]
+name = "lamp"
+shape = "sphere"
+centre = ["150 mm", 0, "-450 mm"]
+radius = "40 mm"
+)";
+const std::string kClearance = "[[constraint]]\ntype = \"clearance\"\nmin = \"5 mm\"\n";
+
+std::string study(const std::string& mechanism, const std::string& sections) {
+  return "[mechanism]\n" + mechanism + R"(
+[variables]
+r = { min = 0.04, max = 0.06 }
+[workspace]
+method = "voxels"
+cells = { x = 12, y = 12, z = 12 }
+[[objective]]
+type = "workspace-volume"
+[[stage]]
+optimiser = "sweep"
+points = 3
+)" + sections;
+}
+const std::string kDelta = "file = \"" PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml\"";
+
+class Obstacle : public StudyProgram {
+ protected:
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+  std::string refusal(const std::string& text) {
+    write("s.toml", text);
+    EXPECT_EQ(run({"check", "s.toml"}), 2) << output_;
+    return output_;
+  }
+};
+
+TEST_F(Obstacle, IsTold) {
+  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("obstacles, of which all links that move keep clear\n"
+                                 "  table  box     centre (0, 0, -0.7) m      sizes (1, 1, 0.1) m\n"
+                                 "  lamp   sphere  centre (0.15, 0, -0.45) m  radius 0.04 m\n"));
+  ASSERT_EQ(run({"check", "s.toml", "--json"}), 0) << output_;
+  const auto json = nlohmann::json::parse(output_)["obstacles"];
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0]["name"], "table");
+  EXPECT_EQ(json[0]["size"], nlohmann::json({1.0, 1.0, 0.1}));
+  EXPECT_EQ(json[1]["radius"], 0.04);
+  write("s.toml", study(kDelta, kTable));
+  ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("warning: the obstacles cut nothing from the workspace, because the study asks for no "
+                                 "clearance; [[constraint]] type = \"clearance\" does"));
+}
+
+TEST_F(Obstacle, IsNamedWhereAPoseMeetsIt) {
+  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0.15,y=0,z=-0.45"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("clearance_min is broken: "));
+  EXPECT_THAT(output_, HasSubstr(" and lamp overlap"));
+  write("s.toml", study(kDelta, kTable + kClearance));
+  ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0,y=0,z=-0.64", "--json"}), 0) << output_;
+  // the arms' capsules have a radius of 6 mm, and the table begins at -0.65
+  EXPECT_NEAR(nlohmann::json::parse(output_)["angles"]["clearance"].get<double>(), 0.01 - 0.006, 1e-12);
+}
+
+TEST_F(Obstacle, IsDrawn) {
+  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0,y=0,z=-0.45", "-o", "l.dxf", "-o", "l.stl"}), 0) << output_;
+  ASSERT_EQ(run({"pose", kDelta.substr(8, kDelta.size() - 9), "--at", "x=0,y=0,z=-0.45", "-o", "b.dxf", "-o", "b.stl"}),
+            0)
+      << output_;
+  const auto bytes = [&](const std::string& name) {
+    std::ifstream file(path(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const auto count = [&](const std::string& text, const std::string& what) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count(bytes("l.dxf"), "\nLINE\n8\nobstacle\n"), 12u) << "the edges of the table";
+  EXPECT_EQ(count(bytes("l.dxf"), "\nPOINT\n8\nobstacle\n"), 1u) << "the middle of the lamp";
+  EXPECT_EQ(count(bytes("b.dxf"), "obstacle"), 0u);
+  const auto triangles = [&](const std::string& name) { return (bytes(name).size() - 84) / 50; };
+  EXPECT_GT(triangles("l.stl"), triangles("b.stl") + 12 + 200);
+}
+
+TEST_F(Obstacle, CutsTheWorkspaceOfAStudyThatGoesOnWithItAlone) {
+  write("free.toml", study(kDelta, kClearance));
+  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  ASSERT_EQ(run({"run", "free.toml", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"run", "s.toml", "--quiet"}), 0) << output_;
+  const double all = read("free.h5").final->best->objectives[0], left = read("s.h5").final->best->objectives[0];
+  EXPECT_GT(all, 0);
+  EXPECT_LT(left, all);
+  EXPECT_THAT(read("s.h5").toml, HasSubstr("[[obstacle]]\nname = \"table\""));
+  write("s.toml", study(kDelta, kTable + kClearance));
+  EXPECT_EQ(run({"run", "s.toml", "--resume", "--quiet"}), 1) << output_;
+  EXPECT_THAT(output_, HasSubstr("s.h5 holds another text of the study than s.toml"));
+  ASSERT_EQ(run({"report", "s.h5"}), 0) << output_;
+}
+
+TEST_F(Obstacle, IsRefusedInASentence) {
+  const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const auto wrong = [&](const std::string& obstacle) { return refusal(study(kDelta, obstacle + kClearance)); };
+  EXPECT_THAT(wrong(changed(kTable, "\"1 m\", \"1 m\"", "\"1 m\", \"-1 m\"")),
+              HasSubstr("obstacle[1].size[2]: found \"-1 m\"; expected a number > 0 m"));
+  EXPECT_THAT(wrong(changed(kTable, "\"box\"", "\"cube\"")),
+              HasSubstr("obstacle[1].shape: found \"cube\"; expected one of box, sphere, capsule"));
+  EXPECT_THAT(
+      wrong(changed(kTable, "[\"1 m\", ", "[")),
+      HasSubstr("obstacle[1].size: found [\"1 m\", \"100 mm\"]; expected its sizes [along x, along y, along z]"));
+  EXPECT_THAT(wrong(changed(kBall, "radius = \"40 mm\"\n", "")), HasSubstr("expected its radius"));
+  EXPECT_THAT(wrong(changed(kBall, "radius", "size")), HasSubstr("obstacle[1].size: found an unknown key"));
+  EXPECT_THAT(wrong(kBall + kBall), HasSubstr("there is already a [[obstacle]] called 'lamp'"));
+  std::ostringstream bare;
+  std::ifstream orthoglide(PKM_EXPERIMENTS "/mechanisms/orthoglide.toml");
+  for (std::string line; std::getline(orthoglide, line);)
+    if (!line.starts_with("radius")) bare << line << '\n';
+  write("bare.toml", bare.str());
+  EXPECT_THAT(refusal(changed(study("file = \"bare.toml\"", kBall), "r = { min = 0.04, max = 0.06 }",
+                              "L = { min = 0.4, max = 0.6 }")),
+              HasSubstr("has no links with a radius that could meet anything"));
+  EXPECT_THAT(refusal(changed(study(kDelta, kBall + kClearance),
+                              "method = \"voxels\"\ncells = { x = 12, y = 12, z = 12 }", "method = \"columns\"")),
+              HasSubstr("rotary-delta has no column surveys"));
+}
+
+}  // namespace
+}  // namespace pkm::testing
