@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kCells = 10;
-const std::string kDelta = PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml";
+const std::string kRobot = PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml";
 
 class CliCube : public ::testing::Test {
  protected:
@@ -69,7 +69,7 @@ TEST_F(CliCube, IsTheLargestThatTheCellsHold) {
   std::vector<double> sides;
   for (const double least : {0.0, 0.6}) {
     const json found =
-        workspace({kDelta, "--cube", "--least", "conditioning=" + std::to_string(least), "--box",
+        workspace({kRobot, "--cube", "--least", "conditioning=" + std::to_string(least), "--box",
                    "x=-0.4:0.4,y=-0.4:0.4,z=-0.8:0", "--cells", std::to_string(kCells), "--csv", "cells.csv"});
     const int edge = longest_edge(good_cells(least));
     EXPECT_GT(edge, 0);
@@ -92,7 +92,7 @@ TEST_F(CliCube, OfASliceItIsASquareWithCellsOfAnyShape) {
 }
 
 TEST_F(CliCube, WhatHasNoneOrCannotHaveOne) {
-  EXPECT_EQ(workspace({kDelta, "--cube", "--least", "conditioning=1", "--cells", "8"})["cube"], nullptr);
+  EXPECT_EQ(workspace({kRobot, "--cube", "--least", "conditioning=1", "--cells", "8"})["cube"], nullptr);
   const auto refusal = [](std::vector<std::string> words) {
     words.insert(words.begin(), "workspace");
     const auto result = pkmopt(words);
@@ -103,7 +103,7 @@ TEST_F(CliCube, WhatHasNoneOrCannotHaveOne) {
       refusal({"4ppa-2par", "--cube"}),
       "pkmopt: --cube: found a workspace over x, z, theta; expected one over two or three lengths; --cut leaves an "
       "angle at a value\n");
-  EXPECT_THAT(refusal({kDelta, "--cube", "--least", "conditionin=1"}),
+  EXPECT_THAT(refusal({kRobot, "--cube", "--least", "conditionin=1"}),
               ::testing::HasSubstr("--least: found the unknown name 'conditionin'"));
 }
 

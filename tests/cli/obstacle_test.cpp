@@ -41,7 +41,7 @@ optimiser = "sweep"
 points = 3
 )" + sections;
 }
-const std::string kDelta = "file = \"" PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml\"";
+const std::string kDeltaFile = "file = \"" PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml\"";
 
 class Obstacle : public StudyProgram {
  protected:
@@ -54,7 +54,7 @@ class Obstacle : public StudyProgram {
 };
 
 TEST_F(Obstacle, IsTold) {
-  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("obstacles, of which all links that move keep clear\n"
                                  "  table  box     centre (0, 0, -0.7) m      sizes (1, 1, 0.1) m\n"
@@ -65,27 +65,28 @@ TEST_F(Obstacle, IsTold) {
   EXPECT_EQ(json[0]["name"], "table");
   EXPECT_EQ(json[0]["size"], nlohmann::json({1.0, 1.0, 0.1}));
   EXPECT_EQ(json[1]["radius"], 0.04);
-  write("s.toml", study(kDelta, kTable));
+  write("s.toml", study(kDeltaFile, kTable));
   ASSERT_EQ(run({"check", "s.toml"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("warning: the obstacles cut nothing from the workspace, because the study asks for no "
                                  "clearance; [[constraint]] type = \"clearance\" does"));
 }
 
 TEST_F(Obstacle, IsNamedWhereAPoseMeetsIt) {
-  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0.15,y=0,z=-0.45"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("clearance_min is broken: "));
   EXPECT_THAT(output_, HasSubstr(" and lamp overlap"));
-  write("s.toml", study(kDelta, kTable + kClearance));
+  write("s.toml", study(kDeltaFile, kTable + kClearance));
   ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0,y=0,z=-0.64", "--json"}), 0) << output_;
   // the arms' capsules have a radius of 6 mm, and the table begins at -0.65
   EXPECT_NEAR(nlohmann::json::parse(output_)["angles"]["clearance"].get<double>(), 0.01 - 0.006, 1e-12);
 }
 
 TEST_F(Obstacle, IsDrawn) {
-  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"pose", "s.toml", "--at", "x=0,y=0,z=-0.45", "-o", "l.dxf", "-o", "l.stl"}), 0) << output_;
-  ASSERT_EQ(run({"pose", kDelta.substr(8, kDelta.size() - 9), "--at", "x=0,y=0,z=-0.45", "-o", "b.dxf", "-o", "b.stl"}),
+  ASSERT_EQ(run({"pose", kDeltaFile.substr(8, kDeltaFile.size() - 9), "--at", "x=0,y=0,z=-0.45", "-o", "b.dxf", "-o",
+                 "b.stl"}),
             0)
       << output_;
   const auto bytes = [&](const std::string& name) {
@@ -105,15 +106,15 @@ TEST_F(Obstacle, IsDrawn) {
 }
 
 TEST_F(Obstacle, CutsTheWorkspaceOfAStudyThatGoesOnWithItAlone) {
-  write("free.toml", study(kDelta, kClearance));
-  write("s.toml", study(kDelta, kTable + kBall + kClearance));
+  write("free.toml", study(kDeltaFile, kClearance));
+  write("s.toml", study(kDeltaFile, kTable + kBall + kClearance));
   ASSERT_EQ(run({"run", "free.toml", "--quiet"}), 0) << output_;
   ASSERT_EQ(run({"run", "s.toml", "--quiet"}), 0) << output_;
   const double all = read("free.h5").final->best->objectives[0], left = read("s.h5").final->best->objectives[0];
   EXPECT_GT(all, 0);
   EXPECT_LT(left, all);
   EXPECT_THAT(read("s.h5").toml, HasSubstr("[[obstacle]]\nname = \"table\""));
-  write("s.toml", study(kDelta, kTable + kClearance));
+  write("s.toml", study(kDeltaFile, kTable + kClearance));
   EXPECT_EQ(run({"run", "s.toml", "--resume", "--quiet"}), 1) << output_;
   EXPECT_THAT(output_, HasSubstr("s.h5 holds another text of the study than s.toml"));
   ASSERT_EQ(run({"report", "s.h5"}), 0) << output_;
@@ -123,7 +124,7 @@ TEST_F(Obstacle, IsRefusedInASentence) {
   const auto changed = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };
-  const auto wrong = [&](const std::string& obstacle) { return refusal(study(kDelta, obstacle + kClearance)); };
+  const auto wrong = [&](const std::string& obstacle) { return refusal(study(kDeltaFile, obstacle + kClearance)); };
   EXPECT_THAT(wrong(changed(kTable, "\"1 m\", \"1 m\"", "\"1 m\", \"-1 m\"")),
               HasSubstr("obstacle[1].size[2]: found \"-1 m\"; expected a number > 0 m"));
   EXPECT_THAT(wrong(changed(kTable, "\"box\"", "\"cube\"")),
@@ -142,7 +143,7 @@ TEST_F(Obstacle, IsRefusedInASentence) {
   EXPECT_THAT(refusal(changed(study("file = \"bare.toml\"", kBall), "r = { min = 0.04, max = 0.06 }",
                               "L = { min = 0.4, max = 0.6 }")),
               HasSubstr("has no links with a radius that could meet anything"));
-  EXPECT_THAT(refusal(changed(study(kDelta, kBall + kClearance),
+  EXPECT_THAT(refusal(changed(study(kDeltaFile, kBall + kClearance),
                               "method = \"voxels\"\ncells = { x = 12, y = 12, z = 12 }", "method = \"columns\"")),
               HasSubstr("rotary-delta has no column surveys"));
 }

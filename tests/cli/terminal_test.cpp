@@ -18,8 +18,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::vector<std::string> kPose = {"pose",    "4ppa-2par",     "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg",
-                                        "--limit", "beta_max=10deg"};
+const std::vector<std::string> kPoseCommand = {"pose",    "4ppa-2par",     "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg",
+                                               "--limit", "beta_max=10deg"};
 
 /// What the program writes, on stdout and stderr, to a terminal of its own.
 std::string on_terminal(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment = {},
@@ -54,19 +54,19 @@ std::string without_colours(const std::string& text) {
 }
 
 TEST(CliTerminal, HeadingsAndVerdictsHaveColours) {
-  const std::string text = on_terminal(kPose);
+  const std::string text = on_terminal(kPoseCommand);
   EXPECT_THAT(text, HasSubstr("\n\x1b[1mmargins (>= 0 holds)\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[32mholds\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[31mbroken\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("\x1b[31mno: limit beta_max is broken\x1b[0m\n"));
-  EXPECT_EQ(without_colours(text), pkmopt(kPose).out);
+  EXPECT_EQ(without_colours(text), pkmopt(kPoseCommand).out);
 }
 
 TEST(CliTerminal, PipesHaveNoColoursNorHasATerminalThatIsToHaveNone) {
-  const std::string text = pkmopt(kPose).out;
+  const std::string text = pkmopt(kPoseCommand).out;
   EXPECT_THAT(text, Not(HasSubstr("\x1b")));
-  EXPECT_EQ(on_terminal(kPose, {{"NO_COLOR", "1"}}), text);
-  EXPECT_EQ(on_terminal(kPose, {{"TERM", "dumb"}}), text);
+  EXPECT_EQ(on_terminal(kPoseCommand, {{"NO_COLOR", "1"}}), text);
+  EXPECT_EQ(on_terminal(kPoseCommand, {{"TERM", "dumb"}}), text);
 }
 
 TEST(CliTerminal, ComplaintsAreRed) {

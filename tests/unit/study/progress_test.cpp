@@ -13,8 +13,8 @@
 namespace pkm {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 ProgressReport half_way() {
   ProgressReport r;

@@ -31,7 +31,8 @@ LimitSpec limits_about(const MechanismInfo& info, const Pose<double>& pose, doub
 
 std::vector<std::shared_ptr<const Mechanism>> with_links() {
   std::vector<std::shared_ptr<const Mechanism>> all;
-  for (const auto& mechanism : test::mechanisms_and_files()) {
+  for (const std::string& name : test::mechanisms_and_files()) {
+    const auto& mechanism = test::mechanism_called(name);
     const auto& limits = mechanism->info().limits;
     if (std::ranges::find(limits, "clearance", &LimitInfo::group) != limits.end()) all.push_back(mechanism);
   }

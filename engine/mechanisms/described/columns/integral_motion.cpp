@@ -38,8 +38,8 @@ Piece<Dual4> SectionsIntegral::moving_piece(std::size_t level, const SlicePart& 
           part.piece.root_lower, part.piece.root_upper};
 }
 
-/// An end of a part. A break of breaks, further out, and breaks between lines stay: the slices go on there, so that the sum's derivative is
-/// that of the integral but for the rule's error.
+/// An end of a part. A break of breaks, further out, and breaks between lines stay: the slices go on there, so that the
+/// sum's derivative is that of the integral but for the rule's error.
 Dual4 SectionsIntegral::moving_end(std::size_t level, const SlicePart& part, bool upper, IntegralRoom& room) const {
   const graph::Program& program = plan().program;
   const Closing closing = upper ? part.upper : part.lower;

@@ -143,8 +143,8 @@ TEST(DescribedColumns, AddUpOverAnIntegratedCoordinate) {
 
 /// Three cylinders once more, by margins that are no polynomials.
 TEST(DescribedColumns, OfAnyFormulasAreThoseOfPolynomials) {
-  const auto cylinders = read(PKM_TEST_DATA "/generic/three-cylinders.toml");
-  const auto others = read(PKM_TEST_DATA "/generic/three-cylinders-by-exponentials.toml");
+  const auto cylinders = mechanism_in(PKM_TEST_DATA "/generic/three-cylinders.toml");
+  const auto others = mechanism_in(PKM_TEST_DATA "/generic/three-cylinders-by-exponentials.toml");
   const std::vector<double> design = test::nominal(cylinders->info());
   SurveyPlan plan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(cylinders->info())};
   const auto compare = [&](double tolerance) {

@@ -165,14 +165,14 @@ TEST(DescribedReactions, TheBaseCarriesTheWholeWeight) {
   EXPECT_NEAR(weight_on("rotary-delta", ".*[.]A"), 0.25 + 3 * (crank + 0.12 * 0.5), 1e-9);
 }
 
-std::shared_ptr<const Mechanism> changed(const std::string& name, const std::string& pattern, const std::string& by) {
+std::shared_ptr<const Mechanism> rewritten(const std::string& name, const std::string& pattern, const std::string& by) {
   const std::string text = test::text_of_mechanism(name), now = std::regex_replace(text, std::regex(pattern), by);
   EXPECT_NE(text, now) << pattern;
   return read_mechanism_toml(now, name + ".toml");
 }
 
 TEST(DescribedReactions, LegsWithoutMassCarryTheirDrivesForceAlone) {
-  const auto mechanism = changed("gough", "\n(cylinder|piston)_[a-z]+ += [^\n]*", "");
+  const auto mechanism = rewritten("gough", "\n(cylinder|piston)_[a-z]+ += [^\n]*", "");
   for (const State& state : states(*mechanism, 20)) {
     const Reactions found = reactions_at(*mechanism, state);
     ASSERT_EQ(found.reason, "");
@@ -191,7 +191,7 @@ TEST(DescribedReactions, LegsWithoutMassCarryTheirDrivesForceAlone) {
 
 TEST(DescribedReactions, RodsOfAPairHoldThePlatformsTurn) {
   // Without masses of the rods their forces are along them, so that six forces balance the platform's six equations.
-  const auto mechanism = changed("rotary-delta", "\nrod_mass_per_length [^\n]*", "");
+  const auto mechanism = rewritten("rotary-delta", "\nrod_mass_per_length [^\n]*", "");
   const std::vector<double> design = test::nominal(mechanism->info());
   for (const State& state : states(*mechanism, 20)) {
     const Reactions found = reactions_at(*mechanism, state);
@@ -254,19 +254,19 @@ TEST(DescribedReactions, FilesThatDoNotSayEnoughGetASentence) {
   EXPECT_EQ(why(*test::described("4ppa-2par")), "limb limb1 is a formula, which does not say what its links are");
   EXPECT_THAT(why(*test::described("par4")), HasSubstr("limb arm1 ends at `end`; end_on = \"platform\", or the name"));
   EXPECT_EQ(
-      why(*changed("rotary-delta", "\npair [^\n]*", "")),
+      why(*rewritten("rotary-delta", "\npair [^\n]*", "")),
       "the joints of the file hold its bodies too little (42 equations have 39 unknowns); rods that come in pairs "
       "say `pair`, limbs of parallel revolutes `across`");
-  EXPECT_EQ(why(*changed("gough", "\n[a-z_]*(mass|centre|inertia) +=[^\n]*", "")), "the file names no masses");
+  EXPECT_EQ(why(*rewritten("gough", "\n[a-z_]*(mass|centre|inertia) +=[^\n]*", "")), "the file names no masses");
   EXPECT_EQ(
-      why(*changed("3crr-r-cru", "\\[\\[joint\\]\\](.|\n)*$", "")),
+      why(*rewritten("3crr-r-cru", "\\[\\[joint\\]\\](.|\n)*$", "")),
       "the joints of the file hold its bodies too little (60 equations have 59 unknowns); rods that come in pairs "
       "say `pair`, limbs of parallel revolutes `across`");
   EXPECT_EQ(
-      why(*changed("quadrupteron", "(mass   = \"m_p\"\n)rotation = \"platform\"", "$1")),
+      why(*rewritten("quadrupteron", "(mass   = \"m_p\"\n)rotation = \"platform\"", "$1")),
       "no joint holds the body payload; rotation = \"platform\" makes a body part of the platform, [[joint]] joins "
       "two");
-  EXPECT_THAT(why(*changed("quadrupteron", "end_on     = \"platform\"", "end_on     = \"platfrom\"")),
+  EXPECT_THAT(why(*rewritten("quadrupteron", "end_on     = \"platform\"", "end_on     = \"platfrom\"")),
               HasSubstr("ends on 'platfrom', which is neither the platform nor a body; did you mean 'platform'?"));
 }
 

@@ -37,7 +37,7 @@ struct Samples {
   }
 };
 
-class SampleSlopes : public testing::TestWithParam<std::string> {
+class SampleSlopes : public ::testing::TestWithParam<std::string> {
  protected:
   const Mechanism& mechanism() const { return *test::described(GetParam()); }
   const MechanismInfo& info() const { return mechanism().info(); }
@@ -119,7 +119,7 @@ TEST_P(SampleSlopes, HaveTheBitsOfSurveysWithoutThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, SampleSlopes,
-                         testing::Values("3-rpr", "3-rrr", "3crr-r-cru", "4ppa-2par", "orthoglide"),
+                         ::testing::Values("3-rpr", "3-rrr", "3crr-r-cru", "4ppa-2par", "orthoglide"),
                          [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace
