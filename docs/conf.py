@@ -28,7 +28,7 @@ nitpick_ignore_regex = [
     ("cpp:identifier", r"(std|Eigen)(::.*)?"),
     ("cpp:identifier", r"u?int\d+_t|size_t|pkm|S|N"),
     ("cpp:identifier", r"(Dual4|AxisVector|AxisMatrix|Vector|Matrix|MatrixUpTo|MatrixOf|SmallMatrix|Capsule|Scratch|"
-                       r"SourceText|StartOutcome|StartAhead|StopReason|Front|kMostJoints)(<.*>|::.*)?"),
+                       r"SourceText|StartOutcome|StartAhead|StopReason|Front|kMostJoints|Obstacles|TimeGraph|graph)(<.*>|::.*)?"),
 ]
 
 html_theme = "furo"

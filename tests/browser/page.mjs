@@ -54,7 +54,7 @@ export class Page {
     const begin = performance.now();
     await page.goto(pathToFileURL(html).href);
     await page
-      .waitForFunction(() => window.report, null, { timeout: 20000 })
+      .waitForFunction(() => window.report, null, { timeout: 60000 })
       .catch(() => self.complaints.push("no report"));
     self.seconds = (performance.now() - begin) / 1000;
     self.isFine();
