@@ -62,8 +62,17 @@ TEST_F(Certify, HoldsTheExactVolumeOfAnEvaluation) {
   EXPECT_LE(json["certain"]["lower"], json["workspace"]["volume"]);
   EXPECT_GE(json["certain"]["upper"], json["workspace"]["volume"]);
   EXPECT_THAT(run({"evaluate", "quadrupteron", "--certain", "1e-2"}).err, HasSubstr("--certain needs formulas"));
-  EXPECT_THAT(run({"evaluate", kMechanisms + "rotary-delta.toml", "--certain", "1e-2"}).err,
-              HasSubstr("whose exact volume it checks"));
+  std::ofstream(folder_.path() + "/voxels.toml") << "[mechanism]\nfile = \"" << kMechanisms << R"(five-bar.toml"
+[variables]
+l_a = { min = "100 mm", max = "300 mm" }
+[workspace]
+method = "voxels"
+[[objective]]
+type = "workspace-volume"
+[[stage]]
+optimiser = "ga"
+)";
+  EXPECT_THAT(run({"evaluate", "voxels.toml", "--certain", "1e-2"}).err, HasSubstr("whose exact volume it checks"));
   EXPECT_THAT(run({"evaluate", kMechanisms + "five-bar.toml", "--certain", "2"}).err, HasSubstr("between 0 and 2"));
 }
 

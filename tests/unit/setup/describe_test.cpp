@@ -61,8 +61,8 @@ TEST(Describe, ShowsWhatWasGivenAndWhere) {
   mechanism  slider: a machine for tests
 
 variables
-  tilt  -0.5235987755982988 .. 0.5 rad    baseline 0.5 rad                     tilt
-  a     0.25 .. 0.72 m in steps of 0.1 m  baseline 0.8 m (outside the bounds)  half width
+  tilt  -0.5235987755982988 .. 0.5 rad     baseline 0.5 rad                     tilt
+  a      0.25 .. 0.72 m in steps of 0.1 m  baseline 0.8 m (outside the bounds)  half width
 
 fixed parameters
   b     0.8 m   (default)  distance
@@ -102,9 +102,9 @@ stages
   1. sweep: tries all
   2. ga: evolves
     population  10
-    rate        0.5        (default)
-    target      2 m^2 rad
-    width       6          (default)
+    rate         0.5        (default)
+    target       2 m^2 rad
+    width        6          (default)
 
 run
   checkpoint  every 60 s
