@@ -64,16 +64,19 @@ assert.equal(await page.text("h1"), evil);
 assert.equal(await page.page.locator("main script, main img, header script, header img").count(), 0);
 const everything = await page.text();
 for (const text of [evil, image, bold, attribute, ending, formula, "red"]) assert.ok(everything.includes(text), text);
-assert.ok((await page.text("#comparison")).includes(evil));
+// Both studies have one name: they are told apart by their files.
+const files = [file, copy].map((each) => path.basename(each)),
+  names = (text) => files.some((each) => text.includes(each));
+assert.ok((await page.text("#comparison")).includes(image + ".h5"));
 const {
   studies: [study],
 } = await page.data();
 assert.ok(study.summary.origin.toml.includes("</script><script>alert(3)</script> <!-- <script> \u2028 \u2029"));
 assert.ok((await page.text("#comparison")).includes("Workspaces over each other"), "both sweep the same coordinates");
 const legend = await page.page.locator("#comparison .plot .legendtext").first().textContent();
-assert.equal(legend, evil);
+assert.ok(names(legend), `legend: ${legend}`);
 const hover = await page.hover("comparison");
-assert.ok(hover.includes(evil), `hover: ${hover}`);
+assert.ok(names(hover), `hover: ${hover}`);
 // Nothing of a name has become an element or an attribute, however the page is used.
 const planted = await page.page.evaluate(() =>
   [...document.querySelectorAll("*")]
