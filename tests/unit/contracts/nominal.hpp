@@ -36,7 +36,7 @@ inline const MechanismList& mechanisms() {
 inline std::vector<std::string> files_of_contracts() {
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
-  return {"rotary-delta", "gough", "3crr-r-cru"};
+  return {"linear-delta", "gough", "3crr-r-cru"};
 #endif
 #endif
   return mechanism_files();
