@@ -8,6 +8,7 @@
 #include "engine/problem/pose_statistic.hpp"
 #include "engine/survey/plain_voxels.hpp"
 #include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/survey/own_inertia.hpp"
 
 namespace pkm {
 namespace {
@@ -29,22 +30,6 @@ constexpr PoseQuantity kJointSpeed = {
             for (std::size_t j = 0; j < report.J->cols(); ++j) sum += std::fabs((*report.J)(i, j));
             *speed = std::fmax(*speed, sum);
           }
-        },
-};
-
-/// What each joint feels while the others are free to stay.
-constexpr PoseQuantity kOwnInertia = {
-    .name = "own_inertia",
-    .unit = "kg",
-    .meaning = "inertia of a joint",
-    .least = -INFINITY,
-    .greatest = INFINITY,
-    .worst = PoseQuantity::Worst::greatest,
-    .without_value = 0,
-    .per_joint = true,
-    .of_inertia =
-        [](const auto& M_q, auto* inertia) {
-          for (std::size_t i = 0; i < M_q.rows(); ++i) inertia[i] = M_q(i, i);
         },
 };
 
@@ -99,7 +84,7 @@ TEST(PoseQuantity, OfInertiaInVoxelsAndColumnsWithDerivatives) {
     const MechanismInfo& info = mechanism->info();
     SCOPED_TRACE(info.name);
     const std::vector<double> design = test::nominal(info);
-    const Demand demand{.fields = {&kOwnInertia, &kCouplingIndex}, .poses = true};
+    const Demand demand{.fields = {&test::kOwnInertia, &kCouplingIndex}, .poses = true};
     SurveyPlan plan = plan_of(*mechanism);
     const VoxelMap map = voxel_map(*mechanism, design, plan);
     VoxelOptions voxels = *plan.voxels();
@@ -110,11 +95,11 @@ TEST(PoseQuantity, OfInertiaInVoxelsAndColumnsWithDerivatives) {
     survey_once<double>(*prepare_plain_voxels(*mechanism, plan, voxels, demand), design, plain);
     Scratch scratch;
     for (const char* joint : {"1", "2", "worst", "mean"}) {
-      const PoseStatistic mean{kOwnInertia, "mean", joint};
+      const PoseStatistic mean{test::kOwnInertia, "mean", joint};
       EXPECT_NEAR(mean(own, scratch) / mean(plain, scratch), 1, 1e-9) << joint;
       EXPECT_GT(mean(own, scratch), 0);
     }
-    EXPECT_EQ(own.of(kOwnInertia).size(), own.of(kCouplingIndex).size());
+    EXPECT_EQ(own.of(test::kOwnInertia).size(), own.of(kCouplingIndex).size());
     if (!mechanism->columns()) continue;
     const auto surveyor = prepare_survey(*mechanism, test::columns(info), demand);
     if (!surveyor->slopes()) continue;
@@ -123,17 +108,17 @@ TEST(PoseQuantity, OfInertiaInVoxelsAndColumnsWithDerivatives) {
     survey_once<double>(*surveyor, design, values);
     const std::vector<Dual4> parameters(design.begin(), design.end());
     survey_once<Dual4>(*surveyor, parameters, slopes);
-    const PoseStatistic mean{kOwnInertia, "mean", "worst"};
+    const PoseStatistic mean{test::kOwnInertia, "mean", "worst"};
     EXPECT_EQ(mean(slopes, scratch).a, mean(values, scratch));
     // At the lightest pose, far from where the inertia tends to infinity.
-    const std::vector<double>& first = values.of(kOwnInertia);
+    const std::vector<double>& first = values.of(test::kOwnInertia);
     const auto lightest = static_cast<std::size_t>(std::ranges::min_element(first) - first.begin());
     const MotionState<double> state{values.pose[lightest], AxisVector<double>(info.coordinates.size())};
     PoseDynamics<double> dynamics;
     mechanism->dynamics()->equations(design, info.modes.front(), {&state, 1}, {&dynamics, 1});
     const AxisMatrix<double> M_q = joint_inertia(dynamics);
     for (std::size_t i = 0; i < info.joints.size(); ++i)
-      EXPECT_NEAR(values.of(kOwnInertia, i)[lightest] / M_q(i, i), 1, 1e-9) << i;
+      EXPECT_NEAR(values.of(test::kOwnInertia, i)[lightest] / M_q(i, i), 1, 1e-9) << i;
     ++compared;
   }
   EXPECT_GE(compared, 3);

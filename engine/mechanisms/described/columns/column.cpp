@@ -94,7 +94,7 @@ void Column::find_steep_ends(std::span<const double> registers, double from, dou
     const Quartic c = in_range(coefficients_of(plan_.surfaces[k], registers), from, to);
     bool is = c[0] - c[1] + c[2] - c[3] + c[4] >= 0;
     if (is) signs |= bit(k);
-    std::array<double, 4> places{};
+    std::array<double, 8> places{};
     const std::size_t count = sign_changes(c, places);
     for (std::size_t i = 0; i < count; ++i, is = !is)
       room.steep.emplace_back(from + 0.5 * (to - from) * (places[i] + 1), label_of(k, is));
@@ -104,9 +104,9 @@ void Column::find_steep_ends(std::span<const double> registers, double from, dou
 
 /// How well an end is known.
 double Column::blur(const std::pair<double, EndLabel>& end, std::span<const double> registers) const {
-  const Quartic c = coefficients_of(plan_.surfaces[end.second >> 1U], registers);
-  const double z = end.first;
-  if ((curves_ & bit(end.second >> 1U)) != 0) return 0;
+  const auto [z, label] = end;
+  if (plan_.surfaces[label >> 1U].is_curve) return 0;
+  const Quartic c = coefficients_of(plan_.surfaces[label >> 1U], registers);
   double size = 0, power = 1;
   for (const double each : c) {
     size += std::fabs(each * power);
@@ -139,7 +139,6 @@ void Column::settle(std::span<const double> registers, double tie, ColumnRoom& r
 double Column::measure(std::span<double> registers, ColumnRoom& room) const {
   Structure& structure = room.structure;
   structure.hash = 0;
-  structure.broken = 0;
   structure.corners.clear();
   room.pieces.clear();
   room.ends.clear();
@@ -223,9 +222,7 @@ Dual4 Column::moving_end(const std::pair<double, EndLabel>& end, std::span<Dual4
   Dual4 f;
   double slope = 0;
   if (surface.is_curve) {
-    const graph::Program& program = plan_.program;
-    for (const auto& input : program.stages().back().inputs) moving[input.to] = z;
-    program.run<Dual4>(program.stages().size() - 1, moving);
+    set_z<Dual4>(z, moving);
     f = moving[surface.coefficients[0]];
     slope = moving[surface.coefficients[1]].a;
   } else {

@@ -47,7 +47,13 @@ class Column {
  private:
   bool find_flat_ends(std::span<const double> registers, Signs& signs, std::array<double, 2>& range,
                       ColumnRoom& room) const;
-  void set_z(double z, std::span<double> registers) const;
+  /// Computes what depends on z; S is double, Dual4 or Interval.
+  template <class S>
+  void set_z(const S& z, std::span<S> registers) const {
+    const graph::Program& program = plan_.program;
+    for (const auto& input : program.stages().back().inputs) registers[input.to] = z;
+    program.run<S>(program.stages().size() - 1, registers);
+  }
   void find_curve_ends(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
                        ColumnRoom& room) const;
   void isolate(Signs curves, double from, double to, double narrow, std::span<double> registers,

@@ -8,18 +8,12 @@
 
 namespace pkm::described {
 
-void Column::set_z(double z, std::span<double> registers) const {
-  const graph::Program& program = plan_.program;
-  for (const auto& input : program.stages().back().inputs) registers[input.to] = z;
-  program.run<double>(program.stages().size() - 1, registers);
-}
-
 /// Appends them to the flat ones. @param signs  of the curves at the lower end of the range are set
 void Column::find_curve_ends(const std::array<double, 2>& range, std::span<double> registers, Signs& signs,
                              ColumnRoom& room) const {
   room.intervals.resize(registers.size());
   for (std::size_t i = 0; i < registers.size(); ++i) room.intervals[i] = Interval(registers[i]);
-  set_z(range[0], registers);
+  set_z<double>(range[0], registers);
   for (Signs rest = curves_; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
     if (registers[plan_.surfaces[k].coefficients[0]] >= 0) signs |= bit(k);
@@ -30,9 +24,7 @@ void Column::find_curve_ends(const std::array<double, 2>& range, std::span<doubl
 /// @param narrow  where nothing is decided over so much, a change of sign is an end
 void Column::isolate(Signs curves, double from, double to, double narrow, std::span<double> registers,
                      ColumnRoom& room) const {
-  const graph::Program& program = plan_.program;
-  for (const auto& input : program.stages().back().inputs) room.intervals[input.to] = Interval(from, to);
-  program.run<Interval>(program.stages().size() - 1, room.intervals);
+  set_z<Interval>({from, to}, room.intervals);
   Signs monotone = 0, undecided = 0;
   for (Signs rest = curves; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
@@ -46,9 +38,9 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
   for (; monotone != 0; monotone &= monotone - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(monotone));
     const std::uint32_t f = plan_.surfaces[k].coefficients[0];
-    set_z(from, registers);
+    set_z<double>(from, registers);
     const bool below = registers[f] >= 0;
-    set_z(to, registers);
+    set_z<double>(to, registers);
     if (below != (registers[f] >= 0))
       room.flat.emplace_back(root_between(k, from, to, registers), static_cast<EndLabel>(2 * k + (below ? 1 : 0)));
   }
@@ -61,11 +53,11 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
 /// The root of a formula that changes its sign once: Newton's method, kept inside by halving.
 double Column::root_between(std::size_t curve, double from, double to, std::span<double> registers) const {
   const auto& at = plan_.surfaces[curve].coefficients;
-  set_z(from, registers);
+  set_z<double>(from, registers);
   const bool below = registers[at[0]] >= 0;
   double z = 0.5 * (from + to);
   for (int step = 0; step < 100; ++step) {
-    set_z(z, registers);
+    set_z<double>(z, registers);
     const double f = registers[at[0]];
     ((f >= 0) == below ? from : to) = z;
     double next = z - f / registers[at[1]];
@@ -80,7 +72,7 @@ void Column::add_slopes_of_curve(const Surface& surface, double z, double factor
                                  std::span<double> adjoints) const {
   const graph::Program& program = plan_.program;
   const std::size_t stage = program.stages().size() - 1;
-  set_z(z, registers);
+  set_z<double>(z, registers);
   adjoints[surface.coefficients[0]] += factor / registers[surface.coefficients[1]];
   run_backwards(program, stage, registers, adjoints);
   for (const auto& input : program.stages()[stage].inputs) adjoints[input.to] = 0;

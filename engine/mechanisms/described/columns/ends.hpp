@@ -22,8 +22,7 @@ using Ends = std::vector<std::pair<double, EndLabel>>;
 struct Structure {
   std::uint64_t hash = 0;  ///< in whatever order they are; 0: nothing is feasible
   std::vector<std::uint32_t>
-      corners;               ///< labels: of a crossing by both arcs, of an upright side by its lower and upper
-  std::uint32_t broken = 0;  ///< of an empty section: 1 + the place of the plain condition that is broken
+      corners;  ///< labels: of a crossing by both arcs, of an upright side by its lower and upper
 };
 
 }  // namespace pkm::described

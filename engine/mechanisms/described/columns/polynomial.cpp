@@ -1,5 +1,6 @@
 #include "engine/mechanisms/described/columns/polynomial.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pkm::described {
@@ -67,22 +68,8 @@ std::span<const double> trimmed(std::span<const double> c) {
   return c;
 }
 
-}  // namespace
-
-Roots roots_of(const std::array<double, 3>& c) {
-  const auto [c0, b, a] = c;
-  if (a == 0) {
-    if (b == 0) return {};
-    return {{-c0 / b, 0}, 1};
-  }
-  const double discriminant = b * b - 4 * a * c0;
-  if (!(discriminant >= 0)) return {};
-  const double q = -0.5 * (b + (b < 0 ? -1 : 1) * std::sqrt(discriminant));
-  const double r1 = q / a, r2 = q == 0 ? r1 : c0 / q;
-  return {{r1 < r2 ? r1 : r2, r1 < r2 ? r2 : r1}, 2};
-}
-
-std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots) {
+/// Roots in [-1, 1] and, where that is asked for, places that nearly are double ones.
+std::size_t find_roots(std::span<const double> coefficients, bool touches, std::array<double, 8>& roots) {
   double scale = 0;
   for (const double c : coefficients) scale = std::fabs(c) > scale ? std::fabs(c) : scale;
   coefficients = trimmed(coefficients);
@@ -99,7 +86,7 @@ std::size_t roots_between(std::span<const double> coefficients, std::array<doubl
   if (degree == 2) {
     const Roots found = roots_of({coefficients[0], coefficients[1], coefficients[2]});
     for (int i = 0; i < found.count; ++i) keep(found.s[static_cast<std::size_t>(i)]);
-    if (found.count == 0) {  // it may be a double one
+    if (found.count == 0 && touches) {  // it may be a double one
       const double x = -0.5 * coefficients[1] / coefficients[2];
       if (std::fabs(value(coefficients, x)) <= 1e-13 * scale) keep(x);
     }
@@ -108,13 +95,13 @@ std::size_t roots_between(std::span<const double> coefficients, std::array<doubl
   std::array<double, 4> slope{};
   for (std::size_t i = 1; i <= degree; ++i) slope[i - 1] = static_cast<double>(i) * coefficients[i];
   std::array<double, 8> turns{};
-  const std::size_t turn_count = roots_between(std::span(slope).first(degree), turns);
+  const std::size_t turn_count = find_roots(std::span(slope).first(degree), touches, turns);
   double low = -1, at_low = value(coefficients, low);
   for (std::size_t i = 0; i <= turn_count; ++i) {
     const double high = i < turn_count ? turns[i] : 1, at_high = value(coefficients, high);
     if ((at_low < 0) != (at_high < 0))
       keep(root_between(coefficients, low, high, at_low));
-    else if (i < turn_count && std::fabs(at_high) <= 1e-13 * scale)
+    else if (touches && i < turn_count && std::fabs(at_high) <= 1e-13 * scale)
       keep(high);
     low = high;
     at_low = at_high;
@@ -122,31 +109,30 @@ std::size_t roots_between(std::span<const double> coefficients, std::array<doubl
   return count;
 }
 
-std::size_t sign_changes(std::span<const double> coefficients, std::array<double, 4>& places) {
-  const std::span<const double> c = trimmed(coefficients);
-  std::size_t count = 0;
-  const auto keep = [&](double x) {
-    if (x > -1 && x < 1) places[count++] = x;
-  };
-  if (c.size() < 2) return 0;
-  if (c.size() == 2) {
-    keep(-c[0] / c[1]);
-  } else if (c.size() == 3) {
-    const Roots found = roots_of({c[0], c[1], c[2]});
-    for (int i = 0; i < found.count; ++i) keep(found.s[static_cast<std::size_t>(i)]);
-  } else if (!has_one_sign(c)) {
-    std::array<double, 4> slope{}, turns{};
-    for (std::size_t i = 1; i < c.size(); ++i) slope[i - 1] = static_cast<double>(i) * c[i];
-    const std::size_t turn_count = sign_changes(std::span(slope).first(c.size() - 1), turns);
-    double low = -1, at_low = value(c, low);
-    for (std::size_t i = 0; i <= turn_count; ++i) {
-      const double high = i < turn_count ? turns[i] : 1, at_high = value(c, high);
-      if ((at_low < 0) != (at_high < 0)) keep(root_between(c, low, high, at_low));
-      low = high;
-      at_low = at_high;
-    }
+}  // namespace
+
+Roots roots_of(const std::array<double, 3>& c) {
+  const auto [c0, b, a] = c;
+  if (a == 0) {
+    if (b == 0) return {};
+    return {{-c0 / b, 0}, 1};
   }
-  return count;
+  const double discriminant = b * b - 4 * a * c0;
+  if (!(discriminant >= 0)) return {};
+  const double q = -0.5 * (b + (b < 0 ? -1 : 1) * std::sqrt(discriminant));
+  const double r1 = q / a, r2 = q == 0 ? r1 : c0 / q;
+  return {{r1 < r2 ? r1 : r2, r1 < r2 ? r2 : r1}, 2};
+}
+
+std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots) {
+  return find_roots(coefficients, true, roots);
+}
+
+std::size_t sign_changes(std::span<const double> coefficients, std::array<double, 8>& places) {
+  const std::size_t count = find_roots(coefficients, false, places);
+  const auto end = std::remove_if(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count),
+                                  [](double x) { return std::fabs(x) == 1; });
+  return static_cast<std::size_t>(end - places.begin());
 }
 
 }  // namespace pkm::described

@@ -22,6 +22,6 @@ Roots roots_of(const std::array<double, 3>& c);
 std::size_t roots_between(std::span<const double> coefficients, std::array<double, 8>& roots);
 
 /// Where in (-1, 1) such a polynomial changes its sign, in order; their number.
-std::size_t sign_changes(std::span<const double> coefficients, std::array<double, 4>& places);
+std::size_t sign_changes(std::span<const double> coefficients, std::array<double, 8>& places);
 
 }  // namespace pkm::described

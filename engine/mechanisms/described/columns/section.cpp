@@ -136,7 +136,7 @@ void Section::find_structure(SectionRoom& room) const {
 
 double Section::measure(std::span<double> registers, SectionRoom& room) const {
   Structure& structure = room.structure;
-  structure = {0, std::move(structure.corners), 0};
+  structure.hash = 0;
   structure.corners.clear();
   room.pieces.clear();
   room.spans.clear();

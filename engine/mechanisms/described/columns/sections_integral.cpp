@@ -95,13 +95,9 @@ Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, Integ
   Breaks& breaks = own.breaks[0];
   breaks.clear();
   find_places(level, low, high, room);
-  if (level == 0) {
-    room.is_scanning = true;
-    for (const double at : own.places) own.scanned.push_back(slice(level, at, room));
-    room.is_scanning = false;
-  } else {
-    for (const double at : own.places) own.scanned.push_back(slice(level, at, room));
-  }
+  if (level == 0) room.is_scanning = true;
+  for (const double at : own.places) own.scanned.push_back(slice(level, at, room));
+  if (level == 0) room.is_scanning = false;
   if (level + 1 < levels()) look_again(level, room);
   breaks.push_back({low, false, false, {}, own.scanned.front(), true});
   for (std::size_t i = 1; i < own.scanned.size(); ++i)

@@ -17,7 +17,7 @@ namespace pkm::described {
 struct Slice {
   double at = 0, measure = 0, error = 0;
   std::uint64_t hash = 0;    ///< of its structure; 0: empty
-  std::uint32_t broken = 0;  ///< Structure::broken
+  std::uint32_t broken = 0;  ///< where it is empty: 1 + the place of the plain condition that is broken
 };
 
 /// What closes a part of an outer coordinate: a change of structure, the box, or a plain condition: 1 + its place.

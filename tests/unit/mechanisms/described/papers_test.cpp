@@ -16,6 +16,7 @@
 #include "tests/unit/mechanisms/described/files.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
 #include "tests/unit/mechanisms/hybrid/golden.hpp"
+#include "tests/unit/survey/own_inertia.hpp"
 
 namespace pkm {
 namespace {
@@ -386,22 +387,6 @@ TEST_P(PaperMechanism, HasTheSameExactVolumes) {
   EXPECT_GT(exact, 0.95 * compared);
 }
 
-/// What each joint feels while the others are free to stay: smooth, unlike coupling indices and condition numbers.
-constexpr PoseQuantity kOwnInertia = {
-    .name = "own_inertia",
-    .unit = "kg",
-    .meaning = "inertia of a joint",
-    .least = -INFINITY,
-    .greatest = INFINITY,
-    .worst = PoseQuantity::Worst::greatest,
-    .without_value = 0,
-    .per_joint = true,
-    .of_inertia =
-        [](const auto& M_q, auto* inertia) {
-          for (std::size_t i = 0; i < M_q.rows(); ++i) inertia[i] = M_q(i, i);
-        },
-};
-
 /// Along four directions of all parameters, from nodes of their own.
 TEST_P(PaperMechanism, HasTheSameSlopesOfSamples) {
   const MechanismInfo& info = own().info();
@@ -422,13 +407,13 @@ TEST_P(PaperMechanism, HasTheSameSlopesOfSamples) {
   std::vector<Dual4> of_file;
   for (const Parameter& p : file().info().parameters)
     of_file.push_back(moving[static_cast<std::size_t>(find_named(info.parameters, p.name) - info.parameters.data())]);
-  const Demand demand{.fields = {&kOwnInertia}};
+  const Demand demand{.fields = {&test::kOwnInertia}};
   Survey<Dual4> mine, theirs;
   survey_once<Dual4>(*prepare_survey(file(), here, demand), of_file, mine);
   survey_once<Dual4>(*prepare_survey(own(), there, demand), moving, theirs);
   for (std::size_t joint = 0; joint < info.joints.size(); ++joint) {
-    const Dual4 here_mean = weighted_mean(mine.weight, mine.of(kOwnInertia, joint)),
-                there_mean = weighted_mean(theirs.weight, theirs.of(kOwnInertia, joint));
+    const Dual4 here_mean = weighted_mean(mine.weight, mine.of(test::kOwnInertia, joint)),
+                there_mean = weighted_mean(theirs.weight, theirs.of(test::kOwnInertia, joint));
     EXPECT_GT(there_mean.a, 0);
     EXPECT_NEAR(here_mean.a / there_mean.a, 1, 1e-6);
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(here_mean.v[k] / there_mean.a, there_mean.v[k] / there_mean.a, 1e-6) << k;
