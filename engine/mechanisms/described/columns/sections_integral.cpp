@@ -262,7 +262,7 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     const double at = event ? event->guess(low.at, high.at, high.at - low.at > near ? near : kNear * range)
                             : 0.5 * (low.at + high.at);
     if (at <= low.at || at >= high.at) break;
-    room.is_scanning = level == 0 && high.at - low.at > kFar * whole;
+    if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;
     const Slice next = look(at);
     (next.hash == low.hash ? low : high) = next;
   }
