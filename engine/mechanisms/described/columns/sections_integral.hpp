@@ -30,7 +30,7 @@ struct SliceBreak {
   bool root_below, root_above;
   Slice below, above;
   bool is_box = false;
-  double jump = 0;  ///< of the measure
+  double overlooked = 0;  ///< error that a jump of the measure tells of
 };
 
 /// A part of an outer coordinate in which the structure stays the same.

@@ -1,0 +1,188 @@
+// Where the structure of an integral's slices changes along an outer coordinate: places that are looked at, parts that
+// are expected there, and breaks that are closed in on.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/mechanisms/described/columns/column_event.hpp"
+#include "engine/mechanisms/described/columns/sections_integral.hpp"
+
+namespace pkm::described {
+namespace {
+
+constexpr double kNear = 1e-15;         // of the range: how well breaks are known
+constexpr double kNearInLines = 1e-11;  // the same where sections are lines: measures go on where structures change
+constexpr double kFar = 1e-3;           // of the range: slices that are further from a break may differ in small parts
+constexpr double kJump = 1e-7;          // of the greatest slice: what is no rounding
+// Places at which structures are compared: where sections are areas, of one outer coordinate and of each of several;
+// where they are lines, of the outermost coordinate, of the next while that is scanned, and of the next later, when it
+// is known what to expect.
+constexpr int kSamples[] = {40, 24}, kSamplesInLines[] = {64, 192, 12};
+
+/// Whether there are two more corners of a kind: they meet where the structure changes.
+bool has_pair_more(std::span<const std::uint32_t> more, std::span<const std::uint32_t> fewer) {
+  return std::ranges::any_of(more, [&](std::uint32_t label) {
+    return std::ranges::count(more, label) - std::ranges::count(fewer, label) >= (is_upright(label) ? 2 : 4);
+  });
+}
+
+}  // namespace
+
+/// Parts that are narrow at one place may have been seen at its neighbours alone: now they are expected.
+void SectionsIntegral::look_again(std::size_t level, IntegralRoom& room) const {
+  std::vector<Slice>& scanned = room.levels[level].scanned;
+  bool is_new = true;
+  for (int pass = 0; pass < 4 && is_new; ++pass) {
+    is_new = false;
+    for (std::size_t i = 1; i < scanned.size(); ++i) {
+      if (scanned[i - 1].hash == scanned[i].hash) continue;
+      for (const std::size_t k : {i - 1, i}) {
+        const Slice again = slice(level, scanned[k].at, room);
+        is_new = is_new || again.hash != scanned[k].hash;
+        scanned[k] = again;
+      }
+    }
+  }
+}
+
+/// Where structures are compared: all over the range, and in the middle of expected parts, however narrow they are.
+void SectionsIntegral::find_places(std::size_t level, double low, double high, IntegralRoom& room) const {
+  IntegralRoom::Level& own = room.levels[level];
+  const double whole = high - low;
+  const int samples = !ends_in_lines() ? kSamples[levels() > 1 ? 1 : 0]
+                      : levels() == 1  ? kSamplesInLines[1]
+                      : level == 0     ? kSamplesInLines[0]
+                                       : kSamplesInLines[room.is_scanning ? 1 : 2];
+  own.places.assign({low + kSettled * whole, high - kSettled * whole});
+  for (int i = 0; i < samples; ++i) {
+    // not at equal distances, which symmetric mechanisms would have their breaks at
+    const double step = 0.618 * i;
+    own.places.push_back(low + whole * (i + 0.2 + 0.6 * (step - std::floor(step))) / samples);
+  }
+  if (level > 0) add_expected_places(room.levels[level - 1].at, own);
+  std::ranges::sort(own.places);
+}
+
+/// Parts are expected as they are at the two nearest places outside on either side, and as a line through those has it.
+void SectionsIntegral::add_expected_places(double outside, IntegralRoom::Level& own) {
+  using Seen = IntegralRoom::Level::Seen;
+  const std::size_t known = own.places.size();
+  const auto expect = [&](double lower, double upper) {
+    const double inset = 0.1 * (upper - lower);
+    const auto begin = own.places.begin(), end = begin + static_cast<std::ptrdiff_t>(known);
+    const double middle = 0.5 * (lower + upper);
+    if (middle > own.places[0] && middle < own.places[1] &&
+        std::none_of(begin, end, [&](double at) { return at > lower + inset && at < upper - inset; }))
+      own.places.push_back(middle);
+  };
+  const auto expect_all = [&](const Seen* x, const Seen* y) {
+    if (!x) return;
+    const bool is_line = y && y->parts.size() == x->parts.size();
+    const double ahead = is_line ? (outside - x->outside) / (x->outside - y->outside) : 0;
+    for (std::size_t i = 0; i < x->parts.size(); ++i) {
+      const auto [lower, upper] = x->parts[i];
+      expect(lower, upper);
+      if (is_line) expect(lower + ahead * (lower - y->parts[i][0]), upper + ahead * (upper - y->parts[i][1]));
+    }
+  };
+  const auto begin = own.seen.begin(), end = begin + static_cast<std::ptrdiff_t>(own.seen_count);
+  const auto above = std::partition_point(begin, end, [&](const Seen& seen) { return seen.outside < outside; });
+  const auto seen = [&](std::ptrdiff_t i) { return i >= 0 && i < end - begin ? &begin[i] : nullptr; };
+  const std::ptrdiff_t at = above - begin;
+  expect_all(seen(at - 1), seen(at - 2));
+  expect_all(seen(at), seen(at + 1));
+}
+
+void SectionsIntegral::remember(double outside, IntegralRoom::Level& own) {
+  using Seen = IntegralRoom::Level::Seen;
+  if (own.seen.size() == own.seen_count) own.seen.emplace_back();
+  const auto begin = own.seen.begin(), end = begin + static_cast<std::ptrdiff_t>(own.seen_count);
+  const auto at = std::partition_point(begin, end, [&](const Seen& seen) { return seen.outside < outside; });
+  if (at != end && at->outside == outside) return;
+  std::rotate(at, end, end + 1);
+  ++own.seen_count;
+  at->outside = outside;
+  at->parts.clear();
+  for (const SlicePart& part : own.parts) at->parts.push_back({part.piece.lower, part.piece.upper});
+}
+
+/// Measures go on where structures change, some like roots; if not, something was overlooked on one side.
+bool SectionsIntegral::jumps(const Slice& low, const Slice& high, std::size_t level, const IntegralRoom& room) const {
+  return ends_in_lines() && low.broken == 0 && high.broken == 0 &&
+         std::fabs(low.measure - high.measure) > kJump * room.levels[level].greatest;
+}
+
+/// Adds the breaks between two slices, in order.
+void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, double whole, Breaks& breaks,
+                                   IntegralRoom& room) const {
+  for (int more = 0; more < 24 && from.hash != to.hash && room.sections < room.most; ++more) {
+    Slice low = from, high = to;
+    close_in(level, low, high, whole, room);
+    for (int again = 0; again < 4 && level + 1 < levels() && jumps(low, high, level, room); ++again) {
+      // A part that was overlooked on one side is found there now, and followed further on.
+      const bool is_low = low.measure < high.measure;
+      const Slice found = slice(level, is_low ? low.at : high.at, room);
+      if (found.hash == (is_low ? low : high).hash) break;
+      (is_low ? high : low) = found;
+      (is_low ? low : high) = is_low ? from : to;
+      if (low.hash == high.hash) break;
+      close_in(level, low, high, whole, room);
+    }
+    if (high.at == to.at && level + 1 < levels()) {
+      const Slice again = slice(level, to.at, room);
+      const bool is_other = again.hash != to.hash;
+      to = again;
+      if (is_other) continue;
+    }
+    // Where rounding decides, structures change again and again; ever longer steps leave that behind.
+    const double beyond = high.at + kSettled * whole * std::ldexp(1.0, 3 * more);
+    const Slice after = beyond < to.at ? slice(level, beyond, room) : to;
+    SliceBreak found{high.at, true, true, low, after};
+    if (level + 1 < levels() && jumps(low, high, level, room))
+      found.overlooked = std::fabs(low.measure - high.measure) * whole / kSamplesInLines[0];
+    find_kind(level, found, std::max(from.at, low.at - kSettled * whole), after.at, room);
+    breaks.push_back(found);
+    from = after;
+  }
+}
+
+void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const {
+  const double range = whole + std::fabs(low.at), near = (ends_in_lines() ? kNearInLines : kNear) * range;
+  std::optional<ColumnEvent> event;
+  const auto look = [&](double at) {
+    const Slice found = slice(level, at, room);
+    if (event) event->take(at, room.column.ends, room.column.structure.corners);
+    return found;
+  };
+  if (ends_in_lines() && level + 1 == levels()) {
+    slice(level, low.at, room);
+    const std::vector<EndLabel> below = room.column.structure.corners;
+    slice(level, high.at, room);
+    event.emplace(below, room.column.structure.corners);
+    look(low.at);
+    look(high.at);
+  }
+  while (high.at - low.at > near || (jumps(low, high, level, room) && high.at - low.at > kNear * range)) {
+    const double at = event ? event->guess(low.at, high.at, high.at - low.at > near ? near : kNear * range)
+                            : 0.5 * (low.at + high.at);
+    if (at <= low.at || at >= high.at) break;
+    if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;
+    const Slice next = look(at);
+    (next.hash == low.hash ? low : high) = next;
+  }
+  if (level == 0) room.is_scanning = false;
+}
+
+/// On which sides the measure behaves like a root: where two corners of one kind meet.
+void SectionsIntegral::find_kind(std::size_t level, SliceBreak& at, double before, double after,
+                                 IntegralRoom& room) const {
+  if (level + 1 < levels() || ends_in_lines()) return;
+  slice(level, before, room);
+  std::vector<std::uint32_t>& corners = room.levels[level].corners;
+  corners = room.levels[level].structure.corners;
+  slice(level, after, room);
+  const std::vector<std::uint32_t>& others = room.levels[level].structure.corners;
+  at.root_below = has_pair_more(corners, others);
+  at.root_above = has_pair_more(others, corners);
+}
+
+}  // namespace pkm::described
