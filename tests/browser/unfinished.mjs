@@ -7,10 +7,10 @@ import { folderOf, Page, pkmopt } from "./page.mjs";
 
 const folder = folderOf("unfinished");
 
-/** Starts a long study and ends it by a signal once its file is there. */
-async function endedBy(signal) {
-  const toml = path.join(folder, signal + ".toml"),
-    file = path.join(folder, signal + ".h5");
+/** Starts a long study and kills it once its file is there. */
+async function killed() {
+  const toml = path.join(folder, "killed.toml"),
+    file = path.join(folder, "killed.h5");
   writeFileSync(
     toml,
     `[mechanism]
@@ -36,27 +36,24 @@ generations = 100000
   const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
   while (!existsSync(file)) await pause(5);
   await pause(100);
-  child.kill(signal);
+  child.kill("SIGKILL");
   await ended;
   return file;
 }
 
-for (const [signal, words] of [
-  ["SIGINT", "interrupted"],
-  ["SIGKILL", "still running"],
-]) {
-  const file = await endedBy(signal),
-    html = path.join(folder, signal + ".html");
+{
+  const file = await killed(),
+    html = path.join(folder, "killed.html");
   pkmopt("report", file, "--output", html, "--force");
   const page = await Page.open(html);
   await page.draw("convergence");
-  assert.ok((await page.text("#summary")).includes(words), words);
+  assert.match(await page.text("#summary"), /still running/);
   assert.ok((await page.sections()).includes("mechanism"));
   await page.close();
 }
 
 // Real ones that earlier programs were stopped in.
-for (const schema of [1, 2, 3]) {
+for (const schema of [1, 3]) {
   const name = `interrupted-schema-${schema}`,
     html = path.join(folder, name + ".html");
   pkmopt("report", path.join(process.env.BROWSER_DATA, name + ".h5"), "--output", html, "--force");

@@ -36,21 +36,19 @@ seed = 7
 [mechanism]
 file = "%s"
 [variables]
-R   = { min = 0.05, max = 0.4 }
-l_a = { min = 0.1, max = 0.4 }
-l_b = { min = 0.2, max = 0.8 }
+R = { min = 0.2, max = 0.4 }
+r = { min = 0.03, max = 0.1 }
+l = { min = 0.4, max = 0.8 }
 [workspace]
 method = "voxels"
 cells = { x = 16, y = 16, z = 16 }
 [[objective]]
 type = "workspace-ratio"
-[[constraint]]
-type = "rods longer than cranks"
 [[stage]]
 optimiser = "ga"
 population = 20
 generations = 60
-""" % os.path.abspath(os.path.join(os.path.dirname(__file__), "../../experiments/mechanisms/rotary-delta.toml"))
+""" % os.path.abspath(os.path.join(os.path.dirname(__file__), "../../experiments/mechanisms/linear-delta.toml"))
 
 STUDIES = {
     "ga": PROBLEM + '[[stage]]\noptimiser = "ga"\npopulation = 20\ngenerations = 60\n',

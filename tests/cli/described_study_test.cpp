@@ -24,21 +24,18 @@ TEST_F(DescribedStudy, EveryShippedMechanismHasOneThatChecks) {
 }
 
 TEST_F(DescribedStudy, EndsWithTheSameBitsOnAnyThreadsAndInstructionSetAndAfterKills) {
-  std::ofstream(path("study.toml")) << "[mechanism]\nfile = \"" << kShipped << R"(/rotary-delta.toml"
+  std::ofstream(path("study.toml")) << "[mechanism]\nfile = \"" << kShipped << R"(/linear-delta.toml"
 [variables]
-R   = { min = 0.05, max = 0.4 }
-l_a = { min = 0.1, max = 0.4 }
-l_b = { min = 0.2, max = 0.8 }
+R = { min = 0.2, max = 0.4 }
+r = { min = 0.03, max = 0.1 }
+l = { min = 0.4, max = 0.8 }
 [workspace]
 method = "voxels"
 cells = { x = 10, y = 10, z = 10 }
-limits = { clear_z = 0.02 }
 [[objective]]
 type = "workspace-ratio"
 [[report]]
 type = "conditioning"
-[[constraint]]
-type = "rods longer than cranks"
 [[stage]]
 optimiser = "ga"
 population = 10

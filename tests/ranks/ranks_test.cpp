@@ -250,14 +250,13 @@ TEST_F(Ranks, KilledWhileSolversWorkAndResumedByAnotherNumberEndTheSame) {
 }
 
 TEST_F(Ranks, OfAMechanismFromAFileEndTheSameAlsoWithoutTheFile) {
-  fs::copy(PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml", path("delta.toml"));
+  fs::copy(PKM_EXPERIMENTS "/mechanisms/linear-delta.toml", path("delta.toml"));
   write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 60\n[checkpoint]\nevery = 0\n",
              R"([mechanism]
 file = "delta.toml"
 [variables]
-R   = { min = 0.05, max = 0.4 }
-l_a = { min = 0.1, max = 0.4 }
-arm2.l_b = { min = 0.4, max = 0.6 }
+R = { min = 0.2, max = 0.4 }
+rail2.l = { min = 0.4, max = 0.6 }
 [workspace]
 method = "voxels"
 cells = { x = 12, y = 12, z = 12 }
