@@ -22,7 +22,7 @@ JSON = [
     "dynamics 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --acceleration x=5",
     "coupling 3crr-r-cru --cells x=4,y=4,z=4 --phi 0",
     "trajectory experiments/mechanisms/motors/rotary-delta.toml --motion cycle "
-    "--motors experiments/mechanisms/motors/motors.toml",
+    "--motors experiments/mechanisms/motors/motors.toml --joint arm1.A",
     "simulate 3crr-r-cru --at x=0.2,y=0.17,z=0.22,phi=0.3 --forces rho3=8 --duration 10ms --step 1ms",
     "workspace 3crr-r-cru --cells x=8,y=8,z=8",
     "certify experiments/mechanisms/orthoglide.toml --gap 0.2",

@@ -20,7 +20,10 @@ constexpr double kInner[kStages][kStages] = {{5.0 / 36, 2.0 / 9 - kRoot / 15, 5.
 constexpr int kMostIterations = 60;
 
 const char* const kLeavesReach = "the mechanism leaves its reach";
-const char* const kOddOrLong = ": the mechanism is near a singularity, or the step is too long";
+std::string odd_or_long(const SimulationSetup& setup) {
+  return std::string(": the mechanism is near a singularity, or the step is too long") +
+         (setup.friction ? " for friction, which turns round within `slow_speed`" : "");
+}
 std::string at(double time) { return "at t = " + with_unit(time, "s") + " "; }
 
 double largest(const AxisVector<double>& x) {
@@ -99,7 +102,7 @@ class Integrator {
       if (change == 0 || (settled && change >= before)) return {};
       before = change;
     }
-    return at(from.time) + "the accelerations do not settle" + kOddOrLong;
+    return at(from.time) + "the accelerations do not settle" + odd_or_long(setup_);
   }
 
   /// What is left of the actuators' forces, and friction.
@@ -153,7 +156,7 @@ Simulation simulate(const SimulationSetup& setup, const AxisVector<double>& pose
     const double work = next.work_of_drives + next.work_of_friction + next.work_of_weight + next.work_of_wrench;
     const double imbalance = std::fabs(next.kinetic_energy - at_first - work);
     if (!(imbalance <= setup.tolerance * result.turned_over)) {
-      result.stopped = at(end) + "the energy is no longer conserved" + kOddOrLong;
+      result.stopped = at(end) + "the energy is no longer conserved" + odd_or_long(setup);
       return result;
     }
     result.imbalance = std::fmax(result.imbalance, imbalance);

@@ -23,6 +23,7 @@ struct TrajectoryPoint {
   std::optional<AxisVector<double>> forces, power;          ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
   std::optional<AxisVector<double>> torques, motor_speeds;  ///< of the motors, with drive trains [N m, rad/s]
   std::optional<ChainReport> chain;                         ///< of the auxiliary chain
+  std::optional<Reactions> reactions;                       ///< in the joints, where add_reactions() has looked
 };
 
 /// Over the samples that have the numbers; the rest is told by `infeasible`.

@@ -109,7 +109,7 @@ double ConfigValue::number(std::string_view unit, double lower, double upper) co
 
 double ConfigValue::positive(std::string_view unit) const {
   const double value = number(unit);
-  if (!(value > 0)) throw error("a number > 0 " + std::string(unit));
+  if (!(value > 0)) throw error("a number > " + with_unit(0, unit));
   return value;
 }
 

@@ -108,9 +108,21 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
       << '\n';
 }
 
+/// What is wrong with the masses of the default design; "": nothing.
+std::string why_no_masses(const Mechanism& mechanism) {
+  std::vector<double> nominal;
+  for (const Parameter& p : mechanism.info().parameters) nominal.push_back(p.nominal);
+  try {
+    mechanism.dynamics()->equations(std::span<const double>(nominal), mechanism.info().modes.front(), {}, {});
+  } catch (const std::domain_error& reason) {
+    return std::string("not with the default parameters: ") + reason.what();
+  }
+  return "";
+}
+
 void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   std::vector<std::vector<std::string>> can, cannot;
-  const auto tell = [&](bool has, const char* what, const char* how, const std::string& why) {
+  const auto tell = [&](bool has, const char* what, const std::string& how, const std::string& why) {
     (has ? can : cannot).push_back({what, has ? how : why});
   };
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
@@ -130,8 +142,9 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
        "there are no two links, of limbs with a radius or by [[link]], that could meet");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
   const Refusal no_forces = no_joint_forces(mechanism);
-  tell(!no_forces, "forces and coupling", "", no_forces ? no_forces->c_str() : "");
-  tell(mechanism.reactions(), "forces in the joints", "pkmopt dynamics --reactions", mechanism.why_no_reactions());
+  tell(!no_forces, "forces and coupling", no_forces ? "" : why_no_masses(mechanism), no_forces.value_or(""));
+  tell(mechanism.reactions(), "forces in the joints", "pkmopt dynamics and trajectory --reactions",
+       mechanism.why_no_reactions());
   out << titled("available", can);
   out << titled("not available, and why", cannot);
 }

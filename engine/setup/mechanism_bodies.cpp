@@ -35,7 +35,7 @@ Mass mass_of_section(const ConfigValue& section, const Term& length, const std::
   section.expect_table("a table { density = .., outer = .., inner = .. }").allow({"density", "outer", "inner"});
   const auto value = [&](const char* key, const char* unit, const char* expected) {
     return checked(
-        draft, draft.scope.of_design(section.at(key, expected), unit, what),
+        draft, draft.scope.positive(section.at(key, expected), unit, what),
         "the " + std::string(key == std::string("density") ? key : std::string(key) + " diameter") + " of " + what,
         unit, false);
   };
@@ -59,8 +59,8 @@ std::optional<Mass> mass_of_part(const ConfigValue& table, const LimbPart& part,
   if (const auto section = table.find(part.name + "_section"))
     return mass_of_section(*section, *part.length, what, draft);
   if (const auto per_length = table.find(part.name + "_mass_per_length"))
-    return Mass{draft.scope.of_design(*per_length, "kg/m", what) * *part.length, {}};
-  return Mass{draft.scope.of_design(*given, "kg", what), {}};
+    return Mass{draft.scope.positive(*per_length, "kg/m", what) * *part.length, {}};
+  return Mass{draft.scope.positive(*given, "kg", what, part.name == "slider"), {}};
 }
 
 Vector3 axis_of(const limbs::Rotation& R, std::size_t k) { return {R[0][k], R[1][k], R[2][k]}; }
@@ -93,7 +93,8 @@ std::array<Term, 3> read_inertia(const ConfigValue& value, const std::string& of
   const auto elements = value.elements(kExpected);
   if (elements.size() != 3) throw value.error(kExpected);
   const auto one = [&](std::size_t k) {
-    return checked(draft, draft.scope.of_design(elements[k], "kg m^2", of), "the inertia of " + of, "kg m^2", true);
+    return checked(draft, draft.scope.positive(elements[k], "kg m^2", of, true), "the inertia of " + of, "kg m^2",
+                   true);
   };
   return {one(0), one(1), one(2)};
 }
@@ -168,7 +169,7 @@ void add_part_body(const ConfigValue& table, const std::string& limb, const Limb
   Term inertia = given->inertia ? *given->inertia
                  : part.length  ? mass * *part.length * *part.length / 12
                                 : draft.zero();
-  if (const auto own = table.find(part.name + "_inertia")) inertia = draft.scope.of_design(*own, "kg m^2", what);
+  if (const auto own = table.find(part.name + "_inertia")) inertia = draft.scope.positive(*own, "kg m^2", what, true);
   checked(draft, inertia, "the inertia of " + what, "kg m^2", true);
   const graph::Node none = draft.zero().node(), across = inertia.node();
   if (part.length) {
@@ -190,10 +191,10 @@ void add_link_body(const ConfigValue& table, const std::string& name, const Vect
   const auto mass = table.find("mass"), inertia = table.find("inertia");
   if (inertia && !mass) throw inertia->refusal("the link has no mass: mass is missing");
   if (!mass) return;
-  const Term m = checked(draft, draft.scope.of_design(*mass, "kg", name), "the mass of " + name, "kg", false);
+  const Term m = checked(draft, draft.scope.positive(*mass, "kg", name), "the mass of " + name, "kg", false);
   DescribedBody body = body_at((from + to) * Term(draft.model.graph, 0.5), m, name);
   if (inertia) {
-    const Term I = draft.scope.of_design(*inertia, "kg m^2", name);
+    const Term I = draft.scope.positive(*inertia, "kg m^2", name, true);
     body.line_turns.push_back({nodes(to - from), checked(draft, I, "the inertia of " + name, "kg m^2", true).node()});
     body.inertia = {draft.zero().node(), I.node(), I.node()};
   }
@@ -206,7 +207,7 @@ void read_platform_body(const ConfigValue& platform, MechanismDraft& draft) {
   const Vector3 at = centre ? draft.scope.point(*centre, "centre") : draft.origin;
   draft.model.wrench_point = nodes(at);
   if (!mass) return;
-  const Term m = checked(draft, draft.scope.of_design(*mass, "kg", "mass"), "the mass of the platform", "kg", false);
+  const Term m = checked(draft, draft.scope.positive(*mass, "kg", "mass"), "the mass of the platform", "kg", false);
   DescribedBody body = body_at(at, m, "platform");
   if (inertia) {
     const std::array<Term, 3> values = read_inertia(*inertia, "the platform", draft);
@@ -229,7 +230,7 @@ void read_bodies(const ConfigValue& root, const std::vector<LimbPart>& links, Me
     table.allow({"name", "centre", "mass", "inertia", "rotation"});
     const std::string name = new_name(table, "body", draft.model.bodies, "the body's name");
     const Vector3 centre = read_point(table.at("centre", "a point"), name, draft);
-    const Term mass = checked(draft, draft.scope.of_design(table.at("mass", "the body's mass"), "kg", name),
+    const Term mass = checked(draft, draft.scope.positive(table.at("mass", "the body's mass"), "kg", name, true),
                               "the mass of " + name, "kg", true);
     DescribedBody body = body_at(centre, mass, name);
     const auto rotation = table.find("rotation");

@@ -174,8 +174,10 @@ class JointReader {
     const ConfigValue both = table.at("bodies", "the two bodies that it joins");
     const auto bodies = both.elements("two bodies");
     if (bodies.size() != 2) throw both.error("two bodies");
-    joints_.push_back(joint(name, read_point(table.at("at", "a point"), name, draft_), solid_called(bodies[0]),
-                            solid_called(bodies[1]), DescribedJoint::Couples::all_but_about,
+    const std::size_t first = solid_called(bodies[0]), second = solid_called(bodies[1]);
+    if (first == second) throw bodies[1].error("another body than the first");
+    joints_.push_back(joint(name, read_point(table.at("at", "a point"), name, draft_), first, second,
+                            DescribedJoint::Couples::all_but_about,
                             {draft_.scope.direction(table.at("about", "the axis [x, y, z] of the base"), name)}));
   }
 

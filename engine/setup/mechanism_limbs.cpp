@@ -64,7 +64,7 @@ class LimbReader {
   Term zero() const { return draft_.zero(); }
   Term number(double x) const { return {draft_.model.graph, x}; }
   Term length(const char* key, const char* expected) const {
-    return draft_.scope.of_design(table_.at(key, expected), "m", name_);
+    return draft_.scope.positive(table_.at(key, expected), "m", name_);
   }
 
   /// How each copy is turned in its frames.
@@ -181,8 +181,8 @@ class LimbReader {
       if (const auto rod = table_.find("rod")) throw rod->refusal("a limb has a `rod` or `links`, not both");
       const auto lengths = links->elements("two lengths [l_1, l_2]");
       if (lengths.size() != 2) throw links->error("two lengths [l_1, l_2]");
-      const Term l_1 = draft_.scope.of_design(lengths[0], "m", name_),
-                 l_2 = draft_.scope.of_design(lengths[1], "m", name_);
+      const Term l_1 = draft_.scope.positive(lengths[0], "m", name_),
+                 l_2 = draft_.scope.positive(lengths[1], "m", name_);
       Vector3 axis = e;
       if (const auto given = table_.find("axis")) axis = direction(*given, copy, false);
       form = "q = (B - A) . e, two links across e";
@@ -319,7 +319,7 @@ class LimbReader {
       throw pair->refusal("a pair of rods stays parallel where the platform does not turn, and this one does");
     const Vector3 side =
         is_crank ? *e_ : direction(pair->at("along", "the direction from one rod to the other"), last_copy_, false);
-    limb.beside = side * (draft_.scope.of_design(pair->at("spacing", "the rods' distance"), "m", limb.name) * 0.5);
+    limb.beside = side * (draft_.scope.positive(pair->at("spacing", "the rods' distance"), "m", limb.name) * 0.5);
   }
 
   /// Its bodies, as [[body]] names them.
@@ -365,7 +365,7 @@ class LimbReader {
   void add_links(const std::string& name, const Limb& limb, const limbs::Ends& at) {
     const auto radius = table_.find("radius");
     if (!radius) return;
-    const Term r = draft_.scope.of_design(*radius, "m", name);
+    const Term r = draft_.scope.positive(*radius, "m", name, true);
     const auto link = [&](const std::string& what, const std::string& part, const Vector3& from, const Vector3& to) {
       const std::string& group = part == kPlatformPart ? part : name;
       draft_.model.links.push_back({what + " of " + name, part, nodes(from), nodes(to), r.node(), {group}});

@@ -28,7 +28,7 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
     const std::string& name = table.at("name", "the link's name").text("the link's name");
     const Vector3 from = read_point(table.at("from", "a point"), name, draft),
                   to = read_point(table.at("to", "a point"), name, draft);
-    const Term radius = draft.scope.of_design(table.at("radius", "the link's radius"), "m", name);
+    const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
     std::string part = kFramePart;
     std::vector<std::string> in, copies;  // groups; `arm` is also each of its copies
     if (const auto group = table.find("group")) {

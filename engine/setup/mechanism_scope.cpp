@@ -49,6 +49,15 @@ Term MechanismScope::of_design(const ConfigValue& value, const std::string& unit
   return term;
 }
 
+Term MechanismScope::positive(const ConfigValue& value, const std::string& unit, const std::string& what,
+                              bool may_vanish) {
+  const Term term = of_design(value, unit, what);
+  const auto& node = model_.graph[term.node()];
+  if (node.is_number() && !(node.number > 0 || (may_vanish && node.number == 0)))
+    throw value.error((may_vanish ? "a number >= " : "a number > ") + with_unit(0, unit));
+  return term;
+}
+
 namespace {
 
 constexpr const char* kPoint = "three numbers or formulas [x, y, z]";

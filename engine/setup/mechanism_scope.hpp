@@ -30,6 +30,9 @@ class MechanismScope {
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// The same of parameters alone.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
+  /// The same, of what has to be positive: refuses a plain number that is not. Formulas may be so for some designs.
+  limbs::Term positive(const ConfigValue& value, const std::string& unit, const std::string& what,
+                       bool may_vanish = false);
   /// Three formulas, [x, y, z].
   limbs::Vector3 point(const ConfigValue& value, const std::string& what);
   /// The same of parameters alone.

@@ -3,14 +3,14 @@
 #include "engine/dynamics/coupling.hpp"
 #include "engine/setup/assignments.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/joint_forces.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
 
-struct DynamicsArguments : DesignArguments, MotionArguments {
+struct DynamicsArguments : DesignArguments, MotionArguments, ReactionArguments {
   std::vector<std::string> wrench;
-  bool reactions = false;
 };
 
 /// Elements of an inertia between joints.
@@ -58,46 +58,13 @@ std::string tell_forces(const MechanismInfo& info, const PoseDynamics<double>& d
   return "";
 }
 
-void tell_reactions(const Reactions& reactions, Printout& out) {
-  Json joints = Json::object();
-  std::vector<Row> rows = {{"", "on", "Fx", "Fy", "Fz", "Mx", "My", "Mz"}};
-  for (const JointReaction& joint : reactions.joints) {
-    Row row = {joint.name, joint.on};
-    const auto list = [&row](const std::array<std::optional<double>, 3>& components) {
-      Json json = Json::array();
-      for (const auto& component : components) {
-        json.push_back(json_or_null(component));
-        row.push_back(component ? number(*component) : "undetermined");
-      }
-      return json;
-    };
-    const Json force = list(joint.force), couple = list(joint.couple);
-    joints[joint.name] = {{"on", joint.on}, {"force", force}, {"couple", couple}};
-    rows.push_back(row);
-  }
-  out.json["reactions"] = {{"joints", joints},
-                           {"reason", text_or_null(reactions.reason)},
-                           {"equations", reactions.equations},
-                           {"unknowns", reactions.unknowns},
-                           {"rank", reactions.rank}};
-  if (reactions.reason.empty())
-    out.section("forces (N) and couples (N m) in the joints: " + std::to_string(reactions.equations) + " equations, " +
-                    std::to_string(reactions.unknowns) + " unknowns, rank " + std::to_string(reactions.rank),
-                rows);
-  else
-    out.text += "\nno forces in the joints: " + reactions.reason + '\n';
-}
-
 std::string dynamics(const Target& target, const DynamicsArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
   const Mechanism& mechanism = *target.mechanism;
   const Dynamics* const equations = mechanism.dynamics();
   if (const Refusal reason = no_joint_forces(mechanism))
     throw ConfigError({"", 0, "dynamics"}, *reason + ", so no dynamics");
-  if (arguments.reactions && !mechanism.reactions())
-    throw ConfigError({"", 0, "--reactions"},
-                      "mechanism " + info.name + " has no model of the forces in its joints" +
-                          (mechanism.why_no_reactions().empty() ? "" : ": " + mechanism.why_no_reactions()));
+  expect_reactions(mechanism, arguments);
   const std::string mode = known_mode(info, arguments);
   const MotionSample at = parse_motion(mechanism, arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
@@ -114,8 +81,11 @@ std::string dynamics(const Target& target, const DynamicsArguments& arguments, P
     PoseDynamics<double> d;
     equations->equations(std::span<const double>(target.parameters), mode, {&state, 1}, {&d, 1});
     no_forces = tell_forces(info, d, at, wrench, out);
-    if (arguments.reactions)
-      tell_reactions(mechanism.reactions()->find(target.parameters, mode, state, at.acceleration, wrench), out);
+    if (arguments.any()) {
+      Reactions found = mechanism.reactions()->find(target.parameters, mode, state, at.acceleration, wrench);
+      keep_joints(arguments, found);
+      tell_reactions(found, out);
+    }
   }
   return report.assembles ? no_forces : no_assembly(mode, report);
 }
@@ -135,7 +105,7 @@ void add_dynamics(CLI::App& app, Session& session) {
   add_list_option(command, "--wrench", arguments.wrench,
                   "Fx, Fy, Fz, Mx, My, Mz on the platform at its centre of mass; 0 where not given");
   add_mode_options(command, arguments);
-  command.add_flag("--reactions", arguments.reactions, "Also the forces and couples in every joint");
+  add_reaction_options(command, arguments);
 }
 
 }  // namespace pkm

@@ -4,6 +4,7 @@
 #include "experiments/app/axes.hpp"
 #include "experiments/app/cad.hpp"
 #include "experiments/app/urdf.hpp"
+#include "experiments/app/vtp.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {
@@ -28,15 +29,17 @@ void add_link_files(CLI::App& command, LinkFiles& files) {
   add_option(command, "--stl FILE", files.stl, "Write the links' surfaces to this file, as binary STL in m");
   add_option(command, "--dxf FILE", files.dxf, "Write the links' axes to this file, as DXF in m");
   add_option(command, "--urdf FILE", files.urdf, "Write the links as a tree with fixed joints to this file, as URDF");
-  add_output_by_ending(command, {{".dxf", &files.dxf}, {".stl", &files.stl}, {".urdf", &files.urdf}});
+  add_option(command, "--vtk FILE", files.vtk, "Write the links' surfaces to this file, as VTK's PolyData in m (.vtp)");
+  add_output_by_ending(command,
+                       {{".dxf", &files.dxf}, {".stl", &files.stl}, {".urdf", &files.urdf}, {".vtp", &files.vtk}});
   command.add_flag("--force", files.force, "Overwrite files that exist");
 }
 
 void write_links(const Target& target, const std::string& mode, const Pose<double>& pose, const LinkFiles& files,
                  Printout& out) {
   const Existing existing = if_forced(files.force);
-  check_outputs({files.stl, files.dxf, files.urdf}, target.files, existing);
-  if (files.stl.empty() && files.dxf.empty() && files.urdf.empty()) return;
+  check_outputs({files.stl, files.dxf, files.urdf, files.vtk}, target.files, existing);
+  if (files.stl.empty() && files.dxf.empty() && files.urdf.empty() && files.vtk.empty()) return;
   const MechanismInfo& info = target.info();
   const Links& mechanism = needed(target.mechanism->links(), "a file of links", "links", info);
   const std::vector<PlacedLink> links = mechanism.place(target.parameters, pose, mode);
@@ -52,6 +55,7 @@ void write_links(const Target& target, const std::string& mode, const Pose<doubl
   if (!files.urdf.empty())
     write(files.urdf, links_urdf(links, moved_links(mechanism, target, mode, pose), info.name,
                                  title + ", at " + axes_text(info.coordinates, pose)));
+  if (!files.vtk.empty()) write(files.vtk, links_vtp(links, target.limits.obstacles, title));
 }
 
 }  // namespace pkm

@@ -8,10 +8,10 @@
 namespace pkm {
 
 struct LinkFiles {
-  std::string stl, dxf, urdf;
+  std::string stl, dxf, urdf, vtk;
   bool force = false;
 };
-/// Declares --stl, --dxf, --urdf, -o and --force.
+/// Declares --stl, --dxf, --urdf, --vtk, -o and --force.
 void add_link_files(CLI::App& command, LinkFiles& files);
 
 /// Writes those that are asked for; none where the pose does not assemble. Throws ConfigError.

@@ -164,6 +164,11 @@ double parse_gap(const std::string& text, const std::string& option) {
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
   if (target.study)
     if (const NamedMotion* known = find_named(target.study->motions, name)) return known->motion;
+  if (target.study && !target.study->motions.empty() && !may_be_file(name)) {
+    const std::vector<std::string> known = names_of(target.study->motions);
+    throw ConfigError({"", 0, "--motion"}, "'" + name + "'", "a motion in TOML, or one of the study's: " + join(known),
+                      nearest_name(name, known));
+  }
   return load_motion_toml(name, motion_names(*target.mechanism));
 }
 

@@ -1,21 +1,20 @@
 // `pkmopt trajectory`: a mechanism along a motion.
 
-#include <numeric>
+#include <algorithm>
 
 #include "engine/core/catalogue.hpp"
-#include "engine/core/unit.hpp"
-#include "engine/mechanism/trajectory.hpp"
-#include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/joint_forces.hpp"
+#include "experiments/app/motion_samples.hpp"
 #include "experiments/app/motor_fits.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
 
-struct TrajectoryArguments : DesignArguments, ModeArguments, TableOutput {
+struct TrajectoryArguments : DesignArguments, ModeArguments, ReactionArguments, TableOutput {
   std::string motion;
   std::size_t samples = 201;
   std::string zeta;
@@ -26,103 +25,6 @@ struct TrajectoryArguments : DesignArguments, ModeArguments, TableOutput {
 
 using Values = std::optional<AxisVector<double>>;
 
-/// The auxiliary chain at a sample, NaN for what does not exist; empty where there is no chain.
-NamedValues chain_values(const AuxiliaryChain* chain, const TrajectoryPoint& p) {
-  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-  NamedValues values;
-  if (!p.chain) return values;
-  const Turning &in = p.motion.input, out = p.chain->turns ? p.chain->output : Turning{kAbsent, kAbsent, kAbsent};
-  const auto add = [&values](const std::string& name, const Turning& turning) {
-    values.emplace_back(name, turning.angle);
-    values.emplace_back(name + "_speed", turning.speed);
-    values.emplace_back(name + "_acceleration", turning.acceleration);
-  };
-  add(chain->input(), in);
-  add(chain->output(), out);
-  values.insert(values.end(), p.chain->angles.begin(), p.chain->angles.end());
-  const auto add_axes = [&](const std::string& name, const Vector<double, 3>& vector) {
-    for (std::size_t k = 0; k < 3; ++k)
-      values.emplace_back(name + "_" + "xyz"[k], p.chain->turns ? vector[k] : kAbsent);
-  };
-  add_axes("omega", p.chain->spin.velocity);
-  add_axes("alpha", p.chain->spin.acceleration);
-  return values;
-}
-
-CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
-  const MechanismInfo& info = mechanism.info();
-  std::vector<std::string> columns = {"time"};
-  const auto add_names = [&](const Axes& axes, const std::string& suffix) {
-    for (const AxisInfo& axis : axes) columns.push_back(axis.name + suffix);
-  };
-  for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.coordinates, suffix);
-  for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.joints, suffix);
-  for (const char* name : {"conditioning", "feasible", "reason"}) columns.emplace_back(name);
-  if (mechanism.dynamics()) {
-    for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
-    columns.emplace_back("power");
-  }
-  if (mechanism.drive_trains())
-    for (const char* suffix : {"_motor_torque", "_motor_speed"}) add_names(info.joints, suffix);
-  const auto with_chain = std::ranges::find_if(trajectory.points, [](const auto& p) { return p.chain.has_value(); });
-  NamedValues chain;
-  if (with_chain != trajectory.points.end()) chain = chain_values(mechanism.chain(), *with_chain);
-  for (const auto& [name, value] : chain) columns.push_back(name);
-  CsvTable table(columns);
-  const auto add = [&](const Values& values) { values ? table.add(*values) : table.add_empty(info.joints.size()); };
-  for (const TrajectoryPoint& p : trajectory.points) {
-    table.begin_row();
-    table.add(p.motion.time);
-    for (const auto* values : {&p.motion.pose, &p.motion.velocity, &p.motion.acceleration}) table.add(*values);
-    for (const auto* values : {&p.joints, &p.speeds, &p.accelerations}) add(*values);
-    p.conditioning ? table.add(*p.conditioning) : table.add_empty(1);
-    table.add(p.feasible ? 1.0 : 0.0);
-    table.add(p.reason);
-    if (mechanism.dynamics()) {
-      add(p.forces);
-      add(p.power);
-      p.power ? table.add(std::accumulate(p.power->begin() + 1, p.power->end(), (*p.power)[0])) : table.add_empty(1);
-    }
-    if (mechanism.drive_trains()) {
-      add(p.torques);
-      add(p.motor_speeds);
-    }
-    for (const auto& [name, value] : chain_values(mechanism.chain(), p)) table.add(value);
-    if (!p.chain) table.add_empty(chain.size());
-  }
-  return table;
-}
-
-Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
-  const MechanismInfo& info = mechanism.info();
-  Json json = {{"time", p.motion.time},
-               {"pose", axes_json(info.coordinates, p.motion.pose)},
-               {"velocity", axes_json(info.coordinates, p.motion.velocity)},
-               {"acceleration", axes_json(info.coordinates, p.motion.acceleration)},
-               {"joints", axes_json(info.joints, p.joints)},
-               {"speeds", axes_json(info.joints, p.speeds)},
-               {"accelerations", axes_json(info.joints, p.accelerations)},
-               {"conditioning", json_or_null(p.conditioning)},
-               {"feasible", p.feasible},
-               {"reason", text_or_null(p.reason)}};
-  if (mechanism.dynamics()) {
-    json["forces"] = axes_json(info.joints, p.forces);
-    json["power"] = axes_json(info.joints, p.power);
-  }
-  if (mechanism.drive_trains()) {
-    json["motor_torque"] = axes_json(info.joints, p.torques);
-    json["motor_speed"] = axes_json(info.joints, p.motor_speeds);
-  }
-  if (p.chain) json["chain"] = values_by_name(chain_values(mechanism.chain(), p));
-  return json;
-}
-
-/// " at t = 0.5 s (sample 51)", counted from 1.
-std::string place_of(const Trajectory& trajectory, std::vector<TrajectoryPoint>::const_iterator point) {
-  return " at t = " + with_unit(point->motion.time, "s") + " (sample " +
-         std::to_string(point - trajectory.points.begin() + 1) + ")";
-}
-
 /// Why peaks of the summary are absent; "" where they are all there.
 std::string why_absent(const Mechanism& mechanism, const Trajectory& trajectory) {
   const std::string name = "\nmechanism " + mechanism.info().name + " has no ";
@@ -131,7 +33,7 @@ std::string why_absent(const Mechanism& mechanism, const Trajectory& trajectory)
            (mechanism.velocities() ? "" : name.substr(1) + "influence coefficients: no speeds\n");
   if (trajectory.summary.has_forces) return "";
   const auto first = std::ranges::find_if(trajectory.points, [](const auto& p) { return !p.forces; });
-  return "\npeaks and energies of the forces are not known: the motion has none" + place_of(trajectory, first) + ": " +
+  return "\npeaks and energies of the forces are not known: the motion has none" + place_of(trajectory, *first) + ": " +
          first->reason + '\n';
 }
 
@@ -189,12 +91,17 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
   if (!arguments.motors.empty() && !mechanism.drive_trains())
     throw ConfigError({"", 0, "--motors"}, "no drive trains", "a study with [[drive_train]]");
+  expect_reactions(mechanism, arguments);
   if (!arguments.zeta.empty() && !mechanism.chain())
     throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");
   const double zeta = arguments.zeta.empty() ? 0 : parse_number(arguments.zeta, "--zeta", "rad");
   const auto motion = find_motion(target, arguments.motion);
-  const Trajectory found =
+  Trajectory found =
       follow(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench, zeta);
+  if (arguments.any()) {
+    add_reactions(mechanism, target.parameters, mode, wrench, found);
+    for (TrajectoryPoint& point : found.points) keep_joints(arguments, *point.reactions);
+  }
   if (!arguments.csv.empty()) write_table(arguments, table_of(mechanism, found));
 
   const std::string infeasible = std::to_string(found.summary.infeasible), all = std::to_string(found.points.size());
@@ -206,13 +113,14 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   out.head.push_back({"samples", all});
   out.head.push_back({"feasible", found.summary.infeasible == 0 ? "yes" : "not at " + infeasible + " samples"});
   tell_summary(mechanism, found, out);
+  if (arguments.any()) tell_reactions(found, out);
   if (!arguments.motors.empty() && found.summary.has_forces) tell_motors(target, mode, found, arguments.motors, out);
   out.json["samples"] = Json::array();
   for (const auto& point : found.points)
     if (out.for_programs) out.json["samples"].push_back(sample_json(mechanism, point));
   const auto first = std::ranges::find(found.points, false, &TrajectoryPoint::feasible);
   if (first == found.points.end() || arguments.allow_infeasible) return "";
-  return infeasible + " of " + all + " samples are infeasible, the first" + place_of(found, first) + ": " +
+  return infeasible + " of " + all + " samples are infeasible, the first" + place_of(found, *first) + ": " +
          first->reason + " (--allow-infeasible takes them)";
 }
 
@@ -236,6 +144,7 @@ void add_trajectory(CLI::App& app, Session& session) {
   add_option(command, "--zeta ANGLE", arguments.zeta, "Phase of an auxiliary chain's forks; default 0");
   add_option(command, "--motors MOTORS.toml", arguments.motors,
              "A table of motors: which of them do the motion, with the study's drive trains, and their reserve");
+  add_reaction_options(command, arguments);
   add_table_output(command, arguments, "Write all samples to this file, numbers in SI");
   command.add_flag("--allow-infeasible", arguments.allow_infeasible, "Exit code 0 also with infeasible samples");
 }

@@ -120,6 +120,15 @@ TEST_F(Obstacle, CutsTheWorkspaceOfAStudyThatGoesOnWithItAlone) {
   ASSERT_EQ(run({"report", "s.h5"}), 0) << output_;
 }
 
+TEST_F(Obstacle, OfTheExampleIsWhatItsBestDesignKeepsClearOf) {
+  const std::string example = PKM_EXPERIMENTS "/mechanisms/obstacles/rotary-delta.toml";
+  ASSERT_EQ(run({"run", example, "-o", "s.h5", "--quiet"}), 0) << output_;
+  EXPECT_GT(read("s.h5").final->best->objectives[0], 0.06);
+  ASSERT_EQ(run({"trajectory", "--from", "s.h5", "--motion", "cycle"}), 0) << output_;
+  EXPECT_EQ(run({"trajectory", example, "--set", "l_a=0.4,l_b=0.775", "--motion", "cycle"}), 1);
+  EXPECT_THAT(output_, HasSubstr("clearance_min is broken: rod of arm3 and wall overlap"));
+}
+
 TEST_F(Obstacle, IsRefusedInASentence) {
   const auto changed = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);

@@ -1,5 +1,6 @@
 #include "engine/mechanisms/described/dynamics.hpp"
 
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 
@@ -61,8 +62,10 @@ void check_masses(const Evaluation& e, std::span<const S> parameters) {
     Outputs next(e.masses, [registers](std::uint32_t at_register) { return registers[at_register]; });
     for (const MassCheck& check : e.model.masses) {
       const double value = value_of(next());
-      if (value > 0 || (check.may_vanish && value == 0)) continue;
-      throw std::domain_error(check.name + " is not positive: " + with_unit(value, check.unit));
+      const bool finite = std::isfinite(value);
+      if (finite && (value > 0 || (check.may_vanish && value == 0))) continue;
+      throw std::domain_error(check.name + " is not " + (finite ? "positive" : "finite") + ": " +
+                              with_unit(value, check.unit));
     }
   });
 }

@@ -270,5 +270,22 @@ TEST(DescribedReactions, FilesThatDoNotSayEnoughGetASentence) {
               HasSubstr("ends on 'platfrom', which is neither the platform nor a body; did you mean 'platform'?"));
 }
 
+TEST(DescribedReactions, JointsThatCannotBeAreRefused) {
+  const auto message = [](const std::string& from, const std::string& to) {
+    try {
+      rewritten("rotary-delta", from, to);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("it is accepted");
+  };
+  EXPECT_THAT(message("\\[\\[design\\]\\]",
+                      "[[joint]]\nname = \"j\"\nbodies = [\"platform\", \"platform\"]\nat = [\"x\", \"y\", \"z\"]\n"
+                      "about = [0, 0, 1]\n[[design]]"),
+              HasSubstr("joint[1].bodies[2]: found \"platform\"; expected another body than the first"));
+  EXPECT_THAT(message("spacing = \"60 mm\"", "spacing = 0"),
+              HasSubstr("limb[1].pair.spacing: found 0; expected a number > 0 m"));
+}
+
 }  // namespace
 }  // namespace pkm

@@ -1,0 +1,129 @@
+#include "experiments/app/motion_samples.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "engine/core/unit.hpp"
+#include "experiments/app/axes.hpp"
+#include "experiments/app/joint_forces.hpp"
+
+namespace pkm {
+namespace {
+
+/// The auxiliary chain at a sample, NaN for what does not exist; empty where there is no chain.
+NamedValues chain_values(const AuxiliaryChain* chain, const TrajectoryPoint& p) {
+  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+  NamedValues values;
+  if (!p.chain) return values;
+  const Turning &in = p.motion.input, out = p.chain->turns ? p.chain->output : Turning{kAbsent, kAbsent, kAbsent};
+  const auto add = [&values](const std::string& name, const Turning& turning) {
+    values.emplace_back(name, turning.angle);
+    values.emplace_back(name + "_speed", turning.speed);
+    values.emplace_back(name + "_acceleration", turning.acceleration);
+  };
+  add(chain->input(), in);
+  add(chain->output(), out);
+  values.insert(values.end(), p.chain->angles.begin(), p.chain->angles.end());
+  const auto add_axes = [&](const std::string& name, const Vector<double, 3>& vector) {
+    for (std::size_t k = 0; k < 3; ++k)
+      values.emplace_back(name + "_" + "xyz"[k], p.chain->turns ? vector[k] : kAbsent);
+  };
+  add_axes("omega", p.chain->spin.velocity);
+  add_axes("alpha", p.chain->spin.acceleration);
+  return values;
+}
+
+bool has_joint_forces(const TrajectoryPoint& p) { return p.reactions && p.reactions->reason.empty(); }
+
+}  // namespace
+
+CsvTable table_of(const Mechanism& mechanism, const Trajectory& trajectory) {
+  const MechanismInfo& info = mechanism.info();
+  std::vector<std::string> columns = {"time"};
+  const auto add_names = [&](const Axes& axes, const std::string& suffix) {
+    for (const AxisInfo& axis : axes) columns.push_back(axis.name + suffix);
+  };
+  for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.coordinates, suffix);
+  for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.joints, suffix);
+  for (const char* name : {"conditioning", "feasible", "reason"}) columns.emplace_back(name);
+  if (mechanism.dynamics()) {
+    for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
+    columns.emplace_back("power");
+  }
+  if (mechanism.drive_trains())
+    for (const char* suffix : {"_motor_torque", "_motor_speed"}) add_names(info.joints, suffix);
+  const auto with_chain = std::ranges::find_if(trajectory.points, [](const auto& p) { return p.chain.has_value(); });
+  NamedValues chain;
+  if (with_chain != trajectory.points.end()) chain = chain_values(mechanism.chain(), *with_chain);
+  for (const auto& [name, value] : chain) columns.push_back(name);
+  const auto with_joints = std::ranges::find_if(trajectory.points, has_joint_forces);
+  const auto carrying =
+      with_joints == trajectory.points.end() ? std::vector<JointReaction>() : with_joints->reactions->joints;
+  for (const JointReaction& joint : carrying)
+    for (const char* component : {"_Fx", "_Fy", "_Fz", "_Mx", "_My", "_Mz"}) columns.push_back(joint.name + component);
+  CsvTable table(columns);
+  const auto add = [&](const std::optional<AxisVector<double>>& values) {
+    values ? table.add(*values) : table.add_empty(info.joints.size());
+  };
+  for (const TrajectoryPoint& p : trajectory.points) {
+    table.begin_row();
+    table.add(p.motion.time);
+    for (const auto* values : {&p.motion.pose, &p.motion.velocity, &p.motion.acceleration}) table.add(*values);
+    for (const auto* values : {&p.joints, &p.speeds, &p.accelerations}) add(*values);
+    p.conditioning ? table.add(*p.conditioning) : table.add_empty(1);
+    table.add(p.feasible ? 1.0 : 0.0);
+    table.add(p.reason);
+    if (mechanism.dynamics()) {
+      add(p.forces);
+      add(p.power);
+      p.power ? table.add(std::accumulate(p.power->begin() + 1, p.power->end(), (*p.power)[0])) : table.add_empty(1);
+    }
+    if (mechanism.drive_trains()) {
+      add(p.torques);
+      add(p.motor_speeds);
+    }
+    for (const auto& [name, value] : chain_values(mechanism.chain(), p)) table.add(value);
+    if (!p.chain) table.add_empty(chain.size());
+    if (!has_joint_forces(p)) {
+      table.add_empty(6 * carrying.size());
+      continue;
+    }
+    for (const JointReaction& joint : p.reactions->joints)
+      for (const auto* const components : {&joint.force, &joint.couple})
+        for (const auto& component : *components) component ? table.add(*component) : table.add_empty(1);
+  }
+  return table;
+}
+
+Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
+  const MechanismInfo& info = mechanism.info();
+  Json json = {{"time", p.motion.time},
+               {"pose", axes_json(info.coordinates, p.motion.pose)},
+               {"velocity", axes_json(info.coordinates, p.motion.velocity)},
+               {"acceleration", axes_json(info.coordinates, p.motion.acceleration)},
+               {"joints", axes_json(info.joints, p.joints)},
+               {"speeds", axes_json(info.joints, p.speeds)},
+               {"accelerations", axes_json(info.joints, p.accelerations)},
+               {"conditioning", json_or_null(p.conditioning)},
+               {"feasible", p.feasible},
+               {"reason", text_or_null(p.reason)}};
+  if (mechanism.dynamics()) {
+    json["forces"] = axes_json(info.joints, p.forces);
+    json["power"] = axes_json(info.joints, p.power);
+  }
+  if (mechanism.drive_trains()) {
+    json["motor_torque"] = axes_json(info.joints, p.torques);
+    json["motor_speed"] = axes_json(info.joints, p.motor_speeds);
+  }
+  if (p.reactions) json["reactions"] = has_joint_forces(p) ? reactions_json(*p.reactions) : Json();
+  if (p.chain) json["chain"] = values_by_name(chain_values(mechanism.chain(), p));
+  return json;
+}
+
+std::string place_of(const Trajectory& trajectory, const TrajectoryPoint& point) {
+  return " at t = " + with_unit(point.motion.time, "s") + " (sample " +
+         std::to_string(&point - trajectory.points.data() + 1) + ")";
+}
+
+}  // namespace pkm

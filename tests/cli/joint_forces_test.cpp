@@ -1,0 +1,132 @@
+// --reactions and --joint of `pkmopt trajectory` and `pkmopt dynamics`: what joints carry, and what is refused.
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+const std::string kFiles = PKM_EXPERIMENTS "/mechanisms/";
+const std::vector<std::string> kCycle = {"trajectory", kFiles + "motors/rotary-delta.toml", "--motion", "cycle"};
+
+ProgramResult along(std::vector<std::string> words, const std::vector<std::string>& more, const std::string& folder) {
+  words.insert(words.end(), more.begin(), more.end());
+  return pkmopt(words, folder);
+}
+
+double length(const json& vector) {
+  double square = 0;
+  for (const json& component : vector) square += component.get<double>() * component.get<double>();
+  return std::sqrt(square);
+}
+
+TEST(CliJointForces, TheSummaryIsThatOfTheSamplesAndThoseOfSingleStates) {
+  const StudyFolder folder;
+  const json found = along(kCycle, {"--reactions", "--samples", "33", "--json"}, folder.path()).json();
+  const json& told = found["summary"]["reactions"];
+  EXPECT_EQ(told.size(), 3 * 5u) << "a crank's pivot and both ends of two rods, of each arm";
+  for (const auto& [name, joint] : told.items()) {
+    double peak = 0, time = 0, square = 0;
+    for (const json& sample : found["samples"]) {
+      const double force = length(sample["reactions"][name]["force"]);
+      square += force * force / 33;
+      if (force <= peak * (1 + 1e-12)) continue;  // the way back has the same
+      peak = force;
+      time = sample["time"];
+    }
+    EXPECT_NEAR(joint["peak_force"].get<double>(), peak, 2e-12 * peak) << name;
+    EXPECT_NEAR(joint["rms_force"].get<double>(), std::sqrt(square), 1e-12 * peak) << name;
+    EXPECT_EQ(joint["peak_force_time"], time) << name;
+  }
+  const json& sample = found["samples"][10];
+  const auto list = [&sample](const char* key) {
+    std::string text;
+    for (const auto& [name, value] : sample[key].items()) text += (text.empty() ? "" : ",") + name + "=" + value.dump();
+    return text;
+  };
+  const json single =
+      pkmopt({"dynamics", kFiles + "rotary-delta.toml", "--at=" + list("pose"), "--velocity=" + list("velocity"),
+              "--acceleration=" + list("acceleration"), "--joint=arm1.A,arm2.C 1", "--json"})
+          .json()["reactions"]["joints"];
+  ASSERT_EQ(single.size(), 2u);
+  for (const auto& [name, joint] : single.items())
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(joint["force"][k].get<double>(), sample["reactions"][name]["force"][k].get<double>(), 1e-9);
+}
+
+TEST(CliJointForces, OfSomeJointsAsTextAndAsATable) {
+  const StudyFolder folder;
+  const auto told =
+      along(kCycle, {"--joint", "arm1.A", "--joint", "arm3.B 2", "--samples", "5", "-o", "f.csv"}, folder.path());
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_THAT(told.out, HasSubstr("\nsizes of the forces (N) and couples (N m) in the joints\n"));
+  EXPECT_THAT(told.out, HasSubstr("\n  arm1.A    crank of arm1  "));
+  EXPECT_THAT(told.out, ::testing::Not(HasSubstr("arm2.A")));
+  std::ifstream table(folder.path() + "/f.csv");
+  std::string line;
+  for (int row = 0; std::getline(table, line); ++row) {
+    if (row == 0)
+      EXPECT_THAT(line, ::testing::EndsWith(",arm1.A_Fx,arm1.A_Fy,arm1.A_Fz,arm1.A_Mx,arm1.A_My,arm1.A_Mz,arm3.B 2_Fx,"
+                                            "arm3.B 2_Fy,arm3.B 2_Fz,arm3.B 2_Mx,arm3.B 2_My,arm3.B 2_Mz"));
+    else
+      EXPECT_THAT(line, ::testing::EndsWith(",0,0,0")) << "a ball joint carries no couple";
+  }
+}
+
+TEST(CliJointForces, WhatIsNotDeterminedIsSaid) {
+  const StudyFolder folder;
+  folder.write("m.toml", "type = \"oscillation\"\nx = 0\ny = 0\nphi = 0.2\namplitude = 0.01\nperiod = 1\n");
+  const std::vector<std::string> words = {"trajectory", kFiles + "3-rrr.toml", "--motion", "m.toml", "--samples", "5"};
+  const auto told = along(words, {"--reactions", "-o", "f.csv"}, folder.path());
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_THAT(told.out, HasSubstr(" without z  "));
+  EXPECT_THAT(told.out, HasSubstr(" without x, y  "));
+  const json found = along(words, {"--reactions", "--json"}, folder.path()).json();
+  for (const auto& [name, joint] : found["summary"]["reactions"].items())
+    EXPECT_EQ(joint["undetermined_force"], json({"z"})) << name;
+  EXPECT_TRUE(found["samples"][0]["reactions"].begin().value()["force"][2].is_null());
+}
+
+TEST(CliJointForces, AMotionThatLeavesTheReachHasNone) {
+  const StudyFolder folder;
+  folder.write("m.toml",
+               "type = \"points\"\ntime = 1\npoints = [{ x = 0.2, y = 0.17, z = 0.22, phi = 0 }, { z = 0.6 }]\n");
+  const std::vector<std::string> words = {"trajectory", "3crr-r-cru", "--motion",   "m.toml",
+                                          "--samples",  "11",         "--reactions"};
+  const auto told = along(words, {"-o", "f.csv"}, folder.path());
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_THAT(told.out, HasSubstr("\nno forces in the joints: the motion has none at t = 0."));
+  const json found = along(words, {"--json", "--allow-infeasible"}, folder.path()).json();
+  EXPECT_TRUE(found["summary"]["reactions"].is_null());
+  EXPECT_TRUE(found["samples"].front()["reactions"].is_object());
+  EXPECT_TRUE(found["samples"].back()["reactions"].is_null());
+}
+
+TEST(CliJointForces, WhatThereIsNotIsRefused) {
+  const StudyFolder folder;
+  const auto unknown = along(kCycle, {"--joint", "arm1.D"}, folder.path());
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, ::testing::StartsWith("pkmopt: --joint: found the unknown name 'arm1.D'; expected one of "
+                                                 "arm1.A, arm1.C 1, arm1.B 1, arm1.C 2, arm1.B 2, arm2.A, "));
+  EXPECT_THAT(unknown.err, HasSubstr("; did you mean 'arm1.A'?"));
+  folder.write("m.toml",
+               "type = \"oscillation\"\nx = 0.25\ny = 0.85\nz = -0.8\ntheta = 0\namplitude = 0.01\nperiod = 1\n");
+  for (const auto& mechanism : {std::string("4ppa-2par"), kFiles + "4ppa-2par.toml"}) {
+    const auto trajectory = pkmopt({"trajectory", mechanism, "--motion", "m.toml", "--reactions"}, folder.path());
+    const auto single = pkmopt({"dynamics", mechanism, "--at", "x=0.25,y=0.85,z=-0.8,theta=0", "--reactions"});
+    EXPECT_EQ(trajectory.exit_code, 2);
+    EXPECT_EQ(trajectory.err, single.err);
+    EXPECT_THAT(single.err, HasSubstr("has no model of the forces in its joints"));
+  }
+}
+
+}  // namespace
+}  // namespace pkm::testing
