@@ -24,6 +24,14 @@ struct Break {
   bool root_above = false;
 };
 
+/// Where f(p, t(p)) = 0 with its derivatives by the design p, those of an implicit function: t' = -f' / (df/dt).
+/// @param f     there; its value does not count
+/// @param by_t  df/dt; where it is 0 nothing says how t moves
+template <class S>
+S moving_zero(double t, const S& f, double by_t) {
+  return std::fabs(by_t) > 0 ? S(t - (f - value_of(f)) / by_t) : S(t);
+}
+
 /// Fills `pieces` with those parts between the first and the last break on which sections are not empty.
 /// @param breaks      both ends of the outer coordinate and known breaks, in order
 /// @param near        breaks nearer than this are one

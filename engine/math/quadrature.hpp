@@ -48,6 +48,20 @@ struct GaussRule {
 /// the same on every processor.
 GaussRule gauss_legendre(int n);
 
+/// Calls visit(point, d point / d t, weight of the rule) at the nodes of a piece.
+template <class S, class Visit>
+void visit_nodes(const Piece<S>& piece, const GaussRule& rule, const Visit& visit) {
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const auto [point, jacobian] = map_node(piece, rule.node[i]);
+    visit(point, jacobian, rule.weight[i]);
+  }
+}
+/// The same for several.
+template <class S, class Visit>
+void visit_nodes(const std::vector<Piece<S>>& pieces, const GaussRule& rule, const Visit& visit) {
+  for (const Piece<S>& piece : pieces) visit_nodes(piece, rule, visit);
+}
+
 /// Rules on [0, 1], each of which holds the nodes of the one before it: where the first is enough, the others' nodes
 /// are not asked for.
 struct NestedRule {

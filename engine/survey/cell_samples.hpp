@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <vector>
 
+#include "engine/mechanism/plan.hpp"
 #include "engine/mechanism/survey.hpp"
 
 namespace pkm {
@@ -18,6 +21,33 @@ struct HeldCells {
 
   double centre(std::int64_t cell) const { return lower + (static_cast<double>(cell) + 0.5) * step; }
 };
+
+/// Those of a plan.
+/// @param coordinates  that it holds
+/// @param range_of     the range of a coordinate that its cells divide
+/// @param all          overwritten
+template <class RangeOf>
+void find_held_cells(std::span<const int> coordinates, const SurveyPlan& plan, const RangeOf& range_of,
+                     std::vector<HeldCells>& all) {
+  all.clear();
+  for (const int coordinate : coordinates) {
+    const HeldCoordinate held = how_held(plan, coordinate);
+    if (held.kind != HeldCoordinate::Kind::integrated) continue;
+    const auto [lower, upper] = range_of(coordinate);
+    all.push_back(
+        {static_cast<std::size_t>(coordinate), lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
+  }
+}
+
+/// Sets those of a pose, of the combination of their cells with a number.
+template <class Coordinates>
+void set_held(std::span<const HeldCells> held, std::size_t number, const Coordinates& coordinate) {
+  for (const HeldCells& each : held) {
+    const auto cells = static_cast<std::size_t>(each.cells);
+    coordinate(each.coordinate) = each.centre(static_cast<std::int64_t>(number % cells));
+    number /= cells;
+  }
+}
 
 /// Adds a pose's values to the fields that reports give. @param joints  of the mechanism
 inline void add_reported(const PoseReport& report, std::size_t joints, Survey<double>& to) {

@@ -2,97 +2,46 @@
 
 #include <stdexcept>
 
-#include "engine/survey/cell_samples.hpp"
+#include "engine/survey/grid_surveyor.hpp"
 #include "engine/survey/pose_quantities.hpp"
-#include "engine/survey/share_samples.hpp"
-#include "engine/survey/voxel_grid.hpp"
 
 namespace pkm {
 namespace {
 
-using Kind = HeldCoordinate::Kind;
+/// A design on its grids, whose pieces are cells of the first axis.
+struct GriddedPoses : Gridded {
+  std::span<const double> parameters;
+  const std::vector<HeldCells>& held;
+  Pose<double> pose;  ///< with the held coordinates
+  const Sweep& sweep;
 
-/// The cells of one design.
-class Cells {
- public:
-  Cells(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan,
-        const VoxelOptions& voxels)
-      : sweep_(sweep_of(mechanism.info(), plan)),
-        ranges_(mechanism.ranges(parameters)),
-        grid_(voxels.cells, voxels.box ? *voxels.box : box_of(mechanism, parameters, plan)),
-        pose_(mechanism.info().coordinates.size()) {
-    for (const int coordinate : sweep_.held) {
-      const auto at = static_cast<std::size_t>(coordinate);
-      const HeldCoordinate held = how_held(plan, coordinate);
-      if (held.kind != Kind::integrated) {
-        pose_[at] = held_value(mechanism, parameters, plan, coordinate);
-        continue;
-      }
-      const auto range = ranges_ ? std::optional((*ranges_)[at]) : mechanism.reach(parameters, coordinate);
-      if (!range) no_ranges(mechanism);
-      const auto [lower, upper] = *range;
-      held_.push_back({at, lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
-      measure_ *= held_.back().step;
-      slices_ *= held.cells;
-    }
-  }
-
-  const VoxelGrid& grid() const { return grid_; }
-  std::int64_t slices() const { return slices_; }  ///< grids, one for each combination of the integrated coordinates
-  double measure() const { return grid_.cell_volume() * measure_; }  ///< of a cell
-
-  Pose<double> pose(std::int64_t slice, std::int64_t i, std::int64_t j, std::int64_t k) const {
-    Pose<double> pose = pose_;
-    for (const HeldCells& held : held_) {
-      pose[held.coordinate] = held.centre(slice % held.cells);
-      slice /= held.cells;
-    }
-    const std::int64_t cell[3] = {i, j, k};
-    for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
-      pose[static_cast<std::size_t>(sweep_.swept[axis])] = grid_.centre(axis, cell[axis]);
-    return pose;
+  Pose<double> pose_at(std::size_t number, const Cell& cell) const {
+    Pose<double> at = pose;
+    set_held(held, number, [&](std::size_t coordinate) -> double& { return at[coordinate]; });
+    for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+      at[static_cast<std::size_t>(sweep.swept[axis])] = grid.centre(axis, cell[axis]);
+    return at;
   }
   /// Whether a cell lies on the outer layer of the box.
-  bool touches(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    const std::int64_t cell[3] = {i, j, k};
-    for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
-      if (cell[axis] == 0 || cell[axis] == grid_.cells[axis] - 1) return true;
+  bool touches(const Cell& cell) const {
+    for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+      if (grid.at_end(axis, cell[axis])) return true;
     return false;
   }
-
- private:
-  [[noreturn]] static void no_ranges(const Mechanism& mechanism) {
-    throw std::invalid_argument("mechanism " + mechanism.info().name +
-                                " does not say where its workspace is; give a box");
+  /// Calls visit(cell) for all cells of a piece.
+  template <class Visit>
+  void for_each_cell(std::size_t piece, const Visit& visit) const {
+    const auto i = static_cast<std::int64_t>(piece);
+    for (std::int64_t j = 0; j < grid.cells[1]; ++j)
+      for (std::int64_t k = 0; k < grid.cells[2]; ++k) visit(Cell{i, j, k});
   }
-  /// What holds the workspace: the mechanism's ranges, else the box of its own voxels.
-  Box box_of(const Mechanism& mechanism, std::span<const double> parameters, const SurveyPlan& plan) const {
-    if (!ranges_ && !mechanism.voxels()) no_ranges(mechanism);
-    Box box;
-    box.fill({0, 1});
-    if (!ranges_) {
-      const VoxelMap map = mechanism.voxels()->prepare(plan, VoxelOptions{}, {})->map(parameters);
-      for (std::size_t axis = 0; axis < 3; ++axis) box[axis] = {map.lower[axis], map.upper[axis]};
-      return box;
-    }
-    for (std::size_t axis = 0; axis < sweep_.swept.size(); ++axis)
-      box[axis] = (*ranges_)[static_cast<std::size_t>(sweep_.swept[axis])];
-    return box;
-  }
-
-  const Sweep& sweep_;
-  std::optional<std::vector<std::array<double, 2>>> ranges_;
-  VoxelGrid grid_;
-  Pose<double> pose_;
-  std::vector<HeldCells> held_;
-  std::int64_t slices_ = 1;
-  double measure_ = 1;
 };
 
-class PlainVoxels final : public VoxelSurveyor {
+class PlainVoxels final : public GridSurveyor<PlainVoxels> {
  public:
   PlainVoxels(const Mechanism& mechanism, const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
-      : mechanism_(mechanism),
+      : GridSurveyor(demand),
+        mechanism_(mechanism),
         plan_(plan),
         voxels_(voxels),
         demand_(demand),
@@ -102,35 +51,69 @@ class PlainVoxels final : public VoxelSurveyor {
                                   " has its own characteristic length only; leave out characteristic_length");
   }
 
-  void survey(std::span<const double> parameters, Scratch&, Survey<double>& survey) const override {
-    const Cells cells(mechanism_, parameters, plan_, voxels_);
-    const VoxelGrid& grid = cells.grid();
-    survey.clear(demand_.fields);
-    survey.cells = grid.count() * cells.slices();
-    survey.cell_volume = cells.measure();
-    share_samples(static_cast<std::size_t>(cells.slices() * grid.cells[0]), survey,
-                  [&](std::size_t piece, Survey<double>& part, std::size_t) {
-                    const auto slice = static_cast<std::int64_t>(piece) / grid.cells[0],
-                               i = static_cast<std::int64_t>(piece) % grid.cells[0];
-                    for (std::int64_t j = 0; j < grid.cells[1]; ++j)
-                      for (std::int64_t k = 0; k < grid.cells[2]; ++k)
-                        if (add(parameters, cells.pose(slice, i, j, k), cells.measure(), part))
-                          part.touches_box = part.touches_box || cells.touches(i, j, k);
-                  });
-    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+ private:
+  friend GridSurveyor;
+  struct Room {};
+  using Rooms = GridRooms<std::vector<HeldCells>, Room>;
+
+  GriddedPoses start(std::span<const double> parameters, Rooms& rooms) const {
+    const Sweep& sweep = sweep_of(mechanism_.info(), plan_);
+    const auto ranges = mechanism_.ranges(parameters);
+    std::vector<HeldCells>& held = rooms.common;
+    find_held_cells(
+        sweep.held, plan_,
+        [&](int coordinate) {
+          const auto range = ranges ? std::optional((*ranges)[static_cast<std::size_t>(coordinate)])
+                                    : mechanism_.reach(parameters, coordinate);
+          if (!range) no_ranges();
+          return *range;
+        },
+        held);
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : box_of(parameters, sweep, ranges));
+    GriddedPoses poses{{grid, static_cast<std::size_t>(grid.cells[0]), held},
+                       parameters,
+                       held,
+                       Pose<double>(mechanism_.info().coordinates.size()),
+                       sweep};
+    for (const int coordinate : sweep.held)
+      if (how_held(plan_, coordinate).kind != HeldCoordinate::Kind::integrated)
+        poses.pose[static_cast<std::size_t>(coordinate)] = held_value(mechanism_, parameters, plan_, coordinate);
+    return poses;
   }
-  VoxelMap map(std::span<const double> parameters) const override {
-    const Cells cells(mechanism_, parameters, plan_, voxels_);
-    VoxelMap map = cells.grid().map();
-    std::size_t cell = 0;
-    for (std::int64_t i = 0; i < map.cells[0]; ++i)
-      for (std::int64_t j = 0; j < map.cells[1]; ++j)
-        for (std::int64_t k = 0; k < map.cells[2]; ++k)
-          map.feasible[cell++] = mechanism_.inspect(parameters, cells.pose(0, i, j, k), mode_, plan_.limits).feasible;
-    return map;
+  void find(const GriddedPoses& poses, std::size_t number, std::size_t piece, Room&, Survey<double>& to) const {
+    poses.for_each_cell(piece, [&](const Cell& cell) {
+      if (add(poses.parameters, poses.pose_at(number, cell), poses.cell_volume, to))
+        to.touches_box = to.touches_box || poses.touches(cell);
+    });
+  }
+  template <class Visit>
+  void visit_cells(const GriddedPoses& poses, Rooms&, const Visit& visit) const {
+    for (std::size_t piece = 0; piece < poses.pieces; ++piece)
+      poses.for_each_cell(piece, [&](const Cell& cell) {
+        if (mechanism_.inspect(poses.parameters, poses.pose_at(0, cell), mode_, plan_.limits).feasible) visit(cell);
+      });
   }
 
- private:
+  [[noreturn]] void no_ranges() const {
+    throw std::invalid_argument("mechanism " + mechanism_.info().name +
+                                " does not say where its workspace is; give a box");
+  }
+  /// What holds the workspace: the mechanism's ranges, else the box of its own voxels.
+  Box box_of(std::span<const double> parameters, const Sweep& sweep,
+             const std::optional<std::vector<std::array<double, 2>>>& ranges) const {
+    if (!ranges && !mechanism_.voxels()) no_ranges();
+    Box box;
+    box.fill({0, 1});
+    if (!ranges) {
+      const VoxelMap map = mechanism_.voxels()->prepare(plan_, VoxelOptions{}, {})->map(parameters);
+      for (std::size_t axis = 0; axis < 3; ++axis) box[axis] = {map.lower[axis], map.upper[axis]};
+      return box;
+    }
+    for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+      box[axis] = (*ranges)[static_cast<std::size_t>(sweep.swept[axis])];
+    return box;
+  }
+
   /// Whether the pose is feasible: then its sample is added.
   bool add(std::span<const double> parameters, const Pose<double>& pose, double weight, Survey<double>& to) const {
     const PoseReport report = mechanism_.inspect(parameters, pose, mode_, plan_.limits);

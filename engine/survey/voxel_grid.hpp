@@ -10,6 +10,8 @@
 
 namespace pkm {
 
+using Cell = std::array<std::int64_t, 3>;  ///< its numbers along the axes
+
 struct VoxelGrid {
   std::array<std::int64_t, 3> cells{};
   std::array<double, 3> lower{}, upper{}, step{};
@@ -24,6 +26,11 @@ struct VoxelGrid {
   double centre(std::size_t axis, std::int64_t k) const {
     return lower[axis] + (static_cast<double>(k) + 0.5) * step[axis];
   }
+  /// Of a cell in a map.
+  std::size_t index(const Cell& cell) const {
+    return static_cast<std::size_t>((cell[0] * cells[1] + cell[1]) * cells[2] + cell[2]);
+  }
+  bool at_end(std::size_t axis, std::int64_t k) const { return k == 0 || k == cells[axis] - 1; }
   std::int64_t count() const { return cells[0] * cells[1] * cells[2]; }
   double cell_volume() const { return step[0] * step[1] * step[2]; }
 
@@ -47,9 +54,7 @@ inline void summarise(const VoxelGrid& grid, const VoxelMap& map, Survey<double>
   survey.cells = grid.count();
   survey.cell_volume = grid.cell_volume();
   std::size_t cell = 0;
-  const auto outer = [&](std::size_t axis, std::int64_t k) {
-    return axis < swept && (k == 0 || k == grid.cells[axis] - 1);
-  };
+  const auto outer = [&](std::size_t axis, std::int64_t k) { return axis < swept && grid.at_end(axis, k); };
   for (std::int64_t i = 0; i < grid.cells[0]; ++i)
     for (std::int64_t j = 0; j < grid.cells[1]; ++j)
       for (std::int64_t k = 0; k < grid.cells[2]; ++k) {

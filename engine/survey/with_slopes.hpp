@@ -1,6 +1,7 @@
 // Surveyors written once for numbers and for derivatives.
 #pragma once
 
+#include "engine/math/quadrature.hpp"
 #include "engine/mechanism/surveyor.hpp"
 
 namespace pkm {
@@ -17,6 +18,15 @@ class WithSlopes : public Surveyor, public SlopeSurveyor {
   }
   const SlopeSurveyor* slopes() const override { return this; }
 };
+
+/// What a quadrature found, with derivatives or without.
+template <class S, class T>
+void take_volume(const Integral<T>& found, Survey<S>& survey) {
+  const double value = value_of(found.value);
+  survey.volume = S(found.value);
+  survey.error = value > 0 ? found.error / value : 0;
+  survey.columns = found.evaluations;
+}
 
 /// The parameters of a design as constants of another scalar.
 template <class To, std::size_t N, class From>

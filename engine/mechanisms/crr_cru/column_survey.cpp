@@ -40,36 +40,29 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
     ColumnScratch<S>& scratch = room.get<ColumnScratch<S>>();
     const auto s = sweeping(design(geometry(planned_.platform, parameters), planned_.limits, box_), planned_.held);
     find_outer_pieces(s, still<double>(parameters), still<Dual<1>>(parameters), scratch);
-    long columns = 0;
     if (!fixed_) {
-      const Integral<S> volume =
-          integrate<S>([&](const S& outer) { return area_at(s, outer, scratch); }, scratch.pieces, tolerance_,
-                       roundoff(s, scratch.pieces), scratch.integrals);
-      survey.volume = volume.value;
-      survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
-      columns = volume.evaluations;
+      const auto area = [&](const S& outer) { return area_at(s, outer, scratch); };
+      take_volume(integrate<S>(area, scratch.pieces, tolerance_, roundoff(s, scratch.pieces), scratch.integrals),
+                  survey);
     }
     const Geometry<S>& g = s.design.g;
     if (planned_.demand.needs_inertia()) {
       sample_inertia(s, parameters, scratch, survey);
       if (fixed_) {
         for (const S& weight : survey.weight) survey.volume += weight;
-        columns = static_cast<long>(survey.weight.size());
+        survey.columns = static_cast<long>(survey.weight.size());
       }
-      survey.columns = columns;
       return;
     }
     if (fixed_ || (planned_.with_conditioning && s.cuts.outer_is_phi))
-      for (const Piece<S>& piece : scratch.pieces)
-        for (std::size_t i = 0; i < outer_rule_.node.size(); ++i) {
-          const auto [outer, jacobian] = map_node(piece, outer_rule_.node[i]);
-          const S area = fixed_ ? area_of_columns(s, outer, inner_rule_, scratch, columns) : area_at(s, outer, scratch);
-          const S weight = area * jacobian * outer_rule_.weight[i];
-          if (fixed_) survey.volume += weight;
-          if (planned_.with_conditioning && s.cuts.outer_is_phi) planned_.add_conditioning(g, outer, weight, survey);
-        }
+      visit_nodes(scratch.pieces, outer_rule_, [&](const S& outer, const S& jacobian, double rule_weight) {
+        const S area =
+            fixed_ ? area_of_columns(s, outer, inner_rule_, scratch, survey.columns) : area_at(s, outer, scratch);
+        const S weight = area * jacobian * rule_weight;
+        if (fixed_) survey.volume += weight;
+        if (planned_.with_conditioning && s.cuts.outer_is_phi) planned_.add_conditioning(g, outer, weight, survey);
+      });
     if (planned_.with_conditioning && !s.cuts.outer_is_phi) planned_.add_conditioning(g, s.held, survey.volume, survey);
-    survey.columns = columns;
   }
 
   /// Samples at nodes along all three coordinates.
@@ -87,20 +80,18 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
       if (conditioning) index = planned_.conditioning_at(g, phi);
     };
     if (!s.cuts.outer_is_phi) set_phi(s.held);
-    for (const Piece<S>& piece : scratch.pieces)
-      for (std::size_t i = 0; i < outer_rule_.node.size(); ++i) {
-        const auto [outer, jacobian] = map_node(piece, outer_rule_.node[i]);
-        const S outer_weight = jacobian * outer_rule_.weight[i];
-        if (s.cuts.outer_is_phi) set_phi(outer);
-        visit_positions(s, outer, inner_rule_, scratch, [&](const Vector3<S>& at, const S& weight) {
-          const S measure = outer_weight * weight;
-          if (!(value_of(measure) > 0)) return;
-          survey.weight.push_back(measure);
-          if (planned_.demand.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
-          if (conditioning) conditioning->push_back(index);
-          add_inertia(joint_inertia(g, b, frame, at, planned_.mode), survey);
-        });
-      }
+    visit_nodes(scratch.pieces, outer_rule_, [&](const S& outer, const S& jacobian, double rule_weight) {
+      const S outer_weight = jacobian * rule_weight;
+      if (s.cuts.outer_is_phi) set_phi(outer);
+      visit_positions(s, outer, inner_rule_, scratch, [&](const Vector3<S>& at, const S& weight) {
+        const S measure = outer_weight * weight;
+        if (!(value_of(measure) > 0)) return;
+        survey.weight.push_back(measure);
+        if (planned_.demand.poses) survey.pose.push_back({at[0], at[1], at[2], angle});
+        if (conditioning) conditioning->push_back(index);
+        add_inertia(joint_inertia(g, b, frame, at, planned_.mode), survey);
+      });
+    });
   }
 
   /// The design as constants of another scalar.

@@ -55,10 +55,7 @@ S moving_break(const Sweeping<S>& s, const Sweeping<double>& plain, const Sweepi
     const auto cross = section_at(sweep, outer);
     return break_at(cross, second) - break_at(cross, first);
   };
-  const S by_design = apart(s, S(t));
-  const double by_t = apart(still, Dual<1>::variable(t, 0)).v[0];
-  if (!(std::fabs(by_t) > 0)) return S(at);
-  return S(at) - (by_design - value_of(by_design)) / by_t;
+  return moving_zero(at, apart(s, S(t)), apart(still, Dual<1>::variable(t, 0)).v[0]);
 }
 
 /// Fills scratch.pieces. Every decision depends on values only.
@@ -128,17 +125,15 @@ void visit_columns(const Section<S>& cross, const Structure& structure, const Ga
     Piece<S> piece{break_at(cross, column.lower), break_at(cross, column.upper)};
     piece.root_lower = ends_like_a_root(cross, column, value_of(piece.lower));
     piece.root_upper = ends_like_a_root(cross, column, value_of(piece.upper));
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const auto [u, jacobian] = map_node(piece, rule.node[i]);
-      visit(column, u, S(jacobian * rule.weight[i]));
-    }
+    visit_nodes(piece, rule,
+                [&](const S& u, const S& jacobian, double weight) { visit(column, u, S(jacobian * weight)); });
   }
 }
 
 /// The area by `rule` over u, of the exact lengths of the columns along v.
 template <class S>
 S area_of_columns(const Sweeping<S>& s, const S& outer, const GaussRule& rule, ColumnScratch<S>& scratch,
-                  long& columns) {
+                  std::int64_t& columns) {
   const Section<S> cross = section_at(s, outer);
   find_structure(values(cross), scratch.structure);
   S sum(0.0);
@@ -165,11 +160,10 @@ void visit_positions(const Sweeping<S>& s, const S& outer, const GaussRule& rule
     at[s.cuts.u] = u;
     for (std::size_t k = 0; k < column.ends; k += 2) {
       const Piece<S> interval{end_at(cross, column.end[k], u), end_at(cross, column.end[k + 1], u)};
-      for (std::size_t i = 0; i < rule.node.size(); ++i) {
-        const auto [v, jacobian] = map_node(interval, rule.node[i]);
+      visit_nodes(interval, rule, [&](const S& v, const S& jacobian, double inner) {
         at[s.cuts.v] = v;
-        visit(at, S(weight * jacobian * rule.weight[i]));
-      }
+        visit(at, S(weight * jacobian * inner));
+      });
     }
   });
 }

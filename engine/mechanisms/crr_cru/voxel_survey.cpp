@@ -4,25 +4,23 @@
 #include "engine/mechanisms/crr_cru/links.hpp"
 #include "engine/mechanisms/crr_cru/survey.hpp"
 #include "engine/mechanisms/crr_cru/voxels.hpp"
-#include "engine/survey/share_samples.hpp"
+#include "engine/survey/grid_surveyor.hpp"
 
 namespace pkm::crr_cru {
 namespace {
 
-using Cell = std::array<std::int64_t, 3>;
-using Row = std::vector<std::uint64_t>;
+/// The cells at one phi, with their inertia where it counts.
+struct CellsAtPhi {
+  SectionCells cells;
+  InertiaTables tables;
+  double conditioning = 0;
+};
 
 /// Storage of one worker.
 struct VoxelWorker {
-  SectionCells cells;
-  InertiaTables tables;
-  Row row;
+  CellsAtPhi own;
+  std::vector<std::uint64_t> row;
   std::array<std::vector<double>, 4> dci;
-};
-
-/// Storage that surveys reuse. Where one phi is held, all workers read the first one's cells and tables.
-struct VoxelScratch {
-  std::vector<VoxelWorker> workers;
 };
 
 /// A clearance limit on one design. Where the elbows are, and so which links meet, depends on the working mode.
@@ -33,198 +31,147 @@ struct ClearanceTest {
   const Obstacles* obstacles;
 };
 
-/// A design on its grid.
-struct Gridded {
+/// A design on its grid, whose pieces are the outer cells.
+struct GriddedSections : Gridded {
   Design<double> d;
-  VoxelGrid grid;
+  Masses<double> masses;
   GridAxes axes;
   bool over_phi;                     ///< sections are of one phi each
   std::array<std::size_t, 3> swept;  ///< the coordinate of each axis of the grid, ascending
-  std::size_t held;                  ///< the other one
   double held_at;
   std::optional<ClearanceTest> test;
+  const CellsAtPhi& common;  ///< where one phi is held
 
-  Pose<double> pose_of(const Cell& cell) const {
+  Pose<double> pose_of(const Cell& cell, const Held& held) const {
     std::array<double, 4> x{};
-    x[held] = held_at;
+    x[held.coordinate] = held_at;
     for (std::size_t k = 0; k < 3; ++k) x[swept[k]] = grid.centre(k, cell[k]);
     return {x[0], x[1], x[2], x[3]};
   }
-  /// Takes out of a column the cells that do not keep clear, one by one. @return  whether any are left
-  /// @param cell  any of it
-  bool clear(Cell cell, Row& row) const {
-    for_each_bit(row, [&](std::size_t v) {
-      cell[axes.v] = static_cast<std::int64_t>(v);
-      const Limbs<double> limbs = inverse(d.g, pose_of(cell), test->mode);
-      if (!keep_clear(links(d.g, test->radii, limbs), test->least, *test->obstacles))
-        row[v / 64] &= ~(std::uint64_t{1} << v % 64);
-    });
-    return std::ranges::any_of(row, [](std::uint64_t word) { return word != 0; });
-  }
-  /// Whether a column, or one of its cells, is at an end of the grid.
-  /// @param cell  any of it
-  bool touches(const Cell& cell, const Row& row) const {
-    const auto at_end = [&](std::size_t axis) { return cell[axis] == 0 || cell[axis] == grid.cells[axis] - 1; };
-    return at_end(axes.outer) || at_end(axes.u) || (row.front() & 1) ||
-           (row.back() >> static_cast<std::size_t>((grid.cells[axes.v] - 1) % 64) & 1);
-  }
 };
 
-/// An outer cell's section, as a worker sees it.
-struct Slice {
-  std::int64_t k;  ///< the outer cell
-  const SectionCells& cells;
-  std::size_t n;  ///< plane of `cells`
-  VoxelWorker& worker;
-  Survey<double>& part;  ///< of the survey: what is found here goes there
-};
-
-class OfVoxels final : public VoxelSurveyor {
+class OfVoxels final : public GridSurveyor<OfVoxels> {
  public:
   OfVoxels(const Planned& planned, const VoxelOptions& voxels)
-      : planned_(planned),
+      : GridSurveyor(planned.demand),
+        planned_(planned),
         voxels_(voxels),
         beyond_coupling_(std::ranges::any_of(planned.demand.fields, [](const PoseQuantity* quantity) {
           return quantity->needs_inertia() && quantity != &kCouplingIndex;
         })) {}
 
-  VoxelMap map(std::span<const double> parameters) const override {
-    VoxelScratch scratch;
-    const Gridded s = gridded(parameters);
-    VoxelMap m = s.grid.map();
-    Survey<double> none;
-    share_sections(s, scratch, none, [&](const Slice& slice) {
-      visit_columns(s, slice, [&](Cell cell, const Row& row) {
-        for_each_bit(row, [&](std::size_t v) {
-          cell[s.axes.v] = static_cast<std::int64_t>(v);
-          m.feasible[static_cast<std::size_t>((cell[0] * m.cells[1] + cell[1]) * m.cells[2] + cell[2])] = 1;
-        });
-      });
-    });
-    return m;
+ private:
+  friend GridSurveyor;
+  using Rooms = GridRooms<CellsAtPhi, VoxelWorker>;
+
+  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
+    GridSurveyor::survey(parameters, scratch, survey);
+    if (!planned_.with_conditioning || !survey.weight.empty()) return;
+    const Geometry<double> g = geometry(planned_.platform, parameters);  // one phi for all
+    planned_.add_conditioning(g, held_value(g, planned_.held), survey.volume, survey);
   }
 
- private:
-  Gridded gridded(std::span<const double> parameters) const {
+  GriddedSections start(std::span<const double> parameters, Rooms& rooms) const {
+    const Held& held = planned_.held;
     const Design<double> d = design(geometry(planned_.platform, parameters), planned_.limits);
-    Gridded s{.d = d,
-              .grid = {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, planned_.held)},
-              .axes = grid_axes(planned_.held),
-              .over_phi = cuts(planned_.held).outer_is_phi,
-              .swept = {},
-              .held = planned_.held.coordinate,
-              .held_at = held_value(d.g, planned_.held),
-              .test = {}};
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(d, held));
+    GriddedSections s{{grid, 0},
+                      d,
+                      planned_.demand.needs_inertia() ? planned_.masses(parameters) : Masses<double>{},
+                      grid_axes(held),
+                      cuts(held).outer_is_phi,
+                      {},
+                      held_value(d.g, held),
+                      {},
+                      rooms.common};
     for (std::size_t k = 0, axis = 0; k < 4; ++k)
-      if (k != s.held) s.swept[axis++] = k;
+      if (k != held.coordinate) s.swept[axis++] = k;
     if (const Limits& l = planned_.limits; l.clearance_min)
       s.test = {link_radii(parameters), planned_.mode, *l.clearance_min, &l.obstacles};
+    if (s.over_phi || fill(s, s.held_at, rooms.common)) s.pieces = static_cast<std::size_t>(grid.cells[s.axes.outer]);
     return s;
   }
 
-  void survey(std::span<const double> parameters, Scratch& room, Survey<double>& survey) const override {
-    survey.clear(planned_.demand.fields);
-    VoxelScratch& scratch = room.get<VoxelScratch>();
-    const Gridded s = gridded(parameters);
-    survey.cells = s.grid.count();
-    survey.cell_volume = s.grid.cell_volume();
-    if (planned_.demand.needs_inertia())
-      sample(s, planned_.masses(parameters), scratch, survey);
-    else
-      count(s, scratch, survey);
-    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
-    if (planned_.with_conditioning && survey.weight.empty())  // one phi for all
-      planned_.add_conditioning(s.d.g, s.held_at, survey.volume, survey);
+  /// false: there are no cells.
+  bool fill(const GriddedSections& s, double phi, CellsAtPhi& to) const {
+    if (!to.cells.fill(s.d, planned_.held, s.grid, phi)) return false;
+    if (!planned_.demand.needs_inertia()) return true;
+    to.tables.fill(s.d.g, s.masses, planned_.mode, phi, s.grid, s.swept, s.axes.v, s.held_at);
+    if (planned_.with_conditioning) to.conditioning = planned_.conditioning_at(s.d.g, phi);
+    return true;
   }
 
-  /// Cells alone, section by section. Where sections are of one phi each, its conditioning is a sample.
-  void count(const Gridded& s, VoxelScratch& scratch, Survey<double>& survey) const {
-    share_sections(s, scratch, survey, [&, cell_volume = survey.cell_volume](const Slice& slice) {
-      PlaneTally plane{};
-      if (!s.test) {
-        plane = slice.cells.count(slice.n);
-        plane.touches = plane.touches || slice.k == 0 || slice.k == s.grid.cells[s.axes.outer] - 1;
-      } else {
-        visit_columns(s, slice, [&](const Cell& cell, const Row& row) {
-          for (const std::uint64_t word : row) plane.cells += std::popcount(word);
-          plane.touches = plane.touches || s.touches(cell, row);
-        });
-      }
-      if (plane.cells == 0) return;
-      slice.part.feasible_cells += plane.cells;
-      slice.part.touches_box = slice.part.touches_box || plane.touches;
-      if (planned_.with_conditioning && s.over_phi)
-        planned_.add_conditioning(s.d.g, s.grid.centre(s.axes.outer, slice.k),
-                                  static_cast<double>(plane.cells) * cell_volume, slice.part);
+  void find(const GriddedSections& s, std::size_t, std::size_t piece, VoxelWorker& worker, Survey<double>& to) const {
+    const auto k = static_cast<std::int64_t>(piece);
+    const double phi = s.grid.centre(s.axes.outer, k);  // where sections are of one phi each
+    if (s.over_phi && !fill(s, phi, worker.own)) return;
+    const CellsAtPhi& at = s.over_phi ? worker.own : s.common;
+    const std::int64_t before = to.feasible_cells;
+    if (planned_.demand.needs_inertia()) {
+      visit_runs(s, at, k, worker.row, [&](const CellRun& run) { sample(s, at, run, worker.dci, to); });
+      return;
+    }
+    if (s.test)
+      visit_runs(s, at, k, worker.row, [&](const CellRun& run) { count_cells(s.grid, run, to); });
+    else if (const PlaneTally plane = at.cells.count(s.over_phi ? 0 : piece); plane.cells > 0) {
+      to.feasible_cells += plane.cells;
+      to.touches_box = to.touches_box || plane.touches || s.grid.at_end(s.axes.outer, k);
+    }
+    if (planned_.with_conditioning && s.over_phi)
+      planned_.add_conditioning(s.d.g, phi, static_cast<double>(to.feasible_cells - before) * s.cell_volume, to);
+  }
+
+  /// A run's cells, with their inertia.
+  void sample(const GriddedSections& s, const CellsAtPhi& at, const CellRun& run,
+              std::array<std::vector<double>, 4>& dci, Survey<double>& to) const {
+    count_cells(s.grid, run, to);
+    auto *const conditioning = to.find(kConditioning), *const indices = to.find(kCouplingIndex);
+    const std::int64_t first = run.first[s.axes.v];
+    if (indices) {
+      Cell row = run.first;
+      row[s.axes.v] = 0;
+      at.tables.coupling(row, static_cast<std::size_t>(first), static_cast<std::size_t>(run.end), dci);
+    }
+    for_each_cell(run, [&](const Cell& cell) {
+      to.weight.push_back(s.cell_volume);
+      if (planned_.demand.poses) to.pose.push_back(s.pose_of(cell, planned_.held));
+      if (conditioning) conditioning->push_back(at.conditioning);
+      for (std::size_t i = 0; indices && i < 4; ++i)
+        indices[i].push_back(dci[i][static_cast<std::size_t>(cell[s.axes.v])]);
+      if (beyond_coupling_) add_inertia(at.tables.at(cell), to, &kCouplingIndex);
     });
   }
 
-  /// Every cell, with its inertia.
-  void sample(const Gridded& s, const Masses<double>& b, VoxelScratch& scratch, Survey<double>& survey) const {
-    const auto fill = [&](InertiaTables& tables, double phi) {
-      tables.fill(s.d.g, b, planned_.mode, phi, s.grid, s.swept, s.axes.v, s.held_at);
-      return planned_.with_conditioning ? planned_.conditioning_at(s.d.g, phi) : 0.0;
+  template <class Visit>
+  void visit_cells(const GriddedSections& s, Rooms& rooms, const Visit& visit) const {
+    VoxelWorker& worker = rooms.of[0];
+    for (std::int64_t k = 0; k < static_cast<std::int64_t>(s.pieces); ++k)
+      if (!s.over_phi || fill(s, s.grid.centre(s.axes.outer, k), worker.own))
+        visit_runs(s, s.over_phi ? worker.own : s.common, k, worker.row,
+                   [&](const CellRun& run) { for_each_cell(run, visit); });
+  }
+
+  /// Calls visit(run) for the runs of an outer cell's section that the clearance leaves, by u.
+  /// @param row  storage
+  template <class Visit>
+  void visit_runs(const GriddedSections& s, const CellsAtPhi& at, std::int64_t k, std::vector<std::uint64_t>& row,
+                  const Visit& visit) const {
+    const auto is_clear = [&](const Cell& cell) {
+      const Limbs<double> limbs = inverse(s.d.g, s.pose_of(cell, planned_.held), s.test->mode);
+      return keep_clear(links(s.d.g, s.test->radii, limbs), s.test->least, *s.test->obstacles);
     };
-    InertiaTables& common = first_of(scratch).tables;
-    const double index_of_all = s.over_phi ? 0.0 : fill(common, s.held_at);
-    share_sections(s, scratch, survey, [&, cell_volume = survey.cell_volume](const Slice& slice) {
-      InertiaTables& tables = s.over_phi ? slice.worker.tables : common;
-      const double index = s.over_phi ? fill(tables, s.grid.centre(s.axes.outer, slice.k)) : index_of_all;
-      Survey<double>& part = slice.part;
-      auto& dci = slice.worker.dci;
-      auto *const conditioning = part.find(kConditioning), *const indices = part.find(kCouplingIndex);
-      visit_columns(s, slice, [&](Cell cell, const Row& row) {
-        part.touches_box = part.touches_box || s.touches(cell, row);
-        if (indices) {
-          const auto has = [&row](std::size_t v) { return (row[v / 64] >> v % 64 & 1) != 0; };
-          std::size_t first = 0, end = 64 * row.size();
-          while (!has(first)) ++first;
-          while (!has(end - 1)) --end;
-          tables.coupling(cell, first, end, dci);
-        }
-        for_each_bit(row, [&](std::size_t v) {
-          cell[s.axes.v] = static_cast<std::int64_t>(v);
-          ++part.feasible_cells;
-          part.weight.push_back(cell_volume);
-          if (planned_.demand.poses) part.pose.push_back(s.pose_of(cell));
-          if (conditioning) conditioning->push_back(index);
-          for (std::size_t i = 0; indices && i < 4; ++i) indices[i].push_back(dci[i][v]);
-          if (beyond_coupling_) add_inertia(tables.at(cell), part, &kCouplingIndex);
-        });
+    CellRun run{{}, s.axes.v, 0};
+    run.first[s.axes.outer] = k;
+    at.cells.visit_columns(s.over_phi ? 0 : static_cast<std::size_t>(k), row, [&](std::int64_t u) {
+      run.first[s.axes.u] = u;
+      for_each_run(row, [&](std::size_t first, std::size_t end) {
+        run.first[s.axes.v] = static_cast<std::int64_t>(first);
+        run.end = static_cast<std::int64_t>(end);
+        if (s.test)
+          keep_cells(run, is_clear, visit);
+        else
+          visit(run);
       });
-    });
-  }
-
-  /// The worker whose storage all may read, with one for each that may work.
-  static VoxelWorker& first_of(VoxelScratch& scratch) {
-    scratch.workers.resize(std::max(scratch.workers.size(), workers()));
-    return scratch.workers.front();
-  }
-
-  /// Calls visit(slice) for every outer cell whose section may have cells, as share_samples() does.
-  template <class Visit>
-  void share_sections(const Gridded& s, VoxelScratch& scratch, Survey<double>& survey, const Visit& visit) const {
-    SectionCells& common = first_of(scratch).cells;
-    if (!s.over_phi && !common.fill(s.d, planned_.held, s.grid, s.held_at)) return;
-    share_samples(static_cast<std::size_t>(s.grid.cells[s.axes.outer]), survey,
-                  [&](std::size_t piece, Survey<double>& part, std::size_t number) {
-                    const auto k = static_cast<std::int64_t>(piece);
-                    VoxelWorker& worker = scratch.workers[number];
-                    if (!s.over_phi)
-                      visit(Slice{k, common, piece, worker, part});
-                    else if (worker.cells.fill(s.d, planned_.held, s.grid, s.grid.centre(s.axes.outer, k)))
-                      visit(Slice{k, worker.cells, 0, worker, part});
-                  });
-  }
-
-  /// Calls visit(cell, row) for the columns of a slice that have cells which pass; cell is the column's first.
-  template <class Visit>
-  void visit_columns(const Gridded& s, const Slice& slice, const Visit& visit) const {
-    slice.cells.visit_columns(slice.n, slice.worker.row, [&](std::int64_t u, Row& row) {
-      Cell cell{};
-      cell[s.axes.outer] = slice.k;
-      cell[s.axes.u] = u;
-      if (!s.test || s.clear(cell, row)) visit(cell, row);
     });
   }
 

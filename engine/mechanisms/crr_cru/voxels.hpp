@@ -2,7 +2,6 @@
 // rows come from the ends of chords (rings.hpp), and the plain test of a cell decides the cells next to an end.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "engine/mechanism/survey.hpp"
 #include "engine/mechanisms/crr_cru/frame.hpp"
 #include "engine/mechanisms/crr_cru/rings.hpp"
-#include "engine/survey/voxel_grid.hpp"
+#include "engine/survey/cell_runs.hpp"
 
 namespace pkm::crr_cru {
 
@@ -22,14 +21,6 @@ inline GridAxes grid_axes(const Held& held) { return held.coordinate == 3 ? Grid
 
 /// Holds every feasible pose: positions by the slides' ranges, phi by kappa_p >= 0. Order of axes as the sweep's.
 Box default_box(const Design<double>& d, const Held& held);
-
-/// Calls visit(cell) for every bit of a row, from the first on.
-template <class Visit>
-void for_each_bit(std::span<const std::uint64_t> row, const Visit& visit) {
-  for (std::size_t w = 0; w < row.size(); ++w)
-    for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1)
-      visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
-}
 
 /// Of every cell along one coordinate, the feasible cells along another: a row of bits in whole words. Behind the last
 /// row, empty ones up to whole lanes.
@@ -46,9 +37,9 @@ class SectionCells {
   /// Fills the tables. @return  whether they leave anything
   bool fill(const Design<double>& d, const Held& held, const VoxelGrid& grid, double phi);
 
-  /// Calls visit(u, row) for every column with feasible cells, with the row's words of bits.
+  /// Calls visit(u) for every column with feasible cells.
   /// @param n    the plane's number, 0 where the coordinate normal to it is held
-  /// @param row  storage
+  /// @param row  set to the column's words of bits
   template <class Visit>
   void visit_columns(std::size_t n, std::vector<std::uint64_t>& row, const Visit& visit) const {
     const auto of_u = u_at_n_.row(n), of_v = v_at_n_.row(n);
@@ -57,7 +48,7 @@ class SectionCells {
       const auto at_u = v_at_u_.row(u);
       std::uint64_t any = 0;
       for (std::size_t i = 0; i < of_v.size(); ++i) any |= row[i] = of_v[i] & at_u[i];
-      if (any) visit(static_cast<std::int64_t>(u), row);
+      if (any) visit(static_cast<std::int64_t>(u));
     });
   }
   PlaneTally count(std::size_t n) const;

@@ -1,7 +1,6 @@
 #include "engine/mechanisms/described/voxels.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 
 #include "engine/mechanisms/described/cells.hpp"
@@ -9,20 +8,19 @@
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/inertia_rows.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
-#include "engine/survey/cell_samples.hpp"
+#include "engine/survey/cell_runs.hpp"
+#include "engine/survey/grid_surveyor.hpp"
 #include "engine/survey/pose_quantities.hpp"
-#include "engine/survey/share_samples.hpp"
 
 namespace pkm::described {
 namespace {
 
-using Kind = HeldCoordinate::Kind;
-
-class DescribedVoxels final : public VoxelSurveyor {
+class DescribedVoxels final : public GridSurveyor<DescribedVoxels> {
  public:
   DescribedVoxels(const Mechanism& mechanism, const Evaluation& evaluation, const SurveyPlan& plan,
                   const VoxelOptions& voxels, const Demand& demand)
-      : mechanism_(mechanism),
+      : GridSurveyor(demand),
+        mechanism_(mechanism),
         e_(evaluation),
         plan_(plan),
         voxels_(voxels),
@@ -38,113 +36,76 @@ class DescribedVoxels final : public VoxelSurveyor {
       clearance_.emplace(evaluation, sweep_.swept, mode_, *least, plan.limits.obstacles);
   }
 
-  void survey(std::span<const double> parameters, Scratch& scratch, Survey<double>& survey) const override {
-    if (inertia_) check_masses(e_, parameters);
-    const VoxelGrid grid = grid_of(parameters);
-    Rooms& all = scratch.get<Rooms>();
-    integrated(parameters, all.held);
-    const std::vector<HeldCells>& held = all.held;
-    std::int64_t repeats = 1;
-    double measure = grid.cell_volume();
-    for (const HeldCells& each : held) {
-      repeats *= each.cells;
-      measure *= each.step;
-    }
-    survey.clear(demand_.fields);
-    survey.cells = grid.count() * repeats;
-    survey.cell_volume = measure;
-    const std::size_t slices = test_.shape(grid)[0];
-    std::vector<Room>& rooms = all.of;
-    if (rooms.size() < workers()) rooms.resize(workers());
-    for (Room& room : rooms) room.repeat.reset();
-    fill_inputs(parameters, all.inputs);
-    const std::vector<double>& inputs = all.inputs;
-    share_samples(slices * static_cast<std::size_t>(repeats), survey,
-                  [&](std::size_t piece, Survey<double>& part, std::size_t worker) {
-                    Room& room = rooms[worker];
-                    if (room.repeat != piece / slices) start(inputs, held, piece / slices, room);
-                    const CellTally tally = find_cells(grid, piece % slices, demand_.needs_samples(), room);
-                    part.feasible_cells += tally.cells;
-                    part.touches_box = part.touches_box || tally.touches_box;
-                    if (demand_.needs_samples()) add_slice(parameters, grid, piece % slices, measure, room, part);
-                  });
-    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
-  }
-
-  VoxelMap map(std::span<const double> parameters) const override {
-    const VoxelGrid grid = grid_of(parameters);
-    VoxelMap map = grid.map();
-    Room room;
-    std::vector<double> inputs;
-    fill_inputs(parameters, inputs);
-    start(inputs, {}, 0, room);
-    const auto [slices, columns, cells] = test_.shape(grid);
-    for (std::size_t slice = 0; slice < slices; ++slice) {
-      find_cells(grid, slice, true, room);
-      for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) {
-        const auto cell = test_.cell(slice, j, k);
-        map.feasible[static_cast<std::size_t>((cell[0] * map.cells[1] + cell[1]) * map.cells[2] + cell[2])] = 1;
-      });
-    }
-    return map;
-  }
-
  private:
+  friend GridSurveyor;
   struct Room {
-    std::optional<std::size_t> repeat;  ///< that it is ready for
+    std::optional<std::size_t> number;  ///< of the grid that it is ready for
     std::vector<double> inputs;
     CellRoom cells;
     InertiaRoom inertia;
     ClearanceRows::Room clearance;
     std::array<std::size_t, graph::kRow> waiting;  ///< bits of the cells whose clearance is looked at next
   };
-  struct Rooms {
-    std::vector<Room> of;  ///< by worker
+  struct Common {
     std::vector<double> inputs;
     std::vector<HeldCells> held;
   };
+  using Rooms = GridRooms<Common, Room>;
 
-  /// With integrated coordinates in the middle of their cells.
-  void start(const std::vector<double>& inputs, const std::vector<HeldCells>& held, std::size_t repeat,
-             Room& room) const {
-    room.repeat = repeat;
-    room.inputs = inputs;
-    for (const HeldCells& each : held) {
-      const auto cells = static_cast<std::size_t>(each.cells);
-      room.inputs[e_.model.inputs.coordinate(each.coordinate)] = each.centre(static_cast<std::int64_t>(repeat % cells));
-      repeat /= cells;
+  /// A design on its grids, whose pieces are slices of the outer loop.
+  struct GriddedSlices : Gridded {
+    std::span<const double> parameters;
+    const Common& common;
+  };
+
+  GriddedSlices start(std::span<const double> parameters, Rooms& rooms) const {
+    if (inertia_) check_masses(e_, parameters);
+    const VoxelGrid grid(voxels_.cells, e_.survey_box(parameters, voxels_.box, sweep_.swept));
+    Common& common = rooms.common;
+    find_held_cells(
+        sweep_.held, plan_,
+        [&](int coordinate) { return e_.needed_range(parameters, static_cast<std::size_t>(coordinate)); }, common.held);
+    fill_inputs(parameters, common.inputs);
+    for (Room& room : rooms.of) room.number.reset();
+    return {{grid, test_.shape(grid)[0], common.held}, parameters, common};
+  }
+  void find(const GriddedSlices& slices, std::size_t number, std::size_t slice, Room& room, Survey<double>& to) const {
+    prepare(slices.common, number, room);
+    const CellTally tally = find_cells(slices.grid, slice, demand_.needs_samples(), room);
+    to.feasible_cells += tally.cells;
+    to.touches_box = to.touches_box || tally.touches_box;
+    if (demand_.needs_samples()) add_slice(slices.parameters, slices.grid, slice, slices.cell_volume, room, to);
+  }
+  template <class Visit>
+  void visit_cells(const GriddedSlices& slices, Rooms& rooms, const Visit& visit) const {
+    Room& room = rooms.of[0];
+    prepare(slices.common, 0, room);
+    const auto [count, columns, cells] = test_.shape(slices.grid);
+    for (std::size_t slice = 0; slice < count; ++slice) {
+      find_cells(slices.grid, slice, true, room);
+      for_each_cell(room.cells, columns, cells, [&](std::size_t j, std::size_t k) { visit(test_.cell(slice, j, k)); });
     }
+  }
+
+  /// For the grid with a number.
+  void prepare(const Common& common, std::size_t number, Room& room) const {
+    if (room.number == number) return;
+    room.number = number;
+    room.inputs = common.inputs;
+    set_held(common.held, number,
+             [&](std::size_t coordinate) -> double& { return room.inputs[e_.model.inputs.coordinate(coordinate)]; });
     test_.start(room.inputs, room.cells);
     if (inertia_) inertia_->start(room.inputs, room.inertia);
     if (clearance_) clearance_->start(room.inputs, room.clearance);
   }
-
-  VoxelGrid grid_of(std::span<const double> parameters) const {
-    return {voxels_.cells, e_.survey_box(parameters, voxels_.box, sweep_.swept)};
-  }
-  void integrated(std::span<const double> parameters, std::vector<HeldCells>& all) const {
-    all.clear();
-    for (const int coordinate : sweep_.held) {
-      const HeldCoordinate held = how_held(plan_, coordinate);
-      if (held.kind != Kind::integrated) continue;
-      const auto [lower, upper] = e_.needed_range(parameters, static_cast<std::size_t>(coordinate));
-      all.push_back(
-          {static_cast<std::size_t>(coordinate), lower, (upper - lower) / static_cast<double>(held.cells), held.cells});
-    }
-  }
-  /// With the held coordinates where they are held; those that are integrated over in the middle of their first cell.
+  /// With the held coordinates where they are held.
   void fill_inputs(std::span<const double> parameters, std::vector<double>& inputs) const {
     inputs.resize(e_.model.inputs.count());
     e_.fill_inputs<double>(parameters, plan_.limits, mode_, inputs);
-    for (const int coordinate : sweep_.held) {
-      const auto at = static_cast<std::size_t>(coordinate);
-      const HeldCoordinate held = how_held(plan_, coordinate);
-      const bool sums = held.kind == Kind::integrated;
-      const auto range = sums ? e_.needed_range(parameters, at) : std::array{0.0, 0.0};
-      inputs[e_.model.inputs.coordinate(at)] =
-          sums ? range[0] + 0.5 * (range[1] - range[0]) / static_cast<double>(held.cells)
-               : held_value(mechanism_, parameters, plan_, coordinate);
-    }
+    for (const int coordinate : sweep_.held)
+      if (how_held(plan_, coordinate).kind != HeldCoordinate::Kind::integrated)
+        inputs[e_.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
+            held_value(mechanism_, parameters, plan_, coordinate);
   }
 
   /// Calls visit(column, cell) for the feasible cells of a slice, in order.
@@ -152,9 +113,7 @@ class DescribedVoxels final : public VoxelSurveyor {
   static void for_each_cell(const CellRoom& room, std::size_t columns, std::size_t cells, const Visit& visit) {
     const std::size_t words = CellTest::words(cells);
     for (std::size_t j = 0; j < columns; ++j)
-      for (std::size_t word = 0; word < words; ++word)
-        for (std::uint64_t bits = room.bits[j * words + word]; bits != 0; bits &= bits - 1)
-          visit(j, word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
+      for_each_bit(std::span(room.bits).subspan(j * words, words), [&](std::size_t k) { visit(j, k); });
   }
 
   Pose<double> pose_of(const VoxelGrid& grid, const std::array<std::int64_t, 3>& cell, const Room& room) const {

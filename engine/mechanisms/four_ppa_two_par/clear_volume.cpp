@@ -31,11 +31,10 @@ double integral_of_stroke(const Frame<double>& f, const Section<double>& t, cons
   const double last = root_below(length, part.upper), kink = root_below(apart, last);
   double sum = 0;
   for (const auto& [low, high] : {std::pair{part.lower, kink}, std::pair{kink, last}}) {
+    if (!(low < high)) continue;
     const Piece<double> piece{low, high, low == 0, false};  // h may start like a root
-    for (std::size_t k = 0; k < rule.node.size() && low < high; ++k) {
-      const auto [rise, jacobian] = map_node(piece, rule.node[k]);
-      sum += length(rise) * jacobian * rule.weight[k];
-    }
+    visit_nodes(piece, rule,
+                [&](double rise, double jacobian, double weight) { sum += length(rise) * jacobian * weight; });
   }
   return sum;
 }
@@ -76,22 +75,18 @@ void visit_halves(const Frame<double>& f, const Section<double>& t, const Cleara
 Integral<double> by_rule(const Frame<double>& f, const ClearanceTest& test, bool over_y, const GaussRule& theta_rule,
                          const GaussRule& inner_rule, ColumnScratch<double>& scratch) {
   Integral<double> result;
-  for (const Piece<double>& piece : scratch.pieces)
-    for (std::size_t i = 0; i < theta_rule.node.size(); ++i) {
-      const auto [theta, theta_jacobian] = map_node(piece, theta_rule.node[i]);
-      const double outer = 2 * theta_rule.weight[i] * theta_jacobian;
-      const Section<double> t = section_of(f, theta, over_y);
-      visit_halves(f, t, test, scratch, [&](const Half<double>& h, std::size_t leaning, double weight) {
-        for (const Piece<double>& range : scratch.ranges)
-          for (std::size_t k = 0; k < inner_rule.node.size(); ++k) {
-            const auto [delta, delta_jacobian] = map_node(range, inner_rule.node[k]);
-            const Column<double> c = column(f, t, h, leaning, delta);
-            result.value += weight * outer * inner_rule.weight[k] * delta_jacobian * c.slope *
-                            measure(f, t, c, test, over_y, scratch.clearance);
-            ++result.evaluations;
-          }
+  visit_nodes(scratch.pieces, theta_rule, [&](double theta, double theta_jacobian, double theta_weight) {
+    const double outer = 2 * theta_weight * theta_jacobian;
+    const Section<double> t = section_of(f, theta, over_y);
+    visit_halves(f, t, test, scratch, [&](const Half<double>& h, std::size_t leaning, double images) {
+      visit_nodes(scratch.ranges, inner_rule, [&](double delta, double jacobian, double weight) {
+        const Column<double> c = column(f, t, h, leaning, delta);
+        result.value +=
+            images * outer * weight * jacobian * c.slope * measure(f, t, c, test, over_y, scratch.clearance);
+        ++result.evaluations;
       });
-    }
+    });
+  });
   return result;
 }
 

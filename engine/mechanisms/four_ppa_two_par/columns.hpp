@@ -92,12 +92,10 @@ S area_over_y(const Frame<S>& f, Section<S> t, const GaussRule& rule) {
       sum += area(f, t) * length;
       continue;
     }
-    const Piece<S> piece{lower, y[i], true, true};
-    for (std::size_t k = 0; k < rule.node.size(); ++k) {
-      const auto [at, jacobian] = map_node(piece, rule.node[k]);
+    visit_nodes(Piece<S>{lower, y[i], true, true}, rule, [&](const S& at, const S& jacobian, double weight) {
       set_depths(f, at, t);
-      sum += area(f, t) * jacobian * rule.weight[k];
-    }
+      sum += area(f, t) * jacobian * weight;
+    });
   }
   return sum;
 }
@@ -246,42 +244,38 @@ void sample(const Frame<S>& f, const SampleContents<S>& contents, Planes planes,
             ColumnScratch<S>& scratch, Survey<S>& survey) {
   find_pieces(f, scratch.breaks, scratch.pieces);
   const Sampled<S> to(survey);
-  for (const Piece<S>& piece : scratch.pieces)
-    for (std::size_t i = 0; i < theta_rule.node.size(); ++i) {
-      const auto [theta, theta_jacobian] = map_node(piece, theta_rule.node[i]);
-      const auto [s, c] = sincos(theta);
-      const Section<S> t = section(f, s, c);
-      if (t.empty) continue;
-      const Images images{value_of(t.depth[0]) == value_of(t.depth[1]), planes};
-      for (std::size_t leaning = 0; leaning < (images.symmetric ? 1u : 2u); ++leaning) {
-        const Half<S> h = half_section(t, leaning);
-        if (h.empty) continue;
-        const S outer = weight * theta_jacobian * theta_rule.weight[i];
-        feasible_ranges(f, t, h, leaning, test, scratch);
-        for (const Piece<S>& range : scratch.ranges)
-          for (std::size_t k = 0; k < inner_rule.node.size(); ++k) {
-            const auto [delta, delta_jacobian] = map_node(range, inner_rule.node[k]);
-            const Column<S> col = column(f, t, h, leaning, delta);
-            feasible_parts(f, t, col, test, scratch);
-            for (const Piece<S>& part : scratch.parts) {
-              ColumnConditioning<S>& poses = scratch.poses;
-              poses.clear();
-              for (const double node : inner_rule.node) {
-                const S rise = map_node(part, node).point;
-                poses.add(col.z_c(f, rise, 0), col.z_c(f, rise, 1));
-              }
-              if (contents.conditioning) poses.compute({f.g.l_u, contents.gamma, s, c, col.x, col.sigma});
-              for (std::size_t n = 0; n < inner_rule.node.size(); ++n) {
-                const S each = outer * col.slope * delta_jacobian * map_node(part, inner_rule.node[n]).jacobian *
-                               (inner_rule.weight[k] * inner_rule.weight[n]);
-                const Node<S> node{theta, s, c, col.x, col.sigma, {poses.z_c[0][n], poses.z_c[1][n]}};
-                add_samples(f, contents, images, each, node, contents.conditioning ? poses.index[n] : S(0.0),
-                            scratch.inertia, to);
-              }
-            }
-          }
-      }
+  visit_nodes(scratch.pieces, theta_rule, [&](const S& theta, const S& theta_jacobian, double theta_weight) {
+    const auto [sine, cosine] = sincos(theta);
+    const S &s = sine, &c = cosine;
+    const Section<S> t = section(f, s, c);
+    if (t.empty) return;
+    const Images images{value_of(t.depth[0]) == value_of(t.depth[1]), planes};
+    for (std::size_t leaning = 0; leaning < (images.symmetric ? 1u : 2u); ++leaning) {
+      const Half<S> h = half_section(t, leaning);
+      if (h.empty) continue;
+      const S outer = weight * theta_jacobian * theta_weight;
+      feasible_ranges(f, t, h, leaning, test, scratch);
+      visit_nodes(scratch.ranges, inner_rule, [&](const S& delta, const S& delta_jacobian, double delta_weight) {
+        const Column<S> col = column(f, t, h, leaning, delta);
+        feasible_parts(f, t, col, test, scratch);
+        for (const Piece<S>& part : scratch.parts) {
+          ColumnConditioning<S>& poses = scratch.poses;
+          poses.clear();
+          visit_nodes(part, inner_rule,
+                      [&](const S& rise, const S&, double) { poses.add(col.z_c(f, rise, 0), col.z_c(f, rise, 1)); });
+          if (contents.conditioning) poses.compute({f.g.l_u, contents.gamma, s, c, col.x, col.sigma});
+          std::size_t n = 0;
+          visit_nodes(part, inner_rule, [&](const S&, const S& jacobian, double z_weight) {
+            const S each = outer * col.slope * delta_jacobian * jacobian * (delta_weight * z_weight);
+            const Node<S> node{theta, s, c, col.x, col.sigma, {poses.z_c[0][n], poses.z_c[1][n]}};
+            add_samples(f, contents, images, each, node, contents.conditioning ? poses.index[n] : S(0.0),
+                        scratch.inertia, to);
+            ++n;
+          });
+        }
+      });
     }
+  });
 }
 
 }  // namespace pkm::four_ppa_two_par

@@ -81,9 +81,10 @@ S follow(const Frame<S>& f, const Crossing& crossing) {
     const S moves = gap(f, crossing.gap, S(crossing.theta));
     using Slope = Dual<1>;
     const double slope = gap(constant_frame<Slope>(f), crossing.gap, Slope::variable(crossing.theta, 0)).v[0];
-    if (slope != 0) return crossing.theta - (moves - value_of(moves)) / slope;
+    return moving_zero(crossing.theta, moves, slope);  // a gap that only touches 0 opens and closes a piece there
+  } else {
+    return crossing.theta;
   }
-  return S(crossing.theta);  // a gap that only touches 0 opens and closes a piece there: a kink of the rule
 }
 
 /// Breaks with a closed form, unsorted.

@@ -4,7 +4,7 @@
 
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
 #include "engine/mechanisms/four_ppa_two_par/voxels.hpp"
-#include "engine/survey/share_samples.hpp"
+#include "engine/survey/grid_surveyor.hpp"
 #include "engine/survey/with_slopes.hpp"
 
 namespace pkm::four_ppa_two_par {
@@ -71,10 +71,7 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
     const S y = plane(g, held_);
     const Frame<S> f = frame(g, l, y);
     const bool over_y = held_.kind == HeldCoordinate::Kind::integrated;
-    const Integral<S> volume = volume_of(f, test, over_y, scratch);
-    survey.volume = volume.value;
-    survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
-    survey.columns = volume.evaluations;
+    take_volume(volume_of(f, test, over_y, scratch), survey);
     if (!demand_.needs_samples()) return;
     const SampleContents<S> wanted = contents(parameters, demand_);
     if (!over_y) {
@@ -88,10 +85,9 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
     static const GaussRule coarse = gauss_legendre(kInertiaNodesOverY);
     const GaussRule &inner = wanted.told_apart() ? coarse : inner_rule_,
                     &outer = wanted.told_apart() ? coarse : theta_rule_;
-    for (std::size_t i = 0; i < inner.node.size(); ++i) {
-      const auto [at, jacobian] = map_node(half, inner.node[i]);
-      sample(frame(g, l, at), wanted, Planes::both, S(jacobian * inner.weight[i]), outer, inner, test, scratch, survey);
-    }
+    visit_nodes(half, inner, [&](const S& at, const S& jacobian, double weight) {
+      sample(frame(g, l, at), wanted, Planes::both, S(jacobian * weight), outer, inner, test, scratch, survey);
+    });
   }
 
   template <class S>
@@ -111,13 +107,11 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
   Integral<S> fixed_rule(const Frame<S>& f, ColumnScratch<S>& scratch) const {
     find_pieces(f, scratch.breaks, scratch.pieces);
     Integral<S> result;
-    for (const auto& piece : scratch.pieces)
-      for (std::size_t i = 0; i < theta_rule_.node.size(); ++i) {
-        const auto [theta, jacobian] = map_node(piece, theta_rule_.node[i]);
-        const auto [s, c] = sincos(theta);
-        result.value += (2 * theta_rule_.weight[i]) * jacobian * area(f, section(f, s, c));
-        ++result.evaluations;
-      }
+    visit_nodes(scratch.pieces, theta_rule_, [&](const S& theta, const S& jacobian, double weight) {
+      const auto [s, c] = sincos(theta);
+      result.value += (2 * weight) * jacobian * area(f, section(f, s, c));
+      ++result.evaluations;
+    });
     return result;
   }
 
@@ -128,93 +122,108 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
   GaussRule inner_rule_, theta_rule_;
 };
 
-class OfVoxels final : public VoxelSurveyor {
+class OfVoxels final : public GridSurveyor<OfVoxels> {
  public:
   OfVoxels(const SurveyPlan& plan, const VoxelOptions& voxels, const Demand& demand)
-      : limits_(plan.limits),
+      : GridSurveyor(demand),
+        limits_(plan.limits),
         held_(how_held(plan, kY)),
         voxels_(voxels),
         demand_(demand),
         counter_(voxels.cells, voxels.box ? (*voxels.box)[2] : kTheta) {}
 
-  VoxelMap map(std::span<const double> parameters) const override {
-    const Geometry<double> g = geometry(parameters);
-    Limits<double> l = limits(g, limits_);
-    const auto clearance = take_clearance(g, l);
-    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
-    VoxelMap m = grid.map();
-    ColumnBlock columns;
-    const double y = plane(g, held_);
-    counter_.visit_columns({.g = g, .l = l, .test = clearance ? &*clearance : nullptr, .y = y, .grid = grid}, columns,
-                           [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-                             for (std::int64_t j = first; j < end; ++j)
-                               m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
-                           });
-    return m;
-  }
-
  private:
+  friend GridSurveyor;
   static constexpr std::array<double, 2> kTheta = {-kPi / 2, kPi / 2};
+  using Rooms = GridRooms<std::vector<HeldCells>, VoxelWorker>;
 
-  void survey(std::span<const double> parameters, Scratch& room, Survey<double>& survey) const override {
-    survey.clear(demand_.fields);
-    VoxelScratch& scratch = room.get<VoxelScratch>();
+  struct GriddedPlanes : Gridded {
+    Geometry<double> g;
+    Limits<double> l;
+    std::optional<ClearanceTest> test;
+    const std::vector<HeldCells>& all_y;  ///< where y is integrated over
+    double y;                             ///< else
+    SampleContents<double> wanted;
+
+    VoxelPlane operator[](std::size_t number) const {
+      return {.g = g,
+              .l = l,
+              .test = test ? &*test : nullptr,
+              .y = all_y.empty() ? y : all_y[0].centre(static_cast<std::int64_t>(number)),
+              .grid = grid};
+    }
+  };
+
+  GriddedPlanes start(std::span<const double> parameters, Rooms& rooms) const {
     const Geometry<double> g = geometry(parameters);
     Limits<double> l = limits(g, limits_);
-    const auto clearance = take_clearance(g, l);
-    const ClearanceTest* const test = clearance ? &*clearance : nullptr;
+    auto test = take_clearance(g, l);
     const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(g));
-    const bool over_y = held_.kind == HeldCoordinate::Kind::integrated;
-    const SampleContents<double> wanted = contents(parameters, demand_);
-    const std::int64_t planes = over_y ? held_.cells : 1;
-    const double y_step = over_y ? g.L0 / static_cast<double>(planes) : 1;
-    survey.cells = grid.count() * planes;
-    survey.cell_volume = grid.cell_volume() * y_step;
-    for (std::int64_t p = 0; p < planes; ++p) {
-      const double y = over_y ? (static_cast<double>(p) + 0.5) * y_step : plane(g, held_);
-      const VoxelPlane at{.g = g, .l = l, .test = test, .y = y, .grid = grid};
-      bool touches = false;
-      survey.feasible_cells += counter_.count(at, scratch, touches);
-      survey.touches_box = survey.touches_box || touches;
-      if (demand_.needs_samples()) sample(at, wanted, scratch, survey);
-    }
-    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+    rooms.common.clear();
+    if (held_.kind == HeldCoordinate::Kind::integrated)
+      rooms.common.push_back({kY, 0, g.L0 / static_cast<double>(held_.cells), held_.cells});
+    GriddedPlanes planes{{grid, 0, rooms.common},
+                         g,
+                         l,
+                         std::move(test),
+                         rooms.common,
+                         plane(g, held_),
+                         demand_.needs_samples() ? contents(parameters, demand_) : SampleContents<double>{}};
+    const Halves most = planes.grids == 1 ? halves(planes, planes[0]) : counter_.whole();
+    planes.pieces = counts(planes) ? counter_.pieces(most) : counter_.blocks(most);
+    return planes;
+  }
+  /// Nothing is asked of single cells.
+  bool counts(const GriddedPlanes& planes) const { return !planes.test && !demand_.needs_samples(); }
+  /// What is found of a plane: conditioning is the same at mirrored poses, so that one stands for all of them, unless
+  /// they are told apart.
+  Halves halves(const GriddedPlanes& planes, const VoxelPlane& at) const {
+    return planes.test || planes.wanted.told_apart() ? counter_.whole() : counter_.halves(at);
   }
 
-  void sample(const VoxelPlane& at, const SampleContents<double>& wanted, VoxelScratch& scratch,
-              Survey<double>& survey) const {
+  void find(const GriddedPlanes& planes, std::size_t number, std::size_t piece, VoxelWorker& own,
+            Survey<double>& to) const {
+    const VoxelPlane at = planes[number];
+    const Halves part = halves(planes, at);
+    if (counts(planes)) return counter_.count(at, part, piece, to);
+    const Sampled<double> samples(to);
+    counter_.visit_block(at, piece, part, own.columns, [&](const CellRun& run) {
+      const int images = part.images(run.first[0], run.first[2]);
+      count_cells(at.grid, run, to, images);
+      if (demand_.needs_samples()) sample(at, planes.wanted, run, planes.cell_volume * images, own, samples);
+    });
+  }
+  template <class Visit>
+  void visit_cells(const GriddedPlanes& planes, Rooms& rooms, const Visit& visit) const {
+    for (std::size_t block = 0; block < counter_.blocks(counter_.whole()); ++block)
+      counter_.visit_block(planes[0], block, counter_.whole(), rooms.of[0].columns,
+                           [&](const CellRun& run) { for_each_cell(run, visit); });
+  }
+
+  void sample(const VoxelPlane& at, const SampleContents<double>& wanted, const CellRun& run, double weight,
+              VoxelWorker& own, const Sampled<double>& to) const {
     const Geometry<double>& g = at.g;
     const VoxelGrid& grid = at.grid;
-    // Conditioning is the same at mirrored poses: one sample stands for all of them, unless they are told apart.
-    const bool together = !wanted.told_apart() && !at.test;
-    const Halves halves = together ? counter_.halves(at) : counter_.whole();
-    share_samples(counter_.blocks(halves), survey, [&](std::size_t block, Survey<double>& part, std::size_t worker) {
-      VoxelWorker& own = scratch.workers[worker];
-      ColumnConditioning<double>& poses = own.poses;
-      const Sampled<double> to(part);
-      counter_.visit_block(
-          at, block, halves, own.columns, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-            const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
-            const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
-            const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
-                                                 root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
-            poses.clear();
-            for (std::int64_t j = first; j < end; ++j) {
-              const double z = grid.centre(1, j) + g.d;
-              poses.add(z + sigma[0], z + sigma[1]);
-            }
-            if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
-            const double weight = survey.cell_volume * halves.images(i, k);
-            for (std::int64_t j = first; j < end; ++j) {
-              const auto n = static_cast<std::size_t>(j - first);
-              if (wanted.inertia)
-                inertia_values(joint_inertia(g, wanted.masses, s, c, x_j, sigma, {poses.z_c[0][n], poses.z_c[1][n]}),
-                               part, own.inertia);
-              add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
-                         wanted.conditioning ? poses.index[n] : 0, own.inertia, false, to);
-            }
-          });
-    });
+    const auto& [i, first, k] = run.first;
+    const double s = counter_.sin_theta(k), c = counter_.cos_theta(k), x = grid.centre(0, i);
+    const std::array<double, 2> x_j = {x - g.a * c / 2, g.b - x - g.a * c / 2};
+    const std::array<double, 2> sigma = {root_or_zero((g.l_d - x_j[0]) * (g.l_d + x_j[0])),
+                                         root_or_zero((g.l_d - x_j[1]) * (g.l_d + x_j[1]))};
+    ColumnConditioning<double>& poses = own.poses;
+    poses.clear();
+    for (std::int64_t j = first; j < run.end; ++j) {
+      const double z = grid.centre(1, j) + g.d;
+      poses.add(z + sigma[0], z + sigma[1]);
+    }
+    if (wanted.conditioning) poses.compute({g.l_u, wanted.gamma, s, c, x_j, sigma});
+    for (std::int64_t j = first; j < run.end; ++j) {
+      const auto n = static_cast<std::size_t>(j - first);
+      if (wanted.inertia)
+        inertia_values(joint_inertia(g, wanted.masses, s, c, x_j, sigma, {poses.z_c[0][n], poses.z_c[1][n]}), to.survey,
+                       own.inertia);
+      add_sample(wanted, weight, {x, at.y, grid.centre(1, j), grid.centre(2, k)},
+                 wanted.conditioning ? poses.index[n] : 0, own.inertia, false, to);
+    }
   }
 
   LimitSpec limits_;

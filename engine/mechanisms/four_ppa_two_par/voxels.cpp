@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/core/team.hpp"
-
 namespace pkm::four_ppa_two_par {
 
 Box default_box(const Geometry<double>& g) { return {{{0, g.b}, {-(g.l_u + g.l_d + g.d), -g.d}, {-kPi / 2, kPi / 2}}}; }
@@ -67,47 +65,23 @@ void VoxelCounter::fill_block(const VoxelPlane& plane, std::int64_t k_block, con
   with_instruction_set([&]<InstructionSet set>() { fill<set>(at, block); });
 }
 
-std::int64_t VoxelCounter::count(const VoxelPlane& plane, VoxelScratch& scratch, bool& touches) const {
-  scratch.workers.resize(std::max(scratch.workers.size(), workers()));
-  if (plane.test) return count_clear(plane, scratch.workers[0].columns, touches);
-  constexpr std::int64_t kColumns = 64;  // of eight thetas: a microsecond's work, to be shared out
-  const Halves part = halves(plane);
-  std::vector<CellTally>& found = scratch.tallies;
-  const std::int64_t parts = (part.xs + kColumns - 1) / kColumns;  // of each block
-  found.resize(blocks(part) * static_cast<std::size_t>(parts));
-  const auto block_of = [&](std::size_t piece) { return static_cast<std::int64_t>(piece) / parts * kLanes; };
-  share_pieces(found.size(), [&](std::size_t piece, std::size_t end) {
-    for (; piece < end; ++piece) {
-      const ColumnsAtThetas at = columns(plane, block_of(piece), part);
-      const std::int64_t from = static_cast<std::int64_t>(piece) % parts * kColumns;
-      found[piece] = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });
-    }
-  });
+void VoxelCounter::count(const VoxelPlane& plane, const Halves& part, std::size_t piece, Survey<double>& to) const {
+  const auto n = static_cast<std::int64_t>(piece);
+  const std::int64_t k_block = n / parts() * kLanes, from = n % parts() * kColumns;
+  if (k_block >= part.thetas || from >= part.xs) return;
+  const ColumnsAtThetas at = columns(plane, k_block, part);
+  const CellTally t = with_instruction_set([&]<InstructionSet set>() { return tally<set>(at, from, from + kColumns); });
   double total = 0;  // whole numbers
-  touches = false;
-  for (std::size_t piece = 0; piece < found.size(); ++piece) {
-    const CellTally& t = found[piece];
-    const std::int64_t k_block = block_of(piece);
-    for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k) {
-      const std::int64_t lane = k - k_block;
-      if (t.cells[lane] == 0) continue;
-      const double last = t.in_last[lane];
-      touches = touches || k == 0 || k == cells_[2] - 1 || t.in_first[lane] > 0 || (!part.mirrored_x && last > 0);
-      total += (t.cells[lane] - last) * part.images(0, k) + last * part.images(part.xs - 1, k);
-    }
-    touches = touches || t.lowest || t.highest;
+  bool touches = t.lowest || t.highest;
+  for (std::int64_t k = k_block; k < std::min(k_block + kLanes, part.thetas); ++k) {
+    const std::int64_t lane = k - k_block;
+    if (t.cells[lane] == 0) continue;
+    const double last = t.in_last[lane];
+    touches = touches || plane.grid.at_end(2, k) || t.in_first[lane] > 0 || (!part.mirrored_x && last > 0);
+    total += (t.cells[lane] - last) * part.images(0, k) + last * part.images(part.xs - 1, k);
   }
-  return static_cast<std::int64_t>(total);
-}
-
-std::int64_t VoxelCounter::count_clear(const VoxelPlane& plane, ColumnBlock& columns, bool& touches) const {
-  std::int64_t total = 0;
-  touches = false;
-  visit_columns(plane, columns, [&](std::int64_t i, std::int64_t first, std::int64_t end, std::int64_t k) {
-    total += end - first;
-    touches = touches || i == 0 || i == cells_[0] - 1 || first == 0 || end == cells_[1] || k == 0 || k == cells_[2] - 1;
-  });
-  return total;
+  to.feasible_cells += static_cast<std::int64_t>(total);
+  to.touches_box = to.touches_box || touches;
 }
 
 }  // namespace pkm::four_ppa_two_par

@@ -93,8 +93,7 @@ S moving_break(const Frame<S>& f, const Frame<Dual<1>>& still, double at, const 
     return at;
   } else {
     const double by_beta = distance(section(still, Dual<1>::variable(at, 0)), event).v[0];
-    const S by_design = distance(section(f, S(at)), event);
-    return S(at) - (by_design - value_of(by_design)) / by_beta;
+    return moving_zero(at, distance(section(f, S(at)), event), by_beta);
   }
 }
 

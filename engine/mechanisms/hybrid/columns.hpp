@@ -99,13 +99,13 @@ Integral<S> volume(const Frame<S>& f, double tolerance, ColumnScratch<S>& scratc
 template <class S, class Visit>
 void visit_columns(const Frame<S>& f, const S& beta, const GaussRule& rule, ColumnScratch<S>& scratch,
                    const Visit& visit) {
-  const auto& [s, structure] = cut(f, beta, scratch);
-  for (const Strip& strip : structure.strips) {
+  const Cut<S> c = cut(f, beta, scratch);
+  const Section<S>& s = c.section;
+  for (const Strip& strip : c.structure.strips) {
     const Piece<S> piece{height(s, strip.from), height(s, strip.to), true, true};
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const auto [z, jacobian] = map_node(piece, rule.node[i]);
-      visit(z, S(edge_at(s, strip.right, z) - edge_at(s, strip.left, z)), S(jacobian * rule.weight[i]));
-    }
+    visit_nodes(piece, rule, [&](const S& z, const S& jacobian, double weight) {
+      visit(z, S(edge_at(s, strip.right, z) - edge_at(s, strip.left, z)), S(jacobian * weight));
+    });
   }
 }
 

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/math/pieces.hpp"
 #include "engine/math/root_integral.hpp"
 #include "engine/mechanisms/hybrid/section.hpp"
 
@@ -93,7 +94,7 @@ S height(const Section<S>& s, const StripEnd& end) {
     return root > 0 ? s.sign(edge) * value_of(c.slope(z, S(root))) : 0.0;
   };
   const double by_z = slope(end.second) - slope(end.first);
-  return by_z != 0 ? S(z - (apart - value_of(apart)) / by_z) : z;
+  return moving_zero(end.z, apart, by_z);
 }
 
 /// An end of z of a section.

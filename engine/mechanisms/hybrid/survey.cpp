@@ -6,8 +6,8 @@
 #include "engine/mechanisms/hybrid/conditioning.hpp"
 #include "engine/mechanisms/hybrid/influence.hpp"
 #include "engine/mechanisms/hybrid/voxels.hpp"
+#include "engine/survey/grid_surveyor.hpp"
 #include "engine/survey/pose_quantities.hpp"
-#include "engine/survey/share_samples.hpp"
 #include "engine/survey/with_slopes.hpp"
 
 namespace pkm::hybrid {
@@ -112,25 +112,21 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
     if (!(value_of(stroke) > 0)) return;
     find_outer_pieces(f, still<double>(parameters), still<Dual<1>>(parameters), scratch);
     if (!fixed_) {
-      const Integral<S> volume = hybrid::volume(f, columns_.tolerance, scratch);
-      survey.volume = volume.value * stroke;
-      survey.error = value_of(volume.value) > 0 ? volume.error / value_of(volume.value) : 0;
-      survey.columns = volume.evaluations;
+      take_volume(volume(f, columns_.tolerance, scratch), survey);
+      survey.volume *= stroke;
       if (!planned_.demand.has(kConditioning)) return;
     }
     Conditioning<S> conditioning(f, planned_.demand, scratch.poses, survey);
-    for (const Piece<S>& piece : scratch.pieces)
-      for (std::size_t i = 0; i < beta_rule_.node.size(); ++i) {
-        const MappedNode<S> at = map_node(piece, beta_rule_.node[i]);
-        const S &beta = at.point, outer = at.jacobian * beta_rule_.weight[i] * stroke;
-        visit_columns(f, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
-          const S weight = outer * inner * length;
-          conditioning.add(z, beta, weight);
-          if (!fixed_) return;
-          survey.volume += weight;
-          ++survey.columns;
-        });
-      }
+    visit_nodes(scratch.pieces, beta_rule_, [&](const S& beta, const S& jacobian, double rule_weight) {
+      const S outer = jacobian * rule_weight * stroke;
+      visit_columns(f, beta, z_rule_, scratch, [&](const S& z, const S& length, const S& inner) {
+        const S weight = outer * inner * length;
+        conditioning.add(z, beta, weight);
+        if (!fixed_) return;
+        survey.volume += weight;
+        ++survey.columns;
+      });
+    });
     conditioning.finish();
   }
 
@@ -147,68 +143,70 @@ class ColumnSurveyor final : public WithSlopes<ColumnSurveyor> {
             beta_rule_ = gauss_legendre(fixed_ ? columns_.nodes[1] : kSampleNodes);
 };
 
-class OfVoxels final : public VoxelSurveyor {
+class OfVoxels final : public GridSurveyor<OfVoxels> {
  public:
-  OfVoxels(const Planned& planned, const VoxelOptions& voxels) : planned_(planned), voxels_(voxels) {}
-
-  VoxelMap map(std::span<const double> parameters) const override {
-    const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid = grid_of(d);
-    VoxelMap m = grid.map();
-    if (!(carriage(d.frame.l, how_held(planned_.plan, kY)) > 0)) return m;
-    VoxelHeights heights;
-    CellRuns runs;
-    const VoxelColumns columns(d, grid, heights);
-    for (std::int64_t k = 0; k < grid.cells[2]; ++k)
-      columns.visit(k, runs, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
-        for (; i < end; ++i) m.feasible[static_cast<std::size_t>((i * grid.cells[1] + j) * grid.cells[2] + k)] = 1;
-      });
-    return m;
-  }
+  OfVoxels(const Planned& planned, const VoxelOptions& voxels)
+      : GridSurveyor(planned.demand), planned_(planned), voxels_(voxels) {}
 
  private:
-  static constexpr std::int64_t kBetas = 8;  // of a piece that threads share out
+  friend GridSurveyor;
+  static constexpr std::int64_t kBetas = 8;  ///< of a piece
 
-  void survey(std::span<const double> parameters, Scratch& room, Survey<double>& survey) const override {
-    survey.clear(planned_.demand.fields);
-    VoxelScratch& scratch = room.get<VoxelScratch>();
-    const VoxelDesign d = design_of(parameters);
-    const VoxelGrid grid = grid_of(d);
+  struct Worker {
+    PoseList poses;  ///< whose conditioning is asked for
+    CellRuns runs;   ///< at one beta
+  };
+  using Rooms = GridRooms<VoxelHeights, Worker>;
+
+  struct GriddedColumns : Gridded {
+    VoxelDesign design;
+    const VoxelHeights& heights;
+
+    VoxelColumns columns() const { return {design, grid, heights}; }
+    /// Calls visit(k) for the beta of a piece.
+    template <class Visit>
+    void for_each_beta(std::size_t piece, const Visit& visit) const {
+      const auto first = static_cast<std::int64_t>(piece) * kBetas;
+      for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) visit(k);
+    }
+  };
+
+  GriddedColumns start(std::span<const double> parameters, Rooms& rooms) const {
+    const VoxelDesign d{frame_of(planned_, parameters), asks_clearance(planned_.plan, kClearanceMin)};
+    const VoxelGrid grid(voxels_.cells, voxels_.box ? *voxels_.box : default_box(d));
     const double stroke = carriage(d.frame.l, how_held(planned_.plan, kY));
-    survey.cells = grid.count();
-    survey.cell_volume = grid.cell_volume() * (stroke > 0 ? stroke : 1);
-    if (!(stroke > 0)) return;
-    if (scratch.workers.size() < workers()) scratch.workers.resize(workers());
-    const VoxelColumns columns(d, grid, scratch.heights);
-    const auto last = [&](std::size_t axis) { return grid.cells[axis] - 1; };
-    const bool counts = !d.with_links && !planned_.demand.has(kConditioning);
-    share_samples(
-        static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas), survey,
-        [&, cell_volume = survey.cell_volume](std::size_t piece, Survey<double>& part, std::size_t worker) {
-          auto& [poses, runs] = scratch.workers[worker];
-          Conditioning<double> conditioning(d.frame, planned_.demand, poses, part);
-          const auto first = static_cast<std::int64_t>(piece) * kBetas;
-          for (std::int64_t k = first; k < std::min(first + kBetas, grid.cells[2]); ++k) {
-            if (counts) {
-              part.feasible_cells += columns.count(k, runs, part.touches_box);
-              continue;
-            }
-            columns.visit(k, runs, [&](std::int64_t i, std::int64_t end, std::int64_t j) {
-              part.feasible_cells += end - i;
-              part.touches_box =
-                  part.touches_box || i == 0 || end > last(0) || j == 0 || j == last(1) || k == 0 || k == last(2);
-              conditioning.add(grid.centre(1, j), grid.centre(2, k), static_cast<double>(end - i) * cell_volume);
-            });
-          }
-          conditioning.finish();
-        });
-    survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
+    GriddedColumns columns{{grid, 0}, d, rooms.common};
+    if (!(stroke > 0)) return columns;
+    rooms.common.fill(d.frame, grid);
+    columns.pieces = static_cast<std::size_t>((grid.cells[2] + kBetas - 1) / kBetas);
+    columns.cell_volume *= stroke;
+    return columns;
   }
 
-  VoxelDesign design_of(std::span<const double> parameters) const {
-    return {frame_of(planned_, parameters), asks_clearance(planned_.plan, kClearanceMin)};
+  void find(const GriddedColumns& d, std::size_t, std::size_t piece, Worker& worker, Survey<double>& to) const {
+    const VoxelColumns columns = d.columns();
+    const bool counts = !d.design.with_links && !planned_.demand.has(kConditioning);
+    Conditioning<double> conditioning(d.design.frame, planned_.demand, worker.poses, to);
+    d.for_each_beta(piece, [&](std::int64_t k) {
+      if (counts) {
+        to.feasible_cells += columns.count(k, worker.runs, to.touches_box);
+        return;
+      }
+      columns.visit(k, worker.runs, [&](const CellRun& run) {
+        count_cells(d.grid, run, to);
+        conditioning.add(d.grid.centre(1, run.first[1]), d.grid.centre(2, k),
+                         static_cast<double>(run.count()) * d.cell_volume);
+      });
+    });
+    conditioning.finish();
   }
-  VoxelGrid grid_of(const VoxelDesign& d) const { return {voxels_.cells, voxels_.box ? *voxels_.box : default_box(d)}; }
+  template <class Visit>
+  void visit_cells(const GriddedColumns& d, Rooms& rooms, const Visit& visit) const {
+    for (std::size_t piece = 0; piece < d.pieces; ++piece)
+      d.for_each_beta(piece, [&](std::int64_t k) {
+        d.columns().visit(k, rooms.of[0].runs, [&](const CellRun& run) { for_each_cell(run, visit); });
+      });
+  }
 
   Planned planned_;
   VoxelOptions voxels_;

@@ -37,18 +37,16 @@ Box default_box(const VoxelDesign& design) {
   return box;
 }
 
-VoxelColumns::VoxelColumns(const VoxelDesign& design, const VoxelGrid& grid, VoxelHeights& heights)
-    : design_(design), grid_(grid), heights_(heights) {
+void VoxelHeights::fill(const Frame<double>& f, const VoxelGrid& grid) {
   const auto n = static_cast<std::size_t>(grid.cells[1] + kLanes);  // so that the last lanes may lie beyond the end
-  for (auto* list : {&heights.z, &heights.left, &heights.right}) list->resize(n);
-  const Frame<double>& f = design.frame;
+  for (auto* list : {&z, &left, &right}) list->resize(n);
   for (std::size_t j = 0; j < n; ++j) {
-    const double z = grid.centre(1, static_cast<std::int64_t>(j));
-    const double n1 = f.signs[0] * root_or_zero((f.g.L1 - z) * (f.g.L1 + z));
-    const double n2 = f.signs[1] * root_or_zero((f.g.L2 - z) * (f.g.L2 + z));
-    heights.z[j] = z;
-    heights.left[j] = max(f.lo[0] + n1, f.lo[1] + n2);
-    heights.right[j] = min(f.hi[0] + n1, f.hi[1] + n2);
+    const double at = grid.centre(1, static_cast<std::int64_t>(j));
+    const double n1 = f.signs[0] * root_or_zero((f.g.L1 - at) * (f.g.L1 + at));
+    const double n2 = f.signs[1] * root_or_zero((f.g.L2 - at) * (f.g.L2 + at));
+    z[j] = at;
+    left[j] = max(f.lo[0] + n1, f.lo[1] + n2);
+    right[j] = min(f.hi[0] + n1, f.hi[1] + n2);
   }
 }
 
@@ -89,16 +87,15 @@ std::int64_t VoxelColumns::count(std::int64_t k, CellRuns& runs, bool& touches) 
   const auto some_at = [&](std::size_t j) {
     return at.first_z <= j && j < at.end_z && runs.hole[j] - runs.first[j] + (runs.end[j] - runs.after[j]) > 0;
   };
-  const bool last_beta = k == 0 || k == grid_.cells[2] - 1;
   if (at.tally.cells > 0)
-    touches =
-        touches || at.tally.touches || last_beta || some_at(0) || some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
+    touches = touches || at.tally.touches || grid_.at_end(2, k) || some_at(0) ||
+              some_at(static_cast<std::size_t>(grid_.cells[1] - 1));
   return static_cast<std::int64_t>(at.tally.cells);
 }
 
-bool VoxelColumns::clear(double x, double z, double beta, bool along_x) const {
+bool VoxelColumns::clear(const Cell& cell, bool along_x) const {
   const Frame<double>& f = design_.frame;
-  const Pose<double> pose{x, 0, z, beta};
+  const Pose<double> pose{grid_.centre(0, cell[0]), 0, grid_.centre(1, cell[1]), grid_.centre(2, cell[2])};
   const Links<double> link = links(f.g, pose, inverse(f.g, pose, f.signs), shaft(f.g, pose));
   return std::ranges::all_of(kPairs, [&](const LinkPair& pair) {
     const bool moves = pair.first == kLinkF || pair.second == kLinkF;  // the others move along x together

@@ -80,16 +80,15 @@ class Section {
     for (const auto& piece : room.pieces) {
       const Piece<S> range{ends.corner(piece.from_corner, piece.from), ends.corner(piece.to_corner, piece.to),
                            is_round(piece.from_corner, room), is_round(piece.to_corner, room)};
-      for (std::size_t i = 0; i < along_v.node.size(); ++i) {
-        const auto [t, jacobian] = map_node(range, along_v.node[i]);
+      visit_nodes(range, along_v, [&](const S& t, const S& jacobian, double weight_v) {
         for (std::size_t k = piece.first; k < piece.first + piece.count; ++k) {
           const S low = ends.end(room.spans[k].lower, t), high = ends.end(room.spans[k].upper, t);
-          const S weight = room.v[1] * room.z[1] * jacobian * along_v.weight[i] * (high - low);
+          const S weight = room.v[1] * room.z[1] * jacobian * weight_v * (high - low);
           for (std::size_t j = 0; j < along_z.node.size(); ++j)
             visit(room.v[0] + room.v[1] * t, room.z[0] + room.z[1] * (low + (high - low) * along_z.node[j]),
                   weight * along_z.weight[j]);
         }
-      }
+      });
     }
   }
 

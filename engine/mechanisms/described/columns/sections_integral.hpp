@@ -173,14 +173,13 @@ class SectionsIntegral {
       else
         piece = part.piece;
       below = &piece.upper;
-      for (std::size_t i = 0; i < outer.node.size(); ++i) {
-        const auto [at, jacobian] = map_node(piece, outer.node[i]);
+      pkm::visit_nodes(piece, outer, [&](const S& at, const S& jacobian, double own) {
         slice(level, value_of(at), room);
         if constexpr (Derivative<S>) set_moving(level, at, room);
         place.push_back(at);
-        visit_nodes<S>(level + 1, weight * jacobian * outer.weight[i], outer, inner, place, room, visit);
+        visit_nodes<S>(level + 1, weight * jacobian * own, outer, inner, place, room, visit);
         place.pop_back();
-      }
+      });
     }
   }
 

@@ -184,20 +184,13 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     std::ranges::transform(samples.inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
     if constexpr (std::is_same_v<S, double>) {
       room.known.of = nullptr;
-      take(integral_->measure(room.inputs, room.integral), survey);
+      take_volume(integral_->measure(room.inputs, room.integral), survey);
     } else {
-      take(with_slopes(samples.inputs, room), survey);
+      take_volume(with_slopes(samples.inputs, room), survey);
       for (std::size_t i = 0; i < samples.inputs.size(); ++i)
         survey.volume.v = survey.volume.v + samples.inputs[i].v * room.known.by_input[i];
     }
     if (demand_.needs_samples()) add_samples(parameters, samples, room, survey);
-  }
-
-  template <class S>
-  static void take(const Integral<double>& volume, Survey<S>& survey) {
-    survey.volume = S(volume.value);
-    survey.error = volume.value > 0 ? volume.error / volume.value : 0;
-    survey.columns = volume.evaluations;
   }
 
   /// The volume and its derivatives by all inputs. Parameters come in passes of four: what the first found serves the

@@ -11,9 +11,8 @@
 #include "engine/dynamics/coupling.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/survey/survey_set.hpp"
-#include "tests/unit/contracts/everything.hpp"
 #include "tests/unit/mechanisms/crr_cru/golden.hpp"
-#include "tests/unit/mechanisms/described/files.hpp"
+#include "tests/unit/mechanisms/described/papers.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
 #include "tests/unit/mechanisms/hybrid/golden.hpp"
 #include "tests/unit/survey/own_inertia.hpp"
@@ -38,46 +37,8 @@ struct GoldenGrid {
 Pose<double> pose_of(const Json& x) { return {x[0], x[1], x[2], x[3]}; }
 std::array<std::int64_t, 3> cells_of(const Json& x) { return {x[0], x[1], x[2]}; }
 
-class PaperMechanism : public ::testing::TestWithParam<std::string> {
+class PaperMechanism : public test::PaperPair {
  protected:
-  const Mechanism& own() const {
-    return **std::ranges::find_if(all_mechanisms(), [](const auto& m) { return m->info().name == GetParam(); });
-  }
-  const Mechanism& file() const { return *test::described(GetParam()); }
-
-  /// The file's signs as the built-in mechanism calls the mode.
-  static std::string own_mode(const std::string& signs) {
-    if (GetParam() == "4ppa-2par") {
-      const auto word = [](char sign) { return std::string(sign == '+' ? "lower" : "upper"); };
-      return word(signs[0]) + "," + word(signs[2]);
-    }
-    if (GetParam() == "2t1r-p-hybrid") return signs.substr(0, 5) + (signs[6] == '+' ? "" : "/-");
-    return signs;
-  }
-  std::vector<double> of_file(const std::vector<double>& design) const {
-    std::vector<double> same;
-    for (const Parameter& p : file().info().parameters)
-      same.push_back(design[static_cast<std::size_t>(find_named(own().info().parameters, p.name) -
-                                                     own().info().parameters.data())]);
-    return same;
-  }
-  LimitSpec of_file(const LimitSpec& limits) const {
-    LimitSpec same = no_limits(file().info());
-    for (std::size_t i = 0; i < own().info().limits.size(); ++i) {
-      const LimitInfo* const limit = find_named(file().info().limits, own().info().limits[i].name);
-      if (!limit) continue;
-      const auto at = static_cast<std::size_t>(limit - file().info().limits.data());
-      same.given[at] = limits.given[i];
-      same.derived[at] = limits.derived[i];
-    }
-    return same;
-  }
-  LimitSpec without_clearance(LimitSpec limits) const {
-    for (std::size_t i = 0; i < limits.given.size(); ++i)
-      if (own().info().limits[i].group == "clearance") limits.given[i] = kNoClearance;
-    return limits;
-  }
-
   std::vector<GoldenPose> golden_poses() const {
     std::vector<GoldenPose> all;
     if (GetParam() == "4ppa-2par") {
@@ -420,8 +381,7 @@ TEST_P(PaperMechanism, HasTheSameSlopesOfSamples) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PaperMechanism,
-                         ::testing::Values("4ppa-2par", "3crr-r-cru", "quadrupteron", "2t1r-p-hybrid"),
+INSTANTIATE_TEST_SUITE_P(All, PaperMechanism, test::kPapers,
                          [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace
