@@ -329,7 +329,7 @@ function showMechanism(study, section) {
             uirevision: "camera",
             margin: { l: 0, r: 0, t: 0, b: 0 },
             legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
-            scene: roomScene(spans, away),
+            scene: roomScene(spans, Math.sqrt(away)), // it may be turned and come nearer
           },
         };
       },
