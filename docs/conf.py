@@ -41,7 +41,7 @@ html_show_sphinx = False
 mathjax_path = "formulas.js"  # KaTeX of the site itself sets the formulas: pages open without a network
 copybutton_prompt_text = "$ "
 copybutton_only_copy_prompt_lines = True
-pygments_style = "tango"
+pygments_style = "xcode"  # its colours can be read on the ground of site.css
 pygments_dark_style = "github-dark"
 
 # Where the site has what a file of the repository says: file, or file#heading -> page#heading.

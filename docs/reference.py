@@ -252,7 +252,7 @@ def main():
     help_text = run("--help")
     table_of_commands = help_text.split("Subcommands:\n")[1].split("\n\n")[0]
     commands = [line.split()[0] for line in table_of_commands.splitlines()]
-    text = "# Commands\n\nWhat `pkmopt --help` and `pkmopt COMMAND --help` print.\n\n" + fenced(help_text)
+    text = "# Commands\n\nEvery command with its options, as `pkmopt --help` and `pkmopt COMMAND --help` print them.\n\n" + fenced(help_text)
     for command in commands:
         text += f"## {command}\n\n" + fenced(run(command, "--help"))
     (reference / "commands.md").write_text(text)

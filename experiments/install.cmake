@@ -85,6 +85,6 @@ set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, man-db, libeigen3-dev, libhdf5-dev, libnlopt-dev, \
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, man-db, g++, cmake, pkg-config, libeigen3-dev, libhdf5-dev, libnlopt-dev, \
 coinor-libipopt-dev, liblapack-dev, libtomlplusplus-dev, libxxhash-dev, zlib1g-dev")
 include(CPack)

@@ -81,7 +81,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);  // further away is another word
   for (const auto& candidate : known) {
     if (candidate.size() > 2 * kLongestName) continue;  // nor could it be shown
-    const std::size_t distance = edit_distance(name, candidate);
+    std::size_t distance = edit_distance(name, candidate);
+    if (name.size() > 1 && candidate.starts_with(name)) distance = std::min<std::size_t>(distance, 1);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

@@ -39,7 +39,7 @@ class StorageError : public std::runtime_error {
 /// What any exception has to say to a user, as short and as printable; the standard library's words are not in it.
 std::string message_of(const std::exception& error);
 
-/// The known name nearest to `name` by edit distance, or "" when none is near enough to be meant.
+/// The known name nearest to `name` by edit distance, or that begins with it; "" when none is near enough to be meant.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
 /// "a, b, c", for messages.

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <vector>
 
@@ -181,6 +182,21 @@ std::string angle_hint(double value, std::string_view unit) {
   if (unit != "rad" || std::fabs(value) <= kGreatestAngle) return "";
   return "an angle within " + shortest(kGreatestAngle) +
          " rad, beyond which digits would be lost; leave whole turns out";
+}
+
+std::string in_degrees(double value, std::string_view unit) {
+  if (unit != "rad" || std::isnan(value)) return "";
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), " (%.6g deg)", value * 180 / kHalfTurn);
+  return text.data();
+}
+
+std::string with_degrees(double value, std::string_view unit) {
+  return with_unit(value, unit) + in_degrees(value, unit);
+}
+
+std::string from_to(double lower, double upper, std::string_view unit) {
+  return shortest(lower) + in_degrees(lower, unit) + " .. " + with_degrees(upper, unit);
 }
 
 std::optional<std::int64_t> parse_integer(std::string_view text) {

@@ -30,6 +30,13 @@ inline constexpr double kGreatestAngle = 1e5;
 /// Why a number in `unit` is not taken, where it is an angle beyond kGreatestAngle: what is expected. Else "".
 std::string angle_hint(double value, std::string_view unit);
 
+/// " (75 deg)" behind a number in rad; "" behind one in another unit, and behind NaN.
+std::string in_degrees(double value, std::string_view unit);
+/// "1.5 rad (85.9437 deg)", "2 m".
+std::string with_degrees(double value, std::string_view unit);
+/// "0 .. 2 m", "0 (0 deg) .. 1.5 rad (85.9437 deg)".
+std::string from_to(double lower, double upper, std::string_view unit);
+
 /// A whole number in decimal digits, "-12", "0"; none for anything else, such as "010", "1e3", " 1", "+1" or what 64
 /// bits do not hold.
 std::optional<std::int64_t> parse_integer(std::string_view text);

@@ -16,10 +16,6 @@ using Row = std::vector<std::string>;
 /// Behind what a study gives or leaves out: whether it is what it would be without.
 const char* mark(bool is_default) { return is_default ? "(default)" : ""; }
 
-std::string range(double lower, double upper, const std::string& unit) {
-  return shortest(lower) + " .. " + with_unit(upper, unit);
-}
-
 void write_parameters(std::ostream& out, const Study& study) {
   const ProblemParts& parts = study.problem->parts();
   const auto& known = parts.mechanism->info().parameters;
@@ -27,12 +23,12 @@ void write_parameters(std::ostream& out, const Study& study) {
   for (std::size_t v = 0; v < parts.varies.size(); ++v) {
     const std::size_t i = parts.varies[v];
     const Variable& variable = parts.space[v];
-    std::string bounds = range(variable.lower, variable.upper, variable.unit);
-    if (variable.step > 0) bounds += " in steps of " + with_unit(variable.step, variable.unit);
+    std::string bounds = from_to(variable.lower, variable.upper, variable.unit);
+    if (variable.step > 0) bounds += " in steps of " + with_degrees(variable.step, variable.unit);
     std::string base;
     if (study.baseline) {
       const double value = (*study.baseline)[i];
-      base = "baseline " + with_unit(value, variable.unit);
+      base = "baseline " + with_degrees(value, variable.unit);
       if (value < variable.lower || value > variable.upper) base += " (outside the bounds)";
     }
     varying.push_back({variable.name, bounds, base, known[i].meaning});
@@ -42,8 +38,8 @@ void write_parameters(std::ostream& out, const Study& study) {
     const double value = parts.parameters[i];
     std::string note = mark(value == known[i].nominal);
     if (study.baseline && (*study.baseline)[i] != value)
-      note += (note.empty() ? "" : " ") + ("baseline " + with_unit((*study.baseline)[i], known[i].unit));
-    fixed.push_back({known[i].name, with_unit(value, known[i].unit), note, known[i].meaning});
+      note += (note.empty() ? "" : " ") + ("baseline " + with_degrees((*study.baseline)[i], known[i].unit));
+    fixed.push_back({known[i].name, with_degrees(value, known[i].unit), note, known[i].meaning});
   }
   out << titled("variables", varying);
   out << titled("fixed parameters", fixed);
@@ -54,8 +50,8 @@ std::string held_text(const HeldCoordinate& held, const std::string& unit) {
   using Kind = HeldCoordinate::Kind;
   if (held.kind == Kind::middle) return "middle of each design";
   if (held.kind == Kind::integrated) return "integrated over its range";
-  if (held.kind == Kind::value) return with_unit(held.value, unit);
-  return join_of(held.values, [&unit](double value) { return with_unit(value, unit); });
+  if (held.kind == Kind::value) return with_degrees(held.value, unit);
+  return join_of(held.values, [&unit](double value) { return with_degrees(value, unit); });
 }
 
 std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) {
@@ -75,7 +71,7 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const SurveyPlan& plan) 
     if (plan.columns() && sweep.swept[k] != sweep.column)
       nodes.push_back(axis.name + " = " + std::to_string(plan.columns()->nodes[nodes.size()]));
     if (const auto& given = plan.box())
-      box.push_back(axis.name + " = " + range((*given)[k][0], (*given)[k][1], axis.unit));
+      box.push_back(axis.name + " = " + from_to((*given)[k][0], (*given)[k][1], axis.unit));
   }
   for (std::size_t k = 0; k < plan.held.size(); ++k) {
     const HeldCoordinate& held = plan.held[k];
@@ -112,7 +108,7 @@ std::vector<Row> limit_rows(const Study& study) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto& limit = known[i];
     const char* const cuts_nothing = "(default: cuts nothing)";
-    std::string value = with_unit(limit.inactive, limit.unit), origin = cuts_nothing;
+    std::string value = with_degrees(limit.inactive, limit.unit), origin = cuts_nothing;
     if (const Parameter* own = find_named(parts.mechanism->info().parameters, limit.name)) {
       value = "the parameter";
       origin = "(default: " + own->name + " of the design)";
@@ -120,7 +116,7 @@ std::vector<Row> limit_rows(const Study& study) {
     if (!study.limit_origins[i].empty()) {
       const std::optional<double>& given = parts.plan.limits.given[i];
       const bool is_default = given && *given == limit.inactive && origin == cuts_nothing;
-      value = given ? with_unit(*given, limit.unit) : limit.derivation;
+      value = given ? with_degrees(*given, limit.unit) : limit.derivation;
       origin = "from " + study.limit_origins[i] + (is_default ? std::string(" ") + cuts_nothing : "");
     }
     rows.push_back({limit.name, value, origin, limit.meaning});

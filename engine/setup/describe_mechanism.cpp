@@ -90,9 +90,9 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   const PoseReport report = mechanism.inspect(parameters, nominal, info.modes.front(), limits);
   std::vector<std::string> at, joints;
   for (std::size_t i = 0; i < nominal.size(); ++i)
-    at.push_back(info.coordinates[i].name + " = " + with_unit(nominal[i], info.coordinates[i].unit));
+    at.push_back(info.coordinates[i].name + " = " + with_degrees(nominal[i], info.coordinates[i].unit));
   for (std::size_t i = 0; i < info.joints.size(); ++i)
-    joints.push_back(info.joints[i].name + " = " + with_unit((*report.joints)[i], info.joints[i].unit));
+    joints.push_back(info.joints[i].name + " = " + with_degrees((*report.joints)[i], info.joints[i].unit));
   out << "  " << join(at) << "\n  " << join(joints) << '\n';
   if (!report.J) {
     out << "  singular: the joints do not follow from the pose's rates\n";
@@ -160,8 +160,7 @@ std::string describe_mechanism(const Mechanism& mechanism) {
   std::vector<std::vector<std::string>> parameters, coordinates, joints, limits;
   std::vector<double> nominal;
   for (const Parameter& p : info.parameters) {
-    parameters.push_back(
-        {p.name, with_unit(p.nominal, p.unit), shortest(p.lower) + " .. " + with_unit(p.upper, p.unit), p.meaning});
+    parameters.push_back({p.name, with_degrees(p.nominal, p.unit), from_to(p.lower, p.upper, p.unit), p.meaning});
     nominal.push_back(p.nominal);
   }
   const auto ranges = mechanism.ranges(nominal);
@@ -169,16 +168,15 @@ std::string describe_mechanism(const Mechanism& mechanism) {
     const AxisInfo& axis = info.coordinates[i];
     const auto swept =
         std::ranges::find(info.sweeps.front().swept, static_cast<int>(i)) != info.sweeps.front().swept.end();
-    coordinates.push_back(
-        {axis.name, axis.unit, swept ? "swept" : "held",
-         ranges ? shortest((*ranges)[i][0]) + " .. " + with_unit((*ranges)[i][1], axis.unit) : "no box"});
+    coordinates.push_back({axis.name, axis.unit, swept ? "swept" : "held",
+                           ranges ? from_to((*ranges)[i][0], (*ranges)[i][1], axis.unit) : "no box"});
   }
   for (std::size_t i = 0; i < info.joints.size(); ++i)
     joints.push_back(
         {info.joints[i].name, info.joints[i].unit, i < info.closed_forms.size() ? info.closed_forms[i] : ""});
   for (const LimitInfo& limit : info.limits)
     limits.push_back(
-        {limit.name, "inactive " + with_unit(limit.inactive, limit.unit), limit.derivation, limit.meaning});
+        {limit.name, "inactive " + with_degrees(limit.inactive, limit.unit), limit.derivation, limit.meaning});
   out << titled("parameters", parameters);
   out << titled("coordinates", coordinates);
   out << titled("joints", joints);

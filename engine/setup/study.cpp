@@ -215,7 +215,7 @@ Study read_study_toml(const std::string& text, const std::string& file_name, con
 }
 
 Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes) {
-  const SourceText source{read_text_file(path, "a study file in TOML"), path};
+  const SourceText source{read_text_file(path, "a study in TOML"), path};
   return read_document(parse_toml(source.text, path), source, catalogues, load_description, changes);
 }
 

@@ -6,7 +6,7 @@
 namespace pkm {
 
 /// The text of the file at `path`, at most 16 MiB (a study takes a few thousand bytes). `expected` says what it should
-/// be, for messages: "a study file in TOML". Throws ConfigError.
+/// be, for messages: "a study in TOML". Throws ConfigError.
 std::string read_text_file(const std::string& path, const std::string& expected);
 
 }  // namespace pkm

@@ -1,7 +1,9 @@
 #include "experiments/app/axes.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace pkm {
 
@@ -24,6 +26,14 @@ std::string axes_text(const Axes& axes, std::span<const double> values) {
   return join(texts);
 }
 
+std::string turns_note(const Axes& axes, std::span<const double> values) {
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    if (axes[i].unit == "rad" && std::fabs(values[i]) > 2 * std::numbers::pi)
+      return axes[i].name + " is more than a turn; degrees are typed " + axes[i].name + "=" +
+             formatted("%.6g", values[i]) + "deg";
+  return "";
+}
+
 Json axes_json(const Axes& axes, const std::optional<AxisVector<double>>& values) {
   return values ? values_by_name(axes, *values) : Json();
 }
@@ -40,7 +50,7 @@ std::string matrix_text(const std::string& title, const AxisMatrix<double>& matr
   for (std::size_t i = 0; i < matrix.rows(); ++i, text += '\n')
     for (std::size_t j = 0; j < matrix.cols(); ++j) {
       std::array<char, 32> cell{};
-      std::snprintf(cell.data(), cell.size(), "%18.11g", matrix(i, j));
+      std::snprintf(cell.data(), cell.size(), "%18.11g", matrix(i, j) + 0.0);  // no "-0"
       text += cell.data();
     }
   return text;
@@ -48,6 +58,7 @@ std::string matrix_text(const std::string& title, const AxisMatrix<double>& matr
 
 void say_pose(const MechanismInfo& info, const Pose<double>& at, const PoseReport& report, Printout& out) {
   out.say("pose", axes_json(info.coordinates, at), axes_text(info.coordinates, at));
+  if (const std::string note = turns_note(info.coordinates, at); !note.empty()) out.head.push_back({"note", note});
   out.json["feasible"] = report.feasible;
   out.say("assembles", report.assembles, report.assembles ? "yes" : "no: " + report.reason);
   out.json["reason"] = text_or_null(report.reason);

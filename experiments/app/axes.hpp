@@ -27,6 +27,8 @@ std::string units_of(const List& list, const std::string& behind = "") {
 
 /// "x = 0.25 m, theta = 0.5 rad"
 std::string axes_text(const Axes& axes, std::span<const double> values);
+/// What an angle of more than a turn was perhaps meant to be: a number without a unit is in rad. "": there is none.
+std::string turns_note(const Axes& axes, std::span<const double> values);
 /// By name; null where they do not exist.
 Json axes_json(const Axes& axes, const std::optional<AxisVector<double>>& values);
 /// A list.

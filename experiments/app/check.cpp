@@ -159,6 +159,7 @@ void check_study(const Study& study, const CheckArguments& arguments, Session& s
 
 void check(const CheckArguments& arguments, Session& session) {
   expect_toml(arguments.file, "show", session);
+  expect_file(arguments.file, "a study or a mechanism in TOML", "list mechanisms", session);
   const MechanismOrStudy found = load_mechanism_or_study(arguments.file, session.catalogues, arguments.changes);
   if (const Study* const study = std::get_if<Study>(&found)) return check_study(*study, arguments, session);
   if (!arguments.changes.empty())

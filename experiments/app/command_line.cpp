@@ -14,8 +14,10 @@ namespace {
 constexpr std::size_t kLongestComplaint = 1000;  // bytes, of CLI11's own messages
 
 /// Options that take a list of name=value.
-const std::vector<std::string> kLists = {"--set",          "--at",     "--joints", "--velocity",
-                                         "--acceleration", "--forces", "--wrench", "--held"};
+const std::vector<std::string> kLists = {
+    "--set",    "--limit",         "--at",   "--joints", "--velocity",    "--acceleration",
+    "--speeds", "--accelerations", "--near", "--forces", "--wrench",      "--held",
+    "--cut",    "--cells",         "--box",  "--least",  "--joint-error", "--tolerance"};
 
 /// "--set a=1 b=2" becomes "--set a=1 --set b=2", for every option that takes a list of name=value.
 std::vector<std::string> spread_lists(const std::vector<std::string>& arguments) {

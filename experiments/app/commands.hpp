@@ -41,9 +41,13 @@ CLI::Option* add_option(CLI::App& command, const std::string& words, Value& valu
   const auto type = name_end < words.size() ? words.substr(name_end + 1) : "";
   CLI::Option* const option = command.add_option(words.substr(0, name_end), value, meaning)->type_name(type);
   if constexpr (std::is_same_v<Value, std::string>)
-    option->each([option](const std::string& given) {
+    option->each([option, type](const std::string& given) {
       if (given.empty())
         throw ConfigError({"", 0, option->get_name()}, "an empty text where there has to be something");
+      const bool names_file = type.starts_with("F.") || type.ends_with("FILE") || type == "DIR";
+      if (names_file && given.starts_with('-'))
+        throw ConfigError({"", 0, option->get_name()}, "'" + given + "'",
+                          "a name; './" + given + "' is a file so called");
     });
   return option;
 }

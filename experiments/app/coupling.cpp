@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/math/rounding.hpp"
 #include "engine/problem/pose_statistic.hpp"
 #include "engine/report/csv_table.hpp"
 #include "engine/setup/assignments.hpp"
@@ -59,7 +60,8 @@ std::pair<Json, std::vector<Row>> statistics(const MechanismInfo& info, const Su
     for (const char* name : {"mean", "std", "p95", "max"}) {
       const double value = PoseStatistic{kCouplingIndex, name, limb}(survey, scratch);
       json[name][limb] = value;
-      row.push_back(number(value));
+      const double mean = json["mean"][limb];
+      row.push_back(number(beyond_rounding(value, mean)));  // all alike leave roundings
     }
     rows.push_back(row);
   };

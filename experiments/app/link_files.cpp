@@ -48,8 +48,9 @@ void write_links(const Target& target, const std::string& mode, const Pose<doubl
   const auto write = [&](const std::string& file, const std::string& bytes) {
     write_file(file, bytes, existing);
     out.json["files"].push_back(file);
-    out.text += "\nwrote " + file + '\n';
+    out.text += "wrote " + file + '\n';
   };
+  out.text += '\n';
   if (!files.stl.empty()) write(files.stl, links_stl(links, target.limits.obstacles, title));
   if (!files.dxf.empty()) write(files.dxf, links_dxf(links, target.limits.obstacles));
   if (!files.urdf.empty())

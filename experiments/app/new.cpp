@@ -150,6 +150,7 @@ std::string study_text(const Catalogues& catalogues, const NewArguments& argumen
 
 void write_new(const NewArguments& arguments, const Session& session) {
   const std::vector<std::string> kinds = {"mechanism", "study"};
+  expect_file(arguments.kind, "one of " + join(kinds), "new study", session);
   if (std::ranges::find(kinds, arguments.kind) == kinds.end())
     throw ConfigError({"", 0, "new"}, "'" + arguments.kind + "'", "one of " + join(kinds),
                       nearest_name(arguments.kind, kinds));

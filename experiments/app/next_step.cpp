@@ -14,6 +14,11 @@ bool is_file(const std::string& file, const std::string& ending) {
   return file.ends_with(ending) && std::filesystem::is_regular_file(file, unseen);
 }
 
+bool is_mechanism(const std::string& word, const Session& session) {
+  return std::ranges::any_of(session.catalogues.mechanisms,
+                             [&](const auto& known) { return known->info().name == word; });
+}
+
 }  // namespace
 
 std::string quoted(const std::string& word) {
@@ -34,7 +39,15 @@ std::string next_step(const Session& session, const std::vector<std::string>& wo
   return "next: " + command_text(session, words) + '\n';
 }
 
+void expect_file(const std::string& word, const std::string& wanted, const std::string& instead,
+                 const Session& session) {
+  std::error_code unseen;
+  if (is_mechanism(word, session) && !std::filesystem::exists(word, unseen))
+    throw ConfigError({}, "the mechanism '" + word + "'", wanted, session.program + ' ' + instead + ' ' + word);
+}
+
 void expect_study_file(const std::string& file, const std::string& instead, const Session& session) {
+  expect_file(file, "a study file, F.h5", "list mechanisms", session);
   if (is_file(file, ".toml"))
     throw ConfigError({file, 0, ""}, "a file in TOML", "a study file, F.h5, as '" + session.program + " run' writes it",
                       session.program + ' ' + instead + ' ' + quoted(file));

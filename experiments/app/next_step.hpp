@@ -17,6 +17,11 @@ std::string command_text(const Session& session, const std::vector<std::string>&
 /// "next: pkmopt report a.h5\n"
 std::string next_step(const Session& session, const std::vector<std::string>& words);
 
+/// Throws ConfigError for the name of a built-in mechanism where there has to be a file or a kind of file.
+/// @param wanted   what is expected
+/// @param instead  the command that takes the name, without the program's name
+void expect_file(const std::string& word, const std::string& wanted, const std::string& instead,
+                 const Session& session);
 /// Throws ConfigError for a file in TOML where a study file is read.
 /// @param instead  the command that takes it, without the program's name and the file's
 void expect_study_file(const std::string& file, const std::string& instead, const Session& session);

@@ -7,13 +7,14 @@
 #include <numbers>
 
 #include "engine/core/printable.hpp"
+#include "engine/core/unit.hpp"
 
 namespace pkm {
 
 std::string formatted(const char* format, double value) {
   if (std::isnan(value)) return "-";
   std::array<char, 40> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
+  std::snprintf(buffer.data(), buffer.size(), format, value + 0.0);  // no "-0"
   return buffer.data();
 }
 
@@ -24,10 +25,7 @@ std::string number(double value, std::string_view unit) {
   return text;
 }
 
-std::string position(double value, std::string_view unit) {
-  const bool turns = unit == "rad" && !std::isnan(value);
-  return number(value, unit) + (turns ? " (" + formatted("%.6g", value * 180 / std::numbers::pi) + " deg)" : "");
-}
+std::string position(double value, std::string_view unit) { return number(value, unit) + in_degrees(value, unit); }
 
 Step handy(const std::string& unit) {
   if (unit == "m") return {1e-3, "mm"};

@@ -288,6 +288,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
 
 void run(const RunArguments& arguments, Session& session) {
   expect_toml(arguments.study, "resume", session);
+  expect_file(arguments.study, "a study in TOML", "new study", session);
   Study study = load_study_toml(arguments.study, session.catalogues, arguments.changes);
   if (arguments.seed) study.seed = static_cast<std::uint64_t>(*arguments.seed);
   const std::string output = arguments.output.empty() ? study.output_file() : arguments.output;

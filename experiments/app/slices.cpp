@@ -1,5 +1,6 @@
 #include "experiments/app/slices.hpp"
 
+#include "engine/core/catalogue.hpp"
 #include "engine/setup/assignments.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/grid.hpp"
@@ -55,6 +56,10 @@ void add_cuts(Slices& slices, const SurveyPlan& plan, const MechanismInfo& info,
   const std::vector<int>& swept = sweep_of(info, plan).swept;
   Axes axes;
   for (const int coordinate : swept) axes.push_back(info.coordinates[static_cast<std::size_t>(coordinate)]);
+  for (const std::string& name : assigned_names(lists))
+    if (find_named(info.coordinates, name) && !find_named(axes, name))
+      throw ConfigError({"", 0, "--cut"}, "the coordinate '" + name + "', which is held",
+                        "one that is swept, " + join(names_of(axes)), "--held " + name + "=..");
   const auto values = parse_assignments(lists, "--cut", assignable_axes(axes));
   for (std::size_t i = 0; i < swept.size(); ++i)
     if (values[i]) slices[swept[i]] = *values[i];

@@ -162,12 +162,13 @@ double parse_gap(const std::string& text, const std::string& option) {
 }
 
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name) {
-  if (target.study)
-    if (const NamedMotion* known = find_named(target.study->motions, name)) return known->motion;
-  if (target.study && !target.study->motions.empty() && !may_be_file(name)) {
-    const std::vector<std::string> known = names_of(target.study->motions);
-    throw ConfigError({"", 0, "--motion"}, "'" + name + "'", "a motion in TOML, or one of the study's: " + join(known),
-                      nearest_name(name, known));
+  if (target.study) {
+    const auto& motions = target.study->motions;
+    if (const NamedMotion* known = find_named(motions, name)) return known->motion;
+    if (!motions.empty() && !may_be_file(name))
+      throw ConfigError({"", 0, "--motion"}, "'" + name + "', which is neither a [[motion]] of the study nor a file",
+                        "one of " + join(names_of(motions)) + ", or a motion in TOML",
+                        nearest_name(name, names_of(motions)));
   }
   return load_motion_toml(name, motion_names(*target.mechanism));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/math/rounding.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
@@ -68,7 +69,9 @@ void tell_summary(const Mechanism& mechanism, const Trajectory& trajectory, Prin
     }
     add_total("peak_total_power", "peak power", s.peak_total_power, "W");
     add_total("least_total_power", "least power", s.least_total_power, "W");
-    add_total("energy", "energy " + per, s.energy, "J", "braking gives back what it takes");
+    // What goes in and out again leaves roundings.
+    add_total("energy", "energy " + per, beyond_rounding(s.energy, s.energy_drawn), "J",
+              "braking gives back what it takes");
     add_total("energy_drawn", "energy drawn " + per, s.energy_drawn, "J", "braking gives back nothing");
   }
   out.section("joints", rows);

@@ -101,6 +101,8 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
     const std::string& why = workspace.held_note[i];
     json["held"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
     out.head.push_back({name, position(value, unit), why});
+    if (const std::string note = turns_note({{name, unit}}, {&value, 1}); !note.empty())
+      out.head.push_back({"note", note});
   }
   if (workspace.held.size() == 1) json["held"] = Json(json["held"][0]);
 

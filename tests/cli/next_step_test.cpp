@@ -67,6 +67,18 @@ TEST_F(CliNextStep, AFileOfTheOtherKindNamesTheCommandThatTakesIt) {
   }
 }
 
+TEST_F(CliNextStep, AMechanismWhereAFileIsReadNamesTheCommandThatTakesIt) {
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{"run", "4ppa-2par"}, "a study in TOML; did you mean 'pkmopt new study 4ppa-2par'?"},
+      {{"check", "4ppa-2par"}, "a study or a mechanism in TOML; did you mean 'pkmopt list mechanisms 4ppa-2par'?"},
+      {{"show", "4ppa-2par"}, "a study file, F.h5; did you mean 'pkmopt list mechanisms 4ppa-2par'?"},
+      {{"new", "4ppa-2par"}, "one of mechanism, study; did you mean 'pkmopt new study 4ppa-2par'?"}};
+  for (const auto& [arguments, expected] : cases) {
+    EXPECT_EQ(run(arguments), 2) << arguments[0];
+    EXPECT_EQ(output_, "pkmopt: found the mechanism '4ppa-2par'; expected " + expected + '\n');
+  }
+}
+
 TEST_F(CliNextStep, ShowTellsAKilledStudyFromOneThatIsRunning) {
   ASSERT_EQ(run({"run", "s.toml", "--quiet"}), 0) << output_;
   StudyContents contents = read("s.h5");

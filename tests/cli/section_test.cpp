@@ -115,8 +115,10 @@ TEST_F(CliSection, WhatIsNoPlaneIsNotDrawn) {
             "pkmopt: --svg: found a workspace over z; expected a workspace over two coordinates\n");
   EXPECT_EQ(refusal({"4ppa-2par", "--cut", "theta=0", "--html", "f.html"}),
             "pkmopt: --html: found a slice of a workspace; expected a whole one; --svg and --png draw slices\n");
-  EXPECT_EQ(refusal({"4ppa-2par", "--cut", "y=1"}),
-            "pkmopt: --cut: found the unknown name 'y'; expected one of x, z, theta; did you mean 'x'?\n");
+  EXPECT_EQ(
+      refusal({"4ppa-2par", "--cut", "y=1"}),
+      "pkmopt: --cut: found the coordinate 'y', which is held; expected one that is swept, x, z, theta; did you mean "
+      "'--held y=..'?\n");
 }
 
 }  // namespace

@@ -179,6 +179,9 @@ TEST(CliTrajectory, WrongInputIsRefusedInOneSentence) {
        "ok.toml:5: phi: found an unknown key; expected one of type, x, y, z, theta, amplitude, period, cycles"},
       {{"3crr-r-cru", "--motion", "none.toml"},
        "none.toml: found no readable file (No such file or directory); expected a motion in TOML"},
+      {{PKM_EXPERIMENTS "/mechanisms/motors/rotary-delta.toml", "--motion", "cycl"},
+       "--motion: found 'cycl', which is neither a [[motion]] of the study nor a file; expected one of cycle, or a "
+       "motion in TOML; did you mean 'cycle'?"},
       {{"3crr-r-cru", "--motion", "ok.toml", "--wrench", "Fw=1"},
        "--wrench: found the unknown name 'Fw'; expected one of Fx, Fy, Fz, Mx, My, Mz; did you mean 'Fx'?"},
       {{"3crr-r-cru", "--motion", "ok.toml", "--mode", "-,-,-"}, "--mode: found the unknown mode '-,-,-'"},

@@ -24,6 +24,24 @@ TEST(CliUnits, AnglesArePrintedInDegreesToo) {
   EXPECT_THAT(forward.out, HasSubstr("  0.523598775598 rad (30 deg)  below,below\n"));
 }
 
+TEST(CliUnits, DegreesTypedAsRadiansAreNoticed) {
+  const std::string note = "note       theta is more than a turn; degrees are typed theta=30deg\n";
+  EXPECT_THAT(pkmopt({"pose", "4ppa-2par", "--at", "x=0.3,y=1.2,z=-1,theta=30"}).out, HasSubstr(note));
+  const auto cut = pkmopt({"workspace", "4ppa-2par", "--cells", "4", "--cut", "theta=30"});
+  EXPECT_THAT(cut.out, HasSubstr("theta is more than a turn; degrees are typed theta=30deg\n"));
+  EXPECT_THAT(pkmopt({"pose", "4ppa-2par", "--at", "x=0.3,y=1.2,z=-1,theta=6"}).out, Not(HasSubstr("note")));
+}
+
+TEST(CliUnits, ListsGoOnWithoutTheirOption) {
+  const auto volume = [](std::vector<std::string> words) {
+    words.insert(words.begin(), {"workspace", "4ppa-2par", "--json"});
+    return pkmopt(words).json()["volume"];
+  };
+  EXPECT_EQ(volume({"--cells", "x=6", "z=5", "theta=4", "--box", "x=0.2:0.5", "z=-1:-0.7"}),
+            volume({"--cells", "x=6,z=5,theta=4", "--box", "x=0.2:0.5,z=-1:-0.7"}));
+  EXPECT_EQ(volume({"--cells", "6", "--cut", "theta=0", "x=0.3"}), volume({"--cells", "6", "--cut", "theta=0,x=0.3"}));
+}
+
 TEST(CliUnits, AVolumeOverASizeIsNoAngle) {
   const auto ratio = pkmopt({"evaluate", "experiments/4ppa-2par/paper-problem.toml"}, PKM_EXPERIMENTS "/..");
   EXPECT_THAT(ratio.out, HasSubstr(" rad"));

@@ -100,6 +100,9 @@ function resultsTable(studies) {
   );
 }
 
+/** 1, 2, 5, 10, ..: what an axis of powers of ten says. */
+const roundNumbers = Array.from({ length: 30 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
+
 /** The studies whose `item`s have the same key; those that are alone are left out. */
 function together(studies, itemsOf) {
   const groups = new Map();
@@ -199,7 +202,7 @@ function addOverlays(studies, grid) {
       ],
       size: "half",
       height: 460,
-      make: () =>
+      make: (away) =>
         order.length === 2
           ? {
               data: those.map(({ study, i, cells }) => outlineTrace(cells, order, label(study.name), studyColour(i))),
@@ -214,7 +217,11 @@ function addOverlays(studies, grid) {
                   showlegend: true,
                 }),
               ),
-              layout: { scene: workspaceScene(all, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+              layout: {
+                scene: workspaceScene(all, order, away),
+                uirevision: "camera",
+                margin: { l: 0, r: 0, t: 0, b: 0 },
+              },
             },
     });
   }
@@ -263,7 +270,7 @@ function showComparison(given, section) {
             hovertemplate: `%{y:.4g} ${label(unitText(objective.unit))}<br>after %{x} evaluations<extra>${label(study.name)}</extra>`,
           })),
           layout: {
-            xaxis: axis("evaluations", { type: "log", tickangle: 0, nticks: 5 }),
+            xaxis: axis("evaluations", { type: "log", tickangle: 0, tickmode: "array", tickvals: roundNumbers }),
             yaxis: axis(axisName(objective.name, objective.unit)),
             legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
           },

@@ -160,14 +160,14 @@ function solidTraces(poses, pose, cells, values) {
 }
 
 /** A scene of the room, to scale. @param spans  of x, y and z @param away  how far the camera is */
-function roomScene(spans, away = 1) {
+function roomScene(spans, away) {
   const extents = spans.map(([low, high]) => high - low),
     most = Math.max(...extents);
   const [x, y, z] = extents.map((extent) => (1.35 * extent) / most);
   return {
-    xaxis: sceneAxis("x [mm]", spans[0]),
-    yaxis: sceneAxis("y [mm]", spans[1]),
-    zaxis: sceneAxis("z [mm]", spans[2]),
+    xaxis: sceneAxis("x [mm]", spans[0], extents[0] / most),
+    yaxis: sceneAxis("y [mm]", spans[1], extents[1] / most),
+    zaxis: sceneAxis("z [mm]", spans[2], extents[2] / most),
     bgcolor: colour("panel"), // of the film, too
     aspectmode: "manual",
     aspectratio: { x, y, z },
@@ -322,14 +322,14 @@ function showMechanism(study, section) {
       title: "In space",
       size: "half",
       height: 694,
-      make() {
+      make(away) {
         return {
           data: solidTraces(poses, now(), cellsOf(study, poses.name), valuesNow()),
           layout: {
             uirevision: "camera",
             margin: { l: 0, r: 0, t: 0, b: 0 },
             legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("panel"), 0.6) },
-            scene: roomScene(spans),
+            scene: roomScene(spans, Math.sqrt(away)), // it may be turned and come nearer
           },
         };
       },

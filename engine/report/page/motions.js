@@ -3,7 +3,7 @@
 // Of joints by their unit: title, name, unit and what is shown of it in SI. Power has one unit for all.
 const motionColumns = {
   positions: {
-    m: ["Positions of the joints", "position", "m", 1],
+    m: ["Positions of the joints", "position", "mm", 1000],
     rad: ["Angles of the joints", "angle", "deg", 180 / Math.PI],
   },
   speeds: { m: ["Speeds", "speed", "m/s", 1], rad: ["Angular speeds", "angular speed", "rad/s", 1] },
@@ -87,7 +87,7 @@ function poseAxes(coordinates) {
   });
   return {
     xaxis: axis("time [s]"),
-    ...(lengths ? { yaxis: axis("position [m]") } : {}),
+    ...(lengths ? { yaxis: axis("position [mm]") } : {}),
     ...(angles.length ? { yaxis2: right } : {}),
     showlegend: true, // also of one coordinate
   };

@@ -48,9 +48,9 @@ function holdingSentence({ summary, problem, point }) {
       .slice(0, 4)
       .flatMap((a, k) => [
         k ? "; " : "",
-        `${a.name} (${a.kind}): `,
+        `${a.name} (${a.kind}): ` + (k ? "" : "moved out of the way, it gives "),
         rateText(a.multiplier, problem.objectives[0], a.unit),
-        " of " + problem.objectives[0].name,
+        k ? "" : " to " + problem.objectives[0].name,
       ])
       .concat(optimality.active.length > 4 ? [`; and ${optimality.active.length - 4} more.`] : ["."]);
   if (!active) return ["Not known before the study has ended."];
@@ -215,7 +215,7 @@ function drawingPlot(study, grid, poses) {
       (others.length ? " Not drawn: " + others.join(", ") + "." : ""),
     size: "half",
     height: 520,
-    make: () =>
+    make: (away) =>
       planar
         ? {
             data: [...flatTraces(poses, pose, null, null, [0, 1]), dimensionTrace(dimensions, poses, pose, [0, 1])],
@@ -239,7 +239,7 @@ function drawingPlot(study, grid, poses) {
               }),
             ),
             layout: {
-              scene: { ...roomScene(spans, 1.25), annotations: dimensionNotes(dimensions, poses, pose, [0, 1, 2]) },
+              scene: { ...roomScene(spans, 1.25 * away), annotations: dimensionNotes(dimensions, poses, pose, [0, 1, 2]) },
               uirevision: "camera",
               margin: { l: 0, r: 0, t: 0, b: 0 },
             },
@@ -257,11 +257,11 @@ function reachPlot(study, grid, cells) {
     caption: "Feasible poses" + (field ? ", coloured by " + fieldTitle(field.name) : "") + ".",
     size: "half",
     height: 520,
-    make: () => {
+    make: (away) => {
       if (solid && cells.surface)
         return {
           data: [surfaceTrace(cells, field?.name, range, order)],
-          layout: { scene: workspaceScene([cells], order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+          layout: { scene: workspaceScene([cells], order, away), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
         };
       const matrix = cells.cut(field?.name, { across: order[0], up: order[1] }, 0);
       return cellsPicture([cells], cells, matrix, order[0], order[1], {

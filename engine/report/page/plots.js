@@ -87,7 +87,8 @@ function layoutOf(more) {
 
 /**
  * Adds a panel with a plot to `parent`.
- * @param options  title, caption, size (a class: "half"), height [px], make: () => ({ data, layout })
+ * @param options  title, caption, size (a class: "half"), height [px], make: (away) => ({ data, layout }), where `away`
+ *                 is how much farther a camera has to stand for all to be seen in a panel that is higher than wide
  * @returns { panel, node, update(), .. }; update() draws anew what has been drawn
  */
 function addPlot(parent, { title, caption, size = "", height = 380, make }) {
@@ -126,7 +127,7 @@ function addPlot(parent, { title, caption, size = "", height = 380, make }) {
     update(first = false) {
       if (!first && !plot.drawn) return;
       plot.drawn = true;
-      const { data, layout } = make();
+      const { data, layout } = make(Math.max(1, node.clientHeight / (node.clientWidth || node.clientHeight)));
       plot.done = Plotly.react(node, data, layoutOf(layout), {
         responsive: true,
         displaylogo: false,

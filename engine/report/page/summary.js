@@ -224,17 +224,21 @@ function holdingBack(study) {
         optimality.active.map((a) => [a.name, a.kind, rateText(a.multiplier, objective, a.unit)]),
       ),
     );
+  // Of a unit the greatest first; what an optimum leaves of the others is 0.
   const rates = optimality.sensitivities.filter((s) => s.as_built !== 0 || s.reoptimised);
-  panel.append(
-    simpleTable(
-      ["sensitivity", "as built", "reoptimised"],
-      rates.map((s) => [
-        s.name,
-        rateText(s.as_built, objective, s.unit),
-        s.reoptimised === null ? "varies" : rateText(s.reoptimised, objective, s.unit),
-      ]),
-    ),
-  );
+  for (const unit of new Set(rates.map((s) => s.unit))) {
+    const alike = rates.filter((s) => s.unit === unit);
+    const size = Math.max(...alike.map((s) => Math.abs(s.as_built)));
+    const rate = (value) => rateText(Math.abs(value) < 1e-6 * size ? 0 : value, objective, unit);
+    panel.append(
+      simpleTable(
+        ["sensitivity", "as built", "reoptimised"],
+        alike
+          .sort((a, b) => Math.abs(b.as_built) - Math.abs(a.as_built))
+          .map((s) => [s.name, rate(s.as_built), s.reoptimised === null ? "varies" : rate(s.reoptimised)]),
+      ),
+    );
+  }
   return panel;
 }
 

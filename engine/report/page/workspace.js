@@ -38,8 +38,10 @@ function surfaceTrace(design, field, range, order, more = {}) {
   };
 }
 
-function sceneAxis(title, range) {
+/** @param share  of the longest axis: a short one has room for few numbers */
+function sceneAxis(title, range, share = 1) {
   return {
+    nticks: Math.max(2, Math.round(8 * share)),
     title: { text: title, font: { size: 12 } },
     tickfont: { size: 11 },
     gridcolor: colour("line"),
@@ -51,22 +53,23 @@ function sceneAxis(title, range) {
   };
 }
 
-/** Axes of a scene over workspaces, to scale where all are lengths. */
-function workspaceScene(designs, order) {
+/** Axes of a scene over workspaces, to scale where all are lengths. @param away  as addPlot tells it */
+function workspaceScene(designs, order, away) {
   const axes = order.map((k) => designs[0].axes[k]);
   const ranges = order.map((k) => sharedRange(designs, k));
   const toScale = axes.every((a) => a.unit === "m");
   const extents = ranges.map(([low, high]) => high - low),
     most = Math.max(...extents);
+  const axisOf = (i) => sceneAxis(axisTitle(axes[i]), ranges[i], toScale ? extents[i] / most : 1);
   return {
-    xaxis: sceneAxis(axisTitle(axes[0]), ranges[0]),
-    yaxis: sceneAxis(axisTitle(axes[1]), ranges[1]),
-    zaxis: sceneAxis(axisTitle(axes[2]), ranges[2]),
+    xaxis: axisOf(0),
+    yaxis: axisOf(1),
+    zaxis: axisOf(2),
     aspectmode: "manual",
     aspectratio: toScale
       ? Object.fromEntries(extents.map((e, i) => ["xyz"[i], (1.2 * e) / most]))
       : { x: 1, y: 1, z: 1 },
-    camera: { eye: { x: 1.6, y: -2.05, z: 1.05 }, center: { x: 0, y: 0, z: -0.08 } },
+    camera: { eye: { x: 1.6 * away, y: -2.05 * away, z: 1.05 * away }, center: { x: 0, y: 0, z: -0.08 } },
   };
 }
 
@@ -158,11 +161,11 @@ function showWorkspace(study, section) {
       title: design.name[0].toUpperCase() + design.name.slice(1),
       size,
       height: 520,
-      make() {
+      make(away) {
         const info = current();
         return {
           data: [surfaceTrace(design, info.name, fieldRange(designs, info.name), order)],
-          layout: { scene: workspaceScene(designs, order), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+          layout: { scene: workspaceScene(designs, order, away), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
         };
       },
     }),

@@ -81,6 +81,7 @@ TEST(NearestName, FindsSlipsOfThePenAndNothingElse) {
   EXPECT_EQ(nearest_name("lu", known), "l_u");
   EXPECT_EQ(nearest_name("l_d", known), "l_d");
   EXPECT_EQ(nearest_name("temperature", known), "");
+  EXPECT_EQ(nearest_name("popul", known), "population");  // what it begins with
   EXPECT_EQ(nearest_name("q", known), "");
   EXPECT_EQ(nearest_name("x", {}), "");
 }

@@ -219,11 +219,11 @@ TEST(StudyErrors, Files) {
   };
   const std::string folder = ::testing::TempDir();
   EXPECT_EQ(message(folder + "/none.toml"),
-            folder + "/none.toml: found no readable file (No such file or directory); expected a study file in TOML");
-  EXPECT_EQ(message(folder), folder + ": found a folder; expected a study file in TOML");
+            folder + "/none.toml: found no readable file (No such file or directory); expected a study in TOML");
+  EXPECT_EQ(message(folder), folder + ": found a folder; expected a study in TOML");
   const std::string large = folder + "/large.toml";
   std::ofstream(large) << std::string((16U << 20U) + 1, '#');
-  EXPECT_EQ(message(large), large + ": found more than 16 MiB; expected a study file in TOML");
+  EXPECT_EQ(message(large), large + ": found more than 16 MiB; expected a study in TOML");
 }
 
 }  // namespace
