@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/core/team.hpp"
 
@@ -179,15 +180,13 @@ class Builder {
 
 }  // namespace
 
-Refusal refuse_surface(const WorkspaceFields& workspace) {
-  if (workspace.axes.size() == 3) return {};
-  std::vector<std::string> swept;
-  for (const WorkspaceAxis& axis : workspace.axes) swept.push_back(axis.name);
+Refusal refuse_surface(const std::vector<std::string>& swept) {
+  if (swept.size() == 3) return {};
   return "a surface needs three swept coordinates, and this workspace sweeps " + join(swept);
 }
 
 Isosurface isosurface(const WorkspaceFields& workspace, const PoseMargin* margin) {
-  if (const Refusal reason = refuse_surface(workspace)) throw std::invalid_argument(*reason);
+  if (const Refusal reason = refuse_surface(names_of(workspace.axes))) throw std::invalid_argument(*reason);
   const Nodes nodes(workspace);
   Builder builder(nodes);
   for (std::size_t i = 0; i + 1 < nodes.size[0]; ++i)

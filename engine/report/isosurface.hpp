@@ -22,7 +22,8 @@ struct Isosurface {
 };
 
 /// Why a workspace has no surface: it takes three swept coordinates.
-Refusal refuse_surface(const WorkspaceFields& workspace);
+/// @param swept  their names
+Refusal refuse_surface(const std::vector<std::string>& swept);
 
 /// Empty where no cell is feasible. Throws std::invalid_argument with that sentence.
 /// @param margin  of the same design. Without it vertices lie where the margins of two cells, taken as linear between

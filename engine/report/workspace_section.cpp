@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/report/isosurface.hpp"
 #include "engine/report/packed.hpp"
 #include "engine/report/sections.hpp"
@@ -70,7 +71,7 @@ Json workspace(const std::string& name, const WorkspaceFields& found, const View
     json["fields"].push_back(
         {{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}, {"values", packed_levels(values)}});
   }
-  if (!refuse_surface(found)) json["surface"] = surface(views, view, found);
+  if (!refuse_surface(names_of(found.axes))) json["surface"] = surface(views, view, found);
   return json;
 }
 

@@ -6,6 +6,7 @@
 #include "engine/math/portable.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/setup/sections.hpp"
+#include "engine/setup/sweep_section.hpp"
 
 namespace pkm {
 namespace {
@@ -18,24 +19,11 @@ constexpr double kFinestTolerance = 1e-13, kCoarsestTolerance = 0.1;
 constexpr std::int64_t kMostNodes = 200;
 constexpr double kUsualGap = 1e-2;  // of certain = true
 
-const AxisInfo& axis_of(const MechanismInfo& info, int coordinate) {
-  return info.coordinates[static_cast<std::size_t>(coordinate)];
-}
-
-std::vector<std::string> names_of(const MechanismInfo& info, const std::vector<int>& coordinates) {
-  std::vector<std::string> names;
-  for (const int coordinate : coordinates) names.push_back(axis_of(info, coordinate).name);
-  return names;
-}
-
-/// ["x", "y"]
-std::string quoted_list(const std::vector<std::string>& names) { return "[\"" + join(names, "\", \"") + "\"]"; }
-
 bool integrated(const HeldCoordinate& held) { return held.kind == HeldCoordinate::Kind::integrated; }
 
 /// The coordinates that have cells: the swept ones, then those that are integrated over.
 std::vector<std::string> names_with_cells(const MechanismInfo& info, const SurveyPlan& plan) {
-  std::vector<std::string> names = names_of(info, sweep_of(info, plan).swept);
+  std::vector<std::string> names = coordinate_names(info, sweep_of(info, plan).swept);
   for (const HeldCoordinate& held : plan.held)
     if (integrated(held)) names.push_back(axis_of(info, held.coordinate).name);
   return names;
@@ -83,14 +71,8 @@ void override_cells(StudyDraft& draft) {
   }
 }
 
-/// A bare number beyond pi was most likely meant in degrees.
-std::string angle_expectation(const ConfigValue& written, double value) {
-  const std::string range = "an angle in [-pi, pi] rad";
-  return written.is_text() ? range : range + "; write \"" + shortest(value) + " deg\" for degrees";
-}
-
 Box read_box(const ConfigValue& table, const MechanismInfo& info, const std::vector<int>& swept) {
-  const std::vector<std::string> known = names_of(info, swept);
+  const std::vector<std::string> known = coordinate_names(info, swept);
   table.expect_table("a table of ranges [from, to] for " + join(known)).allow(known, "coordinate");
   Box box;
   box.fill({0, 1});
@@ -112,7 +94,7 @@ Box read_box(const ConfigValue& table, const MechanismInfo& info, const std::vec
 void read_nodes(const ConfigValue& table, const MechanismInfo& info, const Sweep& sweep, ColumnOptions& columns) {
   std::vector<int> others = sweep.swept;
   std::erase(others, sweep.column);
-  const std::vector<std::string> names = names_of(info, others);
+  const std::vector<std::string> names = coordinate_names(info, others);
   table.expect_table("a table of node numbers for " + join(names)).allow(names, "coordinate");
   for (std::size_t k = 0; k < names.size(); ++k)
     columns.nodes[k] = static_cast<int>(table.at(names[k], "a number of nodes").integer(1, kMostNodes));
@@ -129,95 +111,6 @@ std::optional<double> read_certain(const ConfigValue& value, const Mechanism& me
     throw value.refusal("certain bounds are of mechanisms from files, whose formulas can be computed over intervals; " +
                         mechanism.info().name + " is built in");
   return gap;
-}
-
-/// The key of a coordinate that is not swept: "middle", "integrated" or a number.
-HeldCoordinate read_held(const ConfigValue& value, const MechanismInfo& info, int coordinate, bool integrates) {
-  using Kind = HeldCoordinate::Kind;
-  const AxisInfo& axis = axis_of(info, coordinate);
-  const std::string choices = integrates ? "\"middle\", \"integrated\" or a number in " : "\"middle\" or a number in ";
-  const std::string expected = choices + axis.unit;
-  if (value.is_text()) {
-    const std::string& word = value.text(expected);
-    if (word == "middle") return {.coordinate = coordinate};
-    if (word == "integrated" && integrates) return {.coordinate = coordinate, .kind = Kind::integrated};
-    if (word == "integrated")
-      throw value.refusal("the mechanism " + info.name + " cannot integrate its workspace over " + axis.name +
-                          "; give " + expected);
-  }
-  double number = 0;
-  try {
-    number = value.number(axis.unit);
-  } catch (const ConfigError&) {
-    const std::string word = value.is_text() ? nearest_name(value.text(""), {"middle", "integrated"}) : "";
-    throw value.error(expected, word);
-  }
-  if (axis.turns() && std::fabs(number) > kPi) throw value.error(angle_expectation(value, number));
-  return {.coordinate = coordinate, .kind = Kind::value, .value = number};
-}
-
-/// A list of values of a held coordinate.
-HeldCoordinate read_held_values(const ConfigValue& list, const MechanismInfo& info, int coordinate, bool integrates) {
-  const std::string expected = "a list of values of " + axis_of(info, coordinate).name;
-  HeldCoordinate held{.coordinate = coordinate, .kind = HeldCoordinate::Kind::listed};
-  for (const ConfigValue& value : list.elements(expected))
-    held.values.push_back(read_held(value, info, coordinate, integrates).value);
-  if (held.values.empty()) throw list.error(expected);
-  return held;
-}
-
-/// The coordinates that a survey sweeps, in any order.
-void read_sweep(const ConfigValue& list, const MechanismInfo& info, SurveyPlan& plan) {
-  const std::string expected =
-      "a list of the swept coordinates, such as " + quoted_list(names_of(info, info.sweeps[0].swept));
-  for (const ConfigValue& each : list.elements(expected)) {
-    const auto known = pkm::names_of(info.coordinates);
-    const int coordinate = static_cast<int>(std::ranges::find(known, each.word(known)) - known.begin());
-    if (contains(plan.swept, coordinate)) throw each.refusal("this coordinate is swept already");
-    plan.swept.push_back(coordinate);
-  }
-  if (plan.swept.empty()) throw list.error(expected);
-  const auto same = [&](const Sweep& sweep) { return std::ranges::is_permutation(sweep.swept, plan.swept); };
-  if (std::ranges::any_of(info.sweeps, same)) return;
-  std::vector<std::string> offered;
-  for (const Sweep& sweep : info.sweeps) offered.push_back(quoted_list(names_of(info, sweep.swept)));
-  constexpr std::size_t kMostOffered = 8;
-  if (offered.size() > kMostOffered) offered = {"one to three coordinates"};
-  throw list.error("what the mechanism " + info.name + " has a survey of: " + join(offered, " or "));
-}
-
-/// Whether the sweep holds all of these coordinates.
-bool holds(const Sweep& sweep, const std::vector<int>& coordinates) {
-  return std::ranges::all_of(coordinates, [&](int c) { return contains(sweep.held, c); });
-}
-
-/// The coordinates that some sweep holds, those of the usual one first.
-std::vector<int> holdable(const MechanismInfo& info) {
-  std::vector<int> coordinates;
-  for (const Sweep& sweep : info.sweeps)
-    for (const int coordinate : sweep.held)
-      if (!contains(coordinates, coordinate)) coordinates.push_back(coordinate);
-  return coordinates;
-}
-
-/// The coordinates, of those that the mechanism's surveys can hold, that the study names.
-void read_held_coordinates(const ConfigValue& table, const MechanismInfo& info, bool of_region, SurveyPlan& plan) {
-  std::vector<int> named;
-  for (const int coordinate : holdable(info)) {
-    const auto value = table.find(axis_of(info, coordinate).name);
-    if (!value) continue;
-    named.push_back(coordinate);
-    if (contains(plan.swept, coordinate))
-      throw value->refusal("the coordinate " + axis_of(info, coordinate).name + " is swept (" +
-                           table.find("sweep")->line() + "); it cannot be held, too");
-    if (std::ranges::none_of(info.sweeps, [&](const Sweep& sweep) { return holds(sweep, named); }))
-      throw value->refusal("a survey holds one coordinate and sweeps the others, but both " +
-                           axis_of(info, named.front()).name + " and " + axis_of(info, coordinate).name + " are given");
-    const bool integrates = std::ranges::any_of(
-        info.sweeps, [&](const Sweep& sweep) { return sweep.integrates && contains(sweep.held, coordinate); });
-    plan.held.push_back(of_region && value->is_list() ? read_held_values(*value, info, coordinate, integrates)
-                                                      : read_held(*value, info, coordinate, integrates));
-  }
 }
 
 void read_limits(const ConfigValue& table, StudyDraft& draft) {

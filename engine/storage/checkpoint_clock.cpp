@@ -4,13 +4,10 @@
 #include <chrono>
 
 namespace pkm {
-namespace {
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-}  // namespace
 
 CheckpointClock::CheckpointClock(std::optional<double> every, std::function<double()> now)
     : every_(every), now_(now ? std::move(now) : steady_seconds), start_(now_()), last_(start_) {}

@@ -13,12 +13,15 @@
 
 namespace pkm {
 
+/// [s] from any origin, by the system's steady clock.
+double steady_seconds();
+
 class CheckpointClock {
  public:
   static constexpr double kShare = 0.02;  ///< of the run time
 
   /// @param every  fixed period [s] instead, >= 0
-  /// @param now    [s] from any origin, steady; default: the system's steady clock
+  /// @param now    as steady_seconds(), the default
   explicit CheckpointClock(std::optional<double> every = {}, std::function<double()> now = {});
 
   /// The study's first write: its cost is the first estimate, but it does not count.

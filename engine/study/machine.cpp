@@ -2,11 +2,15 @@
 
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <ctime>
 #include <fstream>
 #include <thread>
+#include <vector>
 
+#include "engine/core/error.hpp"
 #include "engine/core/instruction_set.hpp"
+#include "engine/core/ranks.hpp"
 
 namespace pkm {
 
@@ -26,6 +30,21 @@ std::string describe_machine() {
   uname(&system);
   return describe_processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
          std::string(name_of(instruction_set())) + ", " + system.sysname + " " + system.release + " " + system.machine;
+}
+
+std::string describe_team(int threads, int of_all) {
+  const auto words = [](int n) { return std::to_string(n) + (n == 1 ? " thread" : " threads"); };
+  const int ranks = ranks::size();
+  if (ranks == 1) return words(threads);
+  if (ranks * threads == of_all) return std::to_string(ranks) + " ranks x " + words(threads);
+  return std::to_string(ranks) + " ranks with " + words(of_all) + " in all";
+}
+
+std::string describe_hosts() {
+  std::vector<std::string> hosts;
+  for (int rank = 0; rank < ranks::size(); ++rank)
+    if (std::ranges::find(hosts, ranks::host(rank)) == hosts.end()) hosts.push_back(ranks::host(rank));
+  return join(hosts);
 }
 
 std::string utc_now() {

@@ -13,12 +13,6 @@ AxisVector<double> axis_vector(std::span<const double> values) {
   return vector;
 }
 
-std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::vector<int>& which) {
-  std::vector<std::string> names;
-  for (const int i : which) names.push_back(info.coordinates[static_cast<std::size_t>(i)].name);
-  return names;
-}
-
 std::string axes_text(const Axes& axes, std::span<const double> values) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < axes.size(); ++i)

@@ -5,6 +5,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/setup/sweep_section.hpp"
 #include "experiments/app/print.hpp"
 
 namespace pkm {
@@ -12,9 +13,6 @@ namespace pkm {
 using Axes = std::vector<AxisInfo>;
 
 AxisVector<double> axis_vector(std::span<const double> values);
-
-/// Of coordinates, by their numbers.
-std::vector<std::string> coordinate_names(const MechanismInfo& info, const std::vector<int>& which);
 
 /// Each unit of a list once, in its order, with `behind` after it: "m/s, rad/s".
 template <class List>

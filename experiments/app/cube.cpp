@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/setup/assignments.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
@@ -124,14 +125,15 @@ void add_cube_options(CLI::App& command, CubeArguments& arguments) {
       ->needs(cube);
 }
 
-void expect_cube(const WorkspaceFields& workspace, const CubeArguments& arguments) {
+void expect_lengths(const Axes& swept, const CubeArguments& arguments) {
   if (!arguments.cube) return;
-  std::vector<std::string> names;
-  for (const WorkspaceAxis& axis : workspace.axes) names.push_back(axis.name);
-  const bool lengths = std::ranges::all_of(workspace.axes, [](const auto& axis) { return axis.unit == "m"; });
-  if (!lengths || names.size() < 2)
-    throw ConfigError({"", 0, "--cube"}, "a workspace over " + join(names),
+  const bool lengths = std::ranges::all_of(swept, [](const AxisInfo& axis) { return axis.unit == "m"; });
+  if (!lengths || swept.size() < 2)
+    throw ConfigError({"", 0, "--cube"}, "a workspace over " + join(names_of(swept)),
                       "one over two or three lengths; --cut leaves an angle at a value");
+}
+
+void expect_fields(const WorkspaceFields& workspace, const CubeArguments& arguments) {
   least_values(workspace, arguments);
 }
 

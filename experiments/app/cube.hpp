@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/report/workspace_fields.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/print.hpp"
 
@@ -17,9 +18,10 @@ struct CubeArguments {
 /// Declares --cube and --least.
 void add_cube_options(CLI::App& command, CubeArguments& arguments);
 
-/// Throws ConfigError where a cube is asked for and the workspace is not one over two or three lengths, or has not the
-/// fields that --least names.
-void expect_cube(const WorkspaceFields& workspace, const CubeArguments& arguments);
+/// Throws ConfigError where a cube is asked for and what is swept is not two or three lengths.
+void expect_lengths(const Axes& swept, const CubeArguments& arguments);
+/// Throws ConfigError where the workspace has not the fields that --least names.
+void expect_fields(const WorkspaceFields& workspace, const CubeArguments& arguments);
 
 /// Tells the largest cube of cells that are feasible and have the least values asked for, if one is asked for. Of
 /// several, the one in their midst.

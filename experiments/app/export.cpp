@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <iostream>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/report/study_tables.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"
+#include "experiments/app/slices.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {
@@ -39,6 +41,7 @@ void export_study(const Session& session, const ExportArguments& arguments) {
   if (arguments.any()) {
     target = find_target(session.catalogues, arguments);
     expect_few_cells(target->plan());
+    expect_surface(arguments, names_of(swept_axes(target->plan(), target->info(), {})));
     const auto more = files_of(arguments, *target);
     files.insert(files.end(), more.begin(), more.end());
   }

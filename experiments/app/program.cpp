@@ -20,7 +20,7 @@
 #include "engine/core/ranks.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/storage/contained_reading.hpp"
-#include "engine/study/run_study.hpp"
+#include "engine/study/take_part.hpp"
 #include "experiments/app/colours.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"

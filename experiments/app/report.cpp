@@ -8,6 +8,7 @@
 #include "engine/report/html_page.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
+#include "engine/study/records.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/version.hpp"

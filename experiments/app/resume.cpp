@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "engine/report/standing.hpp"
+#include "engine/study/records.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/summary.hpp"

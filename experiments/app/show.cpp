@@ -6,7 +6,8 @@
 #include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/storage/study_lock.hpp"
-#include "engine/study/run_study.hpp"
+#include "engine/study/progress.hpp"
+#include "engine/study/records.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/summary.hpp"
 

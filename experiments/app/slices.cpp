@@ -2,7 +2,6 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/setup/assignments.hpp"
-#include "experiments/app/axes.hpp"
 #include "experiments/app/grid.hpp"
 
 namespace pkm {
@@ -54,8 +53,7 @@ Slices set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<s
 void add_cuts(Slices& slices, const SurveyPlan& plan, const MechanismInfo& info,
               const std::vector<std::string>& lists) {
   const std::vector<int>& swept = sweep_of(info, plan).swept;
-  Axes axes;
-  for (const int coordinate : swept) axes.push_back(info.coordinates[static_cast<std::size_t>(coordinate)]);
+  const Axes axes = swept_axes(plan, info, {});
   for (const std::string& name : assigned_names(lists))
     if (find_named(info.coordinates, name) && !find_named(axes, name))
       throw ConfigError({"", 0, "--cut"}, "the coordinate '" + name + "', which is held",
@@ -63,6 +61,13 @@ void add_cuts(Slices& slices, const SurveyPlan& plan, const MechanismInfo& info,
   const auto values = parse_assignments(lists, "--cut", assignable_axes(axes));
   for (std::size_t i = 0; i < swept.size(); ++i)
     if (values[i]) slices[swept[i]] = *values[i];
+}
+
+Axes swept_axes(const SurveyPlan& plan, const MechanismInfo& info, const Slices& slices) {
+  Axes axes;
+  for (const int coordinate : sweep_of(info, plan).swept)
+    if (!slices.contains(coordinate)) axes.push_back(info.coordinates[static_cast<std::size_t>(coordinate)]);
+  return axes;
 }
 
 void cut(SurveyPlan& plan, const Target& target, const Slices& slices, std::array<bool, 3>& ranges_given) {

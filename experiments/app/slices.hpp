@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/report/workspace_fields.hpp"
+#include "experiments/app/axes.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -22,6 +23,9 @@ Slices set_held(SurveyPlan& plan, const MechanismInfo& info, const std::vector<s
 
 /// Slices of --cut, through what the plan sweeps. Throws ConfigError.
 void add_cuts(Slices& slices, const SurveyPlan& plan, const MechanismInfo& info, const std::vector<std::string>& lists);
+
+/// The coordinates that are swept, but for slices.
+Axes swept_axes(const SurveyPlan& plan, const MechanismInfo& info, const Slices& slices);
 
 /// Makes a plan of voxels one of slices.
 /// @param ranges_given  by swept coordinate; that of a slice is not

@@ -9,7 +9,7 @@
 #include "engine/setup/motion_section.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/run_study.hpp"
+#include "engine/study/records.hpp"
 #include "experiments/app/axes.hpp"
 
 namespace pkm {

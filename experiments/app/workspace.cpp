@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/report/html_page.hpp"
@@ -42,14 +43,15 @@ bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges
   return false;
 }
 
-/// Throws ConfigError where a workspace is not one over two coordinates.
-void expect_plane(const WorkspaceFields& workspace, const std::string& option) {
-  std::vector<std::string> names;
-  for (const WorkspaceAxis& axis : workspace.axes) names.push_back(axis.name);
-  if (names.size() != 2)
+/// Throws ConfigError where what is asked for is of a workspace over other coordinates than those that are swept.
+void expect_axes(const Axes& swept, const WorkspaceArguments& arguments) {
+  const std::vector<std::string> names = names_of(swept);
+  if (const std::string option = arguments.picture(); !option.empty() && names.size() != 2)
     throw ConfigError({"", 0, option}, "a workspace over " + join(names),
                       names.size() > 2 ? "a slice of it, such as that of --cut " + names.back() + "=0"
                                        : "a workspace over two coordinates");
+  expect_lengths(swept, arguments);
+  expect_surface(arguments, names);
 }
 
 /// A picture of a workspace over two coordinates.
@@ -169,13 +171,13 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     if (!slices.empty() && !arguments.html.empty())
       throw ConfigError({"", 0, "--html"}, "a slice of a workspace", "a whole one; --svg and --png draw slices");
     auto ranges_given = set_grid(plan, target, arguments, kPictureCells, kMostCells);
+    expect_axes(swept_axes(plan, target.info(), slices), arguments);
     cut(plan, target, slices, ranges_given);
     const std::string mode = known_mode(target.info(), arguments);
     WorkspaceFields found = fields_of(target, plan, mode);
     found.touches_box = touches(found, ranges_given);
     flatten(found, target.info(), slices);
-    if (!arguments.picture().empty()) expect_plane(found, arguments.picture());
-    expect_cube(found, arguments);
+    expect_fields(found, arguments);
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {

@@ -81,9 +81,12 @@ WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const st
   }
 }
 
-void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace) {
-  if (const Refusal reason = refuse_surface(workspace); reason && !outputs.stl.empty())
+void expect_surface(const WorkspaceOutputs& outputs, const std::vector<std::string>& swept) {
+  if (const Refusal reason = refuse_surface(swept); reason && !outputs.stl.empty())
     throw ConfigError({"", 0, "--stl"}, *reason);
+}
+
+void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace) {
   const std::string title = title_of(target);
   const Existing existing = if_forced(outputs.force);
   if (!outputs.vtk.empty()) write_vtk_image(outputs.vtk, workspace, target.info(), target.parameters, title, existing);

@@ -42,8 +42,11 @@ void expect_few_cells(const SurveyPlan& plan);
 /// The workspace's fields. Throws ConfigError when the mechanism cannot serve the plan.
 WorkspaceFields fields_of(const Target& target, const SurveyPlan& plan, const std::string& mode);
 
-/// Writes files_of(); throws StorageError, ConfigError when the sweep can have no surface and one is asked for, and
-/// std::runtime_error when there is none.
+/// Throws ConfigError where a surface is asked for and what is swept can have none.
+/// @param swept  names of coordinates
+void expect_surface(const WorkspaceOutputs& outputs, const std::vector<std::string>& swept);
+
+/// Writes files_of(); throws StorageError, and std::runtime_error when there is no surface.
 void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace);
 
 }  // namespace pkm

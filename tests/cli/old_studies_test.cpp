@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/report/html_page.hpp"
-#include "engine/study/run_study.hpp"
+#include "engine/study/run_outcome.hpp"
 #include "tests/cli/study_program.hpp"
 
 namespace pkm::testing {

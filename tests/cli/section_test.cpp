@@ -121,5 +121,20 @@ TEST_F(CliSection, WhatIsNoPlaneIsNotDrawn) {
       "'--held y=..'?\n");
 }
 
+// A mode is looked up before the survey, so what is told instead of it costs none.
+TEST_F(CliSection, WhatIsOfOtherCoordinatesIsRefusedBeforeTheSurvey) {
+  const auto first_refusal = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--mode", "sideways"});
+    return refusal(arguments);
+  };
+  EXPECT_THAT(first_refusal({"4ppa-2par", "--cut", "theta=0"}), HasSubstr("sideways"));
+  EXPECT_EQ(
+      first_refusal({"4ppa-2par", "-o", "f.png"}),
+      "pkmopt: --png: found a workspace over x, z, theta; expected a slice of it, such as that of --cut theta=0\n");
+  EXPECT_EQ(first_refusal({"4ppa-2par", "--cut", "theta=0", "-o", "f.stl"}),
+            "pkmopt: --stl: a surface needs three swept coordinates, and this workspace sweeps x, z\n");
+  EXPECT_THAT(first_refusal({"4ppa-2par", "--cube"}), HasSubstr("--cube: found a workspace over x, z, theta"));
+}
+
 }  // namespace
 }  // namespace pkm::testing

@@ -1,71 +1,11 @@
-// Studies through the built program: killed at random instants and resumed, stopped by signals, on any number of
-// threads, extended, locked, refused, on a full disk.
+// Studies through the built program: on any number of threads and of seeds, beside other processes and files, refused,
+// on a full disk.
 #include <sys/inotify.h>
 
-#include <array>
-
-#include "tests/cli/study_program.hpp"
+#include "tests/cli/ga_program.hpp"
 
 namespace pkm::testing {
 namespace {
-
-class GaProgram : public StudyProgram {
- protected:
-  /// @param generations  of 40 designs on exact columns with active constraints
-  void write_toml(int generations, const std::string& more = "[checkpoint]\nevery = 0\n") const {
-    std::ofstream(folder_ + "/study.toml") << R"([study]
-name = "kill me"
-seed = 7
-[mechanism]
-type = "4ppa-2par"
-[variables]
-a   = { min = 0.15, max = 0.95 }
-b   = { min = 0.35, max = 1.55 }
-l_u = { min = 0.25, max = 1.5 }
-l_d = { min = 0.25, max = 1.5, step = 0.001 }
-[workspace]
-method = "columns"
-limits = { alpha_min = 0.1, h_min = 0.06, beta_min = 0.1, beta_max = 1.3, sin_par_min = 0.1, cos_theta_min = 0.1 }
-[[objective]]
-type = "workspace-ratio"
-[[constraint]]
-type = "workspace-shape"
-[[constraint]]
-type = "linear"
-coefficients = { a = 1, b = -1 }
-[[stage]]
-optimiser = "ga"
-population = 40
-generations = )" << generations << "\n[[stage]]\noptimiser = \"ga\"\npopulation = 20\ngenerations = 20\n"
-                                           << more;
-  }
-};
-
-TEST_F(GaProgram, KilledAtRandomInstantsAndResumedEndsTheSame) {
-  write_toml(50);
-  kill_at_random(8, 20);
-}
-
-TEST_F(GaProgram, AChainOfKillsEndsTheSame) {
-  write_toml(120);
-  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
-  std::mt19937 engine(21);
-  int kills = 0;
-  std::vector<std::string> next = {"run", "study.toml", "--output", "chain.h5", "--quiet"};
-  for (; kills < 12; ++kills) {
-    ChildProcess child(command(next), folder_);
-    while (!fs::exists(path("chain.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(std::chrono::milliseconds(20 + engine() % 60));
-    child.signal(SIGKILL);
-    if (child.wait() == 0) break;
-    next = {"resume", "chain.h5", "--quiet"};
-  }
-  if (kills == 12) {
-    ASSERT_EQ(run({"resume", "chain.h5", "--quiet"}), 0) << output_;
-  }
-  EXPECT_GT(kills, 1);
-  EXPECT_EQ(first_difference(read("straight.h5"), read("chain.h5")), "");
-}
 
 TEST_F(GaProgram, OneTwoAndSevenThreadsAreTheSame) {
   write_toml(40);
@@ -84,131 +24,6 @@ TEST_F(GaProgram, ThreadsAreAsManyAsOpenMPIsToldUnlessTheCommandSays) {
   EXPECT_EQ(run({"run", "study.toml", "--force", "--threads", "2"}), 0);
   EXPECT_NE(output_.find(" on 2 threads, checkpoints"), std::string::npos) << output_;
   unsetenv("OMP_NUM_THREADS");
-}
-
-TEST_F(GaProgram, SignalsStopWithACheckpointAndTheCommandToGoOn) {
-  write_toml(3000, "");
-  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
-  int stopped = 0;
-  for (const int number : {SIGINT, SIGTERM}) {
-    const std::string file = number == SIGINT ? "int.h5" : "term.h5";
-    int code = 0;
-    std::string output;
-    {
-      ChildProcess child(command({"run", "study.toml", "--output", file}), folder_);
-      while (!fs::exists(path(file))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      std::this_thread::sleep_for(std::chrono::milliseconds(30));
-      child.signal(number);
-      code = child.wait();
-      output = child.output();
-    }
-    if (code == 3) {
-      ++stopped;
-      EXPECT_EQ(read(file).state, StudyState::interrupted);
-      EXPECT_NE(output.find(number == SIGINT ? "stopped by SIGINT after" : "stopped by SIGTERM after"),
-                std::string::npos);
-      EXPECT_NE(output.find("go on with: pkmopt resume " + file), std::string::npos) << output;
-      ASSERT_EQ(run({"resume", file}), 0) << output_;
-    }
-    EXPECT_EQ(first_difference(read("straight.h5"), read(file)), "");
-  }
-  EXPECT_GT(stopped, 0) << "the study ended before either signal";
-}
-
-TEST_F(GaProgram, ASignalSentTwiceAtOnceStillStopsWithACheckpoint) {
-  write_toml(100000, "");  // `timeout` signals the child and then its group
-  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
-    const std::string file = "twice-" + std::to_string(number) + ".h5";
-    ChildProcess child(command({"run", "study.toml", "--output", file, "--quiet"}), folder_);
-    while (!fs::exists(path(file))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    child.signal(number);
-    child.signal(number);
-    EXPECT_EQ(child.wait(), 3) << number << child.output();
-    EXPECT_EQ(read(file).state, StudyState::interrupted);
-  }
-}
-
-TEST_F(GaProgram, ASignalStopsAllSeeds) {
-  write_toml(60, "");
-  ChildProcess child(command({"run", "study.toml", "--seeds", "1000"}), folder_);
-  while (!fs::exists(path("study-seed-9.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  child.signal(SIGINT);
-  EXPECT_EQ(child.wait(), 3) << child.output();
-  EXPECT_NE(child.output().find("go on with: pkmopt run study.toml --seeds 1000 --seed 7 --resume --output study.h5"),
-            std::string::npos)
-      << child.output();
-  EXPECT_NE(child.output().find("of 1000 seeds"), std::string::npos);
-  EXPECT_FALSE(fs::exists(path("study-seed-500.h5")));
-}
-
-TEST_F(GaProgram, LimitsMayGrowOnly) {
-  write_toml(5);
-  ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
-  const StudyContents before = read("study.h5");
-  EXPECT_EQ(run({"resume", "study.h5", "--generations", "10"}), 2);
-  EXPECT_EQ(output_, "pkmopt: --generations: found 10; expected at least 20, which the study has already\n");
-  EXPECT_EQ(run({"resume", "study.h5", "--evaluations", "30"}), 2);
-  EXPECT_EQ(run({"resume", "study.h5", "--generations", "1000000000000"}), 2);
-  EXPECT_EQ(first_difference(before, read("study.h5")), "");
-  // evaluations alone lift the limit on generations
-  ASSERT_EQ(run({"resume", "study.h5", "--evaluations", "700", "--quiet"}), 0) << output_;
-  EXPECT_EQ(read("study.h5").stages[1].table.size(), 700u);
-  EXPECT_EQ(read("study.h5").stages[1].stop, "evaluation limit");
-}
-
-TEST_F(GaProgram, AnExtensionSurvivesAStopInTheReplay) {
-  write_toml(40, "");
-  ASSERT_EQ(run({"run", "study.toml", "--quiet"}), 0) << output_;
-  ASSERT_EQ(run({"run", "study.toml", "--output", "long.h5", "--quiet"}), 0) << output_;
-  ASSERT_EQ(run({"resume", "long.h5", "--generations", "50", "--quiet"}), 0) << output_;
-  EXPECT_EQ(run({"resume", "study.h5", "--generations", "50", "--time", "1e-9"}), 3) << output_;
-  EXPECT_EQ(run({"resume", "study.h5", "--quiet"}), 0) << output_;
-  EXPECT_EQ(first_difference(read("long.h5"), read("study.h5")), "");
-}
-
-TEST_F(GaProgram, ATimeLimitStopsEarlyAndTheStudyGoesOn) {
-  write_toml(3000, "");
-  ASSERT_EQ(run({"run", "study.toml", "--output", "straight.h5", "--quiet"}), 0) << output_;
-  {
-    ChildProcess child(command({"run", "study.toml", "--output", "t.h5", "--quiet"}), folder_);
-    while (!fs::exists(path("t.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    child.signal(SIGKILL);
-    child.wait();
-  }
-  EXPECT_EQ(run({"resume", "t.h5", "--time", "5 ms"}), 3) << output_;
-  EXPECT_NE(output_.find("stopped by time limit after"), std::string::npos) << output_;
-  EXPECT_EQ(run({"resume", "t.h5", "--quiet"}), 0) << output_;
-  EXPECT_EQ(first_difference(read("straight.h5"), read("t.h5")), "");
-}
-
-TEST_F(GaProgram, AnExtendedStudyEqualsALongOne) {
-  std::ofstream(folder_ + "/short.toml") << R"([mechanism]
-type = "4ppa-2par"
-[variables]
-a = { min = 0.15, max = 0.3 }
-b = { min = 1.0, max = 1.5 }
-[workspace]
-method = "voxels"
-[[objective]]
-type = "workspace-ratio"
-[[stage]]
-optimiser = "ga"
-population = 12
-generations = 10
-)";
-  ASSERT_EQ(run({"run", "short.toml", "--output", "a.h5", "--quiet"}), 0) << output_;
-  ASSERT_EQ(run({"run", "short.toml", "--output", "b.h5", "--quiet"}), 0) << output_;
-  ASSERT_EQ(run({"resume", "a.h5", "--generations", "30"}), 0) << output_;
-  ASSERT_EQ(run({"resume", "b.h5", "--generations", "17", "--quiet"}), 0) << output_;
-  ASSERT_EQ(run({"resume", "b.h5", "--generations", "30", "--quiet"}), 0) << output_;
-  EXPECT_EQ(read("a.h5").stages[0].generations.size(), 31u);
-  EXPECT_EQ(first_difference(read("a.h5"), read("b.h5")), "");
-  // plain resume of a finished study changes nothing
-  const auto before = fs::last_write_time(path("a.h5"));
-  ASSERT_EQ(run({"resume", "a.h5"}), 0) << output_;
-  EXPECT_NE(output_.find("nothing is left to do"), std::string::npos);
-  EXPECT_EQ(fs::last_write_time(path("a.h5")), before);
 }
 
 TEST_F(GaProgram, ExistingFilesAreNotOverwritten) {
@@ -241,14 +56,6 @@ TEST_F(GaProgram, NoOutputIsAnInputOrWithoutAName) {
                                        << "[mechanism]\n";
   EXPECT_EQ(run({"run", "nul.toml", "--force"}), 2) << output_;
   EXPECT_EQ(fs::file_size(path("precious.txt")), 8u);
-}
-
-TEST_F(GaProgram, AHangupThatIsIgnoredEndsNothing) {
-  write_toml(60);
-  ChildProcess child(command({"run", "study.toml", "--quiet"}), folder_, {.ignores_hangup = true});
-  while (!fs::exists(path("study.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  child.signal(SIGHUP);
-  EXPECT_EQ(child.wait(), 0) << child.output();
 }
 
 TEST_F(GaProgram, ASecondProcessIsTurnedAway) {

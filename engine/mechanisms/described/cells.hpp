@@ -5,13 +5,10 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <utility>
 #include <vector>
 
-#include "engine/graph/lowering.hpp"
-#include "engine/graph/rows.hpp"
-#include "engine/mechanisms/described/column_cells.hpp"
-#include "engine/mechanisms/described/evaluation.hpp"
+#include "engine/mechanisms/described/cell_plan.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
 namespace pkm::described {
@@ -35,13 +32,7 @@ struct CellTally {
 /// Loops over the swept coordinates: the outer one of three, the middle one, and the innermost, along columns.
 class CellTest {
  public:
-  /// @param swept  axes of the grid: their coordinates
-  /// @param order  axes from the outermost loop to the innermost
-  CellTest(const Evaluation& evaluation, const std::vector<int>& swept, std::vector<std::size_t> order,
-           std::size_t mode);
-  /// In the order in which a grid of these cells is estimated to take the least time.
-  static CellTest fastest(const Evaluation& evaluation, const std::vector<int>& swept,
-                          const std::array<std::int64_t, 3>& cells, std::size_t mode);
+  explicit CellTest(CellPlan plan) : plan_(std::move(plan)) {}
 
   /// Cells of the outer, the middle and the innermost loop; 1 where there is none.
   std::array<std::size_t, 3> shape(const VoxelGrid& grid) const;
@@ -60,18 +51,16 @@ class CellTest {
   CellTally test(const VoxelGrid& grid, std::size_t outer, bool want_bits, CellRoom& room) const;
 
  private:
-  using Alternatives = std::vector<ColumnCondition>;  ///< one of them has to hold
-
-  /// limbs::CrankRange
-  struct Crank {
-    ColumnCondition at_min, at_max, after_min, before_max;
-    std::uint32_t half_turn, reach;  ///< registers
-    bool is_first;                   ///< the joint is the first of the two angles that assemble
-  };
-
   /// Columns [first, first + count) of a slice.
   CellTally test_columns(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count, bool want_bits,
                          CellRoom& room) const;
+  /// Finds the ranges of columns that their conditions leave. True: with holes in room.hole.
+  bool narrow_ranges(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
+                     CellRoom& room) const;
+  CellTally tally_of_ranges(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
+                            const CellRanges& ranges) const;
+  CellTally tally_of_bits(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
+                          const std::vector<std::uint64_t>& bits) const;
   void find_bits(const VoxelGrid& grid, std::size_t first, std::size_t count, const ColumnGrid& column_grid,
                  CellRoom& room) const;
   /// The cells in which one condition holds, of `count` columns.
@@ -79,15 +68,8 @@ class CellTest {
                std::vector<std::uint64_t>& bits) const;
   void find_crank_bits(std::size_t crank, const ColumnGrid& column_grid, std::size_t count, CellRoom& room) const;
   void test_cells(const VoxelGrid& grid, std::size_t first, std::size_t column, CellRoom& room) const;
-  double cost(const std::array<std::int64_t, 3>& cells) const;
 
-  std::vector<std::size_t> order_;  ///< axes
-  graph::Program program_;
-  std::vector<std::uint32_t> early_, middle_conditions_, inner_conditions_, handed_down_;  ///< registers
-  std::vector<ColumnCondition> columns_;    ///< lines first, which cost least
-  std::vector<Alternatives> alternatives_;  ///< one of each has to hold
-  std::vector<Crank> cranks_;
-  std::optional<graph::RowStage> middle_, inner_;
+  CellPlan plan_;
 };
 
 }  // namespace pkm::described

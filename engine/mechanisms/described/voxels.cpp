@@ -27,7 +27,7 @@ class DescribedVoxels final : public GridSurveyor<DescribedVoxels> {
         demand_(demand),
         sweep_(sweep_of(mechanism.info(), plan)),
         mode_(number_of_mode(mechanism.info(), demand.mode)),
-        test_(CellTest::fastest(evaluation, sweep_.swept, voxels.cells, mode_)) {
+        test_(CellPlan::fastest(evaluation, sweep_.swept, voxels.cells, mode_)) {
     if (demand.characteristic_length)
       throw std::invalid_argument("mechanism " + mechanism.info().name +
                                   " has its own characteristic length only; leave out characteristic_length");

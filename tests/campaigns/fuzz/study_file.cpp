@@ -14,7 +14,7 @@
 #include "engine/report/chosen_design.hpp"
 #include "engine/report/study_tables.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/run_study.hpp"
+#include "engine/study/records.hpp"
 #include "experiments/app/program.hpp"
 #include "tests/campaigns/fuzz/capture.hpp"
 #include "tests/campaigns/fuzz/expect.hpp"

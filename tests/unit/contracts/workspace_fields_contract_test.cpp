@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/problem/pose_options.hpp"
@@ -187,7 +188,7 @@ TEST_P(WorkspaceFieldsContract, SurfaceIsClosedFacesOutwardsAndEnclosesWhatCells
       if (is_cut) std::get<VoxelOptions>(fine.method).box = cut(plan(sweep)).box();
       const WorkspaceFields found = fields(fine);
       if (sweep.swept.size() < 3) {
-        EXPECT_TRUE(refuse_surface(found));
+        EXPECT_TRUE(refuse_surface(names_of(found.axes)));
         EXPECT_THROW(isosurface(found), std::invalid_argument);
         break;
       }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/core/catalogue.hpp"
 #include "tests/unit/report/enclosed_volume.hpp"
 
 namespace pkm {
@@ -59,9 +60,10 @@ TEST(Isosurface, OfNothingIsEmpty) {
 
 TEST(Isosurface, IsRefusedWhereLessThanThreeCoordinatesAreSwept) {
   WorkspaceFields plane = made_up(2, [](double, double, double) { return 1.0; });
-  EXPECT_FALSE(refuse_surface(plane));
+  EXPECT_FALSE(refuse_surface(names_of(plane.axes)));
   plane.axes.pop_back();
-  EXPECT_EQ(refuse_surface(plane), "a surface needs three swept coordinates, and this workspace sweeps x, y");
+  EXPECT_EQ(refuse_surface(names_of(plane.axes)),
+            "a surface needs three swept coordinates, and this workspace sweeps x, y");
   EXPECT_THROW(isosurface(plane), std::invalid_argument);
 }
 

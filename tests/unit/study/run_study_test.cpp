@@ -3,82 +3,21 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <new>
 
-#include "constraints/all.hpp"
 #include "engine/core/instruction_set.hpp"
-#include "engine/mechanisms/all.hpp"
-#include "engine/storage/study_file.hpp"
-#include "objectives/all.hpp"
-#include "tests/unit/setup/real_studies.hpp"
 #include "tests/unit/storage/first_difference.hpp"
+#include "tests/unit/study/run_study.hpp"
 #include "tests/unit/study/stop_at.hpp"
 
 namespace pkm::testing {
 namespace {
 
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Ne;
-
-const char* const kStudy = R"([study]
-name = "two stages"
-seed = 3
-[mechanism]
-type = "4ppa-2par"
-[variables]
-a   = { min = 0.15, max = 0.3 }
-b   = { min = 1.0, max = 1.5 }
-l_u = { min = 0.5, max = 0.7 }
-[baseline]
-a = 0.2
-[workspace]
-method = "voxels"
-cells = { x = 12, z = 14, theta = 16 }
-[[objective]]
-type = "workspace-ratio"
-[[report]]
-type = "conditioning"
-[[constraint]]
-type = "workspace-volume"
-min = 0.3
-[[stage]]
-optimiser = "ga"
-population = 8
-generations = 6
-[[stage]]
-optimiser = "ga"
-population = 6
-generations = 4
-crossover = "sbx"
-[final]
-round = 0.05
-[checkpoint]
-every = 0
-)";
-
-class RunStudy : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "pkmopt-run-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    std::signal(SIGINT, SIG_DFL);  // a script's background process ignores it
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
-
-  std::string folder_;
-};
 
 TEST_F(RunStudy, GoesOnUnderASignalThatTheProcessIgnores) {
   const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
@@ -122,40 +61,6 @@ TEST_F(RunStudy, WhoseLockIsTakenAwayLeavesTheFileToOthersAndKeepsItsOwn) {
   EXPECT_EQ(first_difference(straight.contents, resume_study(kept, all_catalogues(), {}, {}, silent).contents), "");
 }
 
-TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
-  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
-  Progress silent;
-  const StudyContents sound = run_study(study, path("s.h5"), false, {}, silent).contents;
-  EXPECT_EQ(study_of(sound, all_catalogues()).name, "two stages");
-  const auto refusal = [&](const auto& forge) -> std::string {
-    StudyContents forged = sound;
-    forge(forged);
-    try {
-      study_of(forged, all_catalogues());
-    } catch (const StorageError& error) {
-      return error.what();
-    }
-    return "none";
-  };
-  const std::string begin = "the study's text and what is recorded of it disagree: ";
-  EXPECT_EQ(refusal([](StudyContents& c) { c.problem.mechanism = "quadrupteron"; }),
-            begin + "4ppa-2par as mechanism, and quadrupteron");
-  EXPECT_EQ(refusal([](StudyContents& c) {
-              c.description = {"[mechanism]", "m.toml"};
-            }),
-            begin + "no file of a mechanism, and one");
-  EXPECT_EQ(refusal([](StudyContents& c) {
-              c.problem.variables.push_back({"l_d", "m", 0.5, 0.7, 0});
-            }),
-            begin + "the variables a, b, l_u, and a, b, l_u, l_d");
-  EXPECT_EQ(refusal([](StudyContents& c) { c.stages.push_back(c.stages.back()); }), begin + "2 stages, and 3");
-  EXPECT_EQ(refusal([](StudyContents& c) { c.stages[1].optimiser = "nlopt"; }), begin + "stage 2 by ga, and by nlopt");
-  EXPECT_EQ(refusal([](StudyContents& c) {
-              c.extensions.push_back({-1, "generations", 9});
-            }),
-            begin + "2 stages, and a new limit of stage 0");
-}
-
 TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
   const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
   Progress silent;
@@ -173,85 +78,6 @@ TEST_F(RunStudy, ResumedAtEveryGenerationEqualsTheStraightRun) {
     EXPECT_EQ(first_difference(straight.contents, second.contents), "") << stop;
     EXPECT_EQ(first_difference(straight.contents, read_study(file)), "") << stop;
     EXPECT_LE(first.evaluations + second.evaluations, straight.evaluations);
-  }
-}
-
-/// How many evaluations of the objective "scarce" there is memory for.
-std::atomic<int> memory_left;
-
-Catalogues catalogues_with_scarce() {
-  Catalogues all = all_catalogues();
-  all.objectives.push_back({.name = "scarce",
-                            .meaning = "needs memory",
-                            .make =
-                                [](const EntryContext&) {
-                                  return make_quantity([]<class S>(const DesignView<S>& design) {
-                                    if (memory_left-- <= 0) throw std::bad_alloc();
-                                    const S a = design.parameters[0], b = design.parameters[1];
-                                    return S(a * b - a * a - b * b);
-                                  });
-                                },
-                            .reads_survey = false});
-  return all;
-}
-
-const char* const kScarceStudy = R"([mechanism]
-type = "4ppa-2par"
-[variables]
-a = { min = 0.15, max = 0.3 }
-b = { min = 1.0, max = 1.5 }
-[workspace]
-method = "voxels"
-cells = { x = 6, z = 6, theta = 6 }
-[[objective]]
-type = "scarce"
-[checkpoint]
-every = 3600
-)";
-
-TEST_F(RunStudy, OutOfMemoryEndsTheRunWithACheckpointAndNoDesignFails) {
-  const std::string ga = "[[stage]]\noptimiser = \"ga\"\npopulation = 8\ngenerations = 3\n";
-  const std::string stages[] = {
-      ga + ga, ga + "[[stage]]\noptimiser = \"nlopt\"\nalgorithm = \"slsqp\"\nevaluations = 8\n",
-      "[[stage]]\noptimiser = \"ipopt\"\nevaluations = 8\n", "[[stage]]\noptimiser = \"sweep\"\npoints = 4\n"};
-  constexpr int kPlenty = 1 << 30;
-  for (const std::string& stage : stages) {
-    const Catalogues all = catalogues_with_scarce();
-    const Study study = read_study_toml(kScarceStudy + stage, "scarce.toml", all);
-    Progress silent;
-    memory_left = kPlenty;
-    const auto straight = run_study(study, path("straight.h5"), true, {.threads = 1}, silent);
-    const int asked = kPlenty - memory_left;  // by the stages' evaluations and by the final ones
-    ASSERT_GT(asked, straight.evaluations);
-    std::int64_t most_kept = 0;
-    for (int memory = 0; memory < asked; memory += memory < asked - 4 ? 7 : 1) {
-      SCOPED_TRACE(stage + "memory for " + std::to_string(memory) + " evaluations");
-      const std::string file = path("s.h5");
-      memory_left = memory;
-      try {
-        run_study(study, file, true, {.threads = 1 + memory % 2}, silent);
-        FAIL() << "nothing was noticed";
-      } catch (const StorageError& error) {
-        EXPECT_THAT(error.what(), HasSubstr(file + ": out of memory in stage "));
-        EXPECT_THAT(error.what(), HasSubstr(" and can be resumed, with fewer threads or more memory"));
-      }
-      const StudyContents kept = read_study(file);
-      EXPECT_EQ(kept.state, StudyState::interrupted);
-      for (const StageRecord& record : kept.stages) EXPECT_THAT(record.table.status, Each(Ne(Status::failed)));
-      if (stage.ends_with("evaluations = 8\n") && memory < straight.evaluations && kept.stages.size() == 1) {
-        EXPECT_LE(kept.evaluations(), memory);
-      }
-      most_kept = std::max(most_kept, kept.evaluations());
-      memory_left = 0;  // the resumed run has no memory for anything new: what is kept stays
-      EXPECT_THROW(resume_study(file, all, {}, {}, silent), StorageError);
-      EXPECT_EQ(first_difference(kept, read_study(file)), "");
-      memory_left = kPlenty;
-      const auto resumed = resume_study(file, all, {}, {.threads = 2}, silent);
-      EXPECT_EQ(resumed.evaluations, straight.evaluations - kept.evaluations());
-      EXPECT_EQ(first_difference(straight.contents, resumed.contents), "");
-      EXPECT_EQ(first_difference(straight.contents, read_study(file)), "");
-    }
-    EXPECT_EQ(most_kept, straight.evaluations);  // where memory was short in the end
   }
 }
 
@@ -310,94 +136,6 @@ TEST_F(RunStudy, TheEndRecordsBestBaselineRoundedAndMap) {
   const auto start = contents.stages[1].table.design(0);
   const StageRecord& first = contents.stages[0];
   EXPECT_TRUE(std::ranges::equal(start, first.table.design(static_cast<std::size_t>(first.best_row))));
-}
-
-TEST_F(RunStudy, RefusesOtherAlgorithmsAndOtherPaths) {
-  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
-  StopAt at(3);
-  auto contents = run_study(study, path("a.h5"), false, {}, at).contents;
-  const auto message = [&](const StudyContents& c) {
-    write_study(path("b.h5"), c);
-    Progress silent;
-    try {
-      resume_study(path("b.h5"), all_catalogues(), {}, {}, silent);
-    } catch (const StorageError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
-  StudyContents other = contents;
-  other.algorithms = kAlgorithms + 1;
-  EXPECT_THAT(message(other), HasSubstr("b.h5 was written by pkmopt"));
-  StudyContents edited = contents;
-  edited.stages[0].table.designs[5] += 1e-9;
-  EXPECT_THAT(message(edited), HasSubstr("b.h5 cannot be continued: "));
-}
-
-// A file from before the mechanism had its last parameters: they are added, at their defaults.
-TEST_F(RunStudy, AParameterGainedSinceIsNoObstacle) {
-  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
-  Progress silent;
-  const auto straight = run_study(study, path("straight.h5"), false, {}, silent).contents;
-  StopAt at(4);
-  StudyContents old = run_study(study, path("a.h5"), false, {}, at).contents;
-  const std::size_t count = old.problem.parameters.size();
-  old.problem.parameters.resize(count - 2);
-  write_study(path("old.h5"), old);
-  EXPECT_EQ(read_study(path("old.h5")).problem.parameters.size(), count - 2);
-  const auto resumed = resume_study(path("old.h5"), all_catalogues(), {}, {}, silent);
-  EXPECT_EQ(resumed.stopped, "");
-  EXPECT_EQ(first_difference(straight, read_study(path("old.h5"))), "");
-}
-
-TEST_F(RunStudy, RefusesAProblemThatHasChanged) {
-  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
-  StopAt at(3);
-  const auto contents = run_study(study, path("a.h5"), false, {}, at).contents;
-  const auto message = [&](const auto& change) {
-    StudyContents changed = contents;
-    change(changed.problem.parameters);
-    write_study(path("b.h5"), changed);
-    Progress silent;
-    try {
-      resume_study(path("b.h5"), all_catalogues(), {}, {}, silent);
-    } catch (const StorageError& error) {
-      return std::string(error.what()).substr(path("b.h5").size());
-    }
-    return std::string("accepted");
-  };
-  using Parameters = std::vector<ParameterRecord>;
-  EXPECT_EQ(message([](Parameters& p) { p[4].value = 0.16; }),
-            " cannot be continued: it was begun with d = 0.16 m, where this program takes 0.15 m");
-  EXPECT_EQ(message([](Parameters& p) { p[4].name = "height"; }),
-            " cannot be continued: it has the parameter height, which this program's mechanism 4ppa-2par has not");
-  EXPECT_EQ(message([](Parameters&) {}), "accepted");
-}
-
-TEST_F(RunStudy, RefusesALimitThatTheLastStageHasNot) {
-  const Study study = read_study_toml(R"([mechanism]
-type = "4ppa-2par"
-[variables]
-a = { min = 0.15, max = 0.3 }
-[workspace]
-method = "columns"
-[[objective]]
-type = "workspace-volume"
-[[stage]]
-optimiser = "sweep"
-points = 5
-)",
-                                      "s.toml", all_catalogues());
-  Progress silent;
-  run_study(study, path("a.h5"), false, {}, silent);
-  try {
-    resume_study(path("a.h5"), all_catalogues(), {.generations = 5, .evaluations = {}}, {}, silent);
-    FAIL();
-  } catch (const ConfigError& error) {
-    EXPECT_STREQ(error.what(),
-                 "--generations: found an optimiser 'sweep' as the last stage; expected one that has a limit on "
-                 "generations");
-  }
 }
 
 TEST_F(RunStudy, ASweepGoesThroughTheBaseline) {

@@ -7,15 +7,22 @@
 
 namespace pkm::described {
 
-ColumnEvent::ColumnEvent(std::vector<EndLabel> below, std::vector<EndLabel> above) {
-  std::ranges::sort(below);
-  std::ranges::sort(above);
-  std::vector<EndLabel> different;
-  std::ranges::set_symmetric_difference(below, above, std::back_inserter(different));
-  if (different.size() != 2 || different[0] == different[1]) return;
-  is_known_ = true;
-  p_ = different[0];
-  q_ = different[1];
+void ColumnEvent::set_below(const std::vector<EndLabel>& corners) {
+  below_ = corners;
+  std::ranges::sort(below_);
+  known_.clear();
+  guesses_ = 0;
+}
+
+void ColumnEvent::set_above(const std::vector<EndLabel>& corners) {
+  above_ = corners;
+  std::ranges::sort(above_);
+  different_.clear();
+  std::ranges::set_symmetric_difference(below_, above_, std::back_inserter(different_));
+  is_known_ = different_.size() == 2 && different_[0] != different_[1];
+  if (!is_known_) return;
+  p_ = different_[0];
+  q_ = different_[1];
   is_square_ = p_ >> 1U == q_ >> 1U;
 }
 

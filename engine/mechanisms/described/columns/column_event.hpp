@@ -9,9 +9,10 @@ namespace pkm::described {
 /// squared where they are both of one, which has them on one side only.
 class ColumnEvent {
  public:
-  /// @param below, above  Structure::corners on both sides; where they differ by more than two ends nothing is guessed
-  ColumnEvent(std::vector<EndLabel> below, std::vector<EndLabel> above);
-
+  /// Begins anew, with Structure::corners below a change.
+  void set_below(const std::vector<EndLabel>& corners);
+  /// And with those above it; where they differ by more than two ends nothing is guessed.
+  void set_above(const std::vector<EndLabel>& corners);
   /// What was seen at a place. @param ends  all of them, in order
   void take(double at, const Ends& ends, const std::vector<EndLabel>& corners);
   /// A place between two: the next of the secant method, else their middle.
@@ -24,6 +25,7 @@ class ColumnEvent {
 
   bool is_known_ = false, is_square_ = false;
   EndLabel p_ = 0, q_ = 0;
+  std::vector<EndLabel> below_, above_, different_;  ///< in order
   std::vector<Known> known_;
   int guesses_ = 0;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/mechanisms/described/columns/column_event.hpp"
 #include "engine/mechanisms/described/columns/sections_integral.hpp"
 
 namespace pkm::described {
@@ -147,23 +146,23 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
 
 void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const {
   const double range = whole + std::fabs(low.at), near = (ends_in_lines() ? kNearInLines : kNear) * range;
-  std::optional<ColumnEvent> event;
+  const bool is_guessed = ends_in_lines() && level + 1 == levels();
   const auto look = [&](double at) {
     const Slice found = slice(level, at, room);
-    if (event) event->take(at, room.column.ends, room.column.structure.corners);
+    if (is_guessed) room.event.take(at, room.column.ends, room.column.structure.corners);
     return found;
   };
-  if (ends_in_lines() && level + 1 == levels()) {
+  if (is_guessed) {
     slice(level, low.at, room);
-    const std::vector<EndLabel> below = room.column.structure.corners;
+    room.event.set_below(room.column.structure.corners);
     slice(level, high.at, room);
-    event.emplace(below, room.column.structure.corners);
+    room.event.set_above(room.column.structure.corners);
     look(low.at);
     look(high.at);
   }
   while (high.at - low.at > near || (jumps(low, high, level, room) && high.at - low.at > kNear * range)) {
-    const double at = event ? event->guess(low.at, high.at, high.at - low.at > near ? near : kNear * range)
-                            : 0.5 * (low.at + high.at);
+    const double at = is_guessed ? room.event.guess(low.at, high.at, high.at - low.at > near ? near : kNear * range)
+                                 : 0.5 * (low.at + high.at);
     if (at <= low.at || at >= high.at) break;
     if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;
     const Slice next = look(at);

@@ -10,6 +10,7 @@
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/break_motion.hpp"
 #include "engine/mechanisms/described/columns/column.hpp"
+#include "engine/mechanisms/described/columns/column_event.hpp"
 
 namespace pkm::described {
 
@@ -68,6 +69,7 @@ struct IntegralRoom {
   };
   SectionRoom section;
   ColumnRoom column;
+  ColumnEvent event;  ///< of columns: the change of structure that is closed in on
   std::vector<double> registers, adjoints, own;
   std::vector<Dual4> moving, along;  ///< registers, where nodes move with the design, and with an outer coordinate
   std::vector<Level> levels;

@@ -1,5 +1,5 @@
-// Dynamics of 4PPa-2PaR: against point masses whose places are written down anew and followed by differences, against
-// the balance of power, and its surveys of coupling indices against each other.
+// Dynamics of 4PPa-2PaR: against point masses whose places are written down anew and followed by differences, and
+// against the balance of power.
 #include "engine/mechanisms/four_ppa_two_par/dynamics.hpp"
 
 #include <cmath>
@@ -8,18 +8,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/dynamics/coupling.hpp"
-#include "engine/math/statistics.hpp"
-#include "engine/mechanisms/four_ppa_two_par/coupling.hpp"
 #include "tests/unit/contracts/slopes.hpp"
 #include "tests/unit/mechanisms/four_ppa_two_par/golden.hpp"
+#include "tests/unit/mechanisms/four_ppa_two_par/random_states.hpp"
 
 namespace pkm::testing {
 namespace {
 
 using namespace four_ppa_two_par;
 using Vector3 = Eigen::Vector3d;
-using Vector4 = Vector<double, 4>;
 
 struct PointMass {
   double mass;
@@ -76,48 +73,6 @@ double potential(const std::vector<double>& p, const Vector4& X, int mode) {
   double sum = 0;
   for (const PointMass& point : point_masses(p, X, mode)) sum += kGravity * point.mass * point.at.z();
   return sum;
-}
-
-pkm::PoseDynamics<double> dynamics(const std::vector<double>& p, const Vector4& X, const Vector4& V, int mode) {
-  const pkm::MotionState<double> state{X, V};
-  pkm::PoseDynamics<double> d;
-  four_ppa().dynamics()->equations(std::span<const double>(p), kModes[mode], {&state, 1}, {&d, 1});
-  return d;
-}
-
-/// A random design with every mass changed, a payload off the centre, and a pose away from singularities.
-struct Drawn {
-  std::vector<double> p;
-  Vector4 X, V;
-  int mode;
-};
-
-bool regular(const Geometry<double>& g, const Vector4& X, int mode) {
-  const auto branch = [&](int bit) { return mode & bit ? Branch::upper : Branch::lower; };
-  const auto limb = inverse(g, SchoenfliesPose<double>{X[0], X[1], X[2], X[3]}, {branch(2), branch(1)});
-  bool good = limb.assembles;
-  for (std::size_t j = 0; j < 2 && good; ++j)
-    good = limb.sigma[j] > 0.2 * g.l_d && limb.h[j] > 0.2 * g.l_u && std::fabs(limb.z_c[j]) > 0.1 * g.l_u;
-  const double turn = mode == 0 || mode == 3 ? limb.x[0] * limb.sigma[1] + limb.x[1] * limb.sigma[0]
-                                             : limb.x[0] * limb.sigma[1] - limb.x[1] * limb.sigma[0];
-  return good && std::fabs(turn) > 0.1 * g.l_d * g.l_d && std::fabs(std::cos(X[3])) > 0.2;
-}
-
-std::vector<Drawn> random_states(int count, unsigned seed) {
-  Uniform uniform(seed);
-  std::vector<Drawn> all;
-  while (static_cast<int>(all.size()) < count) {
-    Drawn s{nominal(), {}, {}, static_cast<int>(all.size() % 4)};
-    for (double& value : s.p) value *= uniform(0.7, 1.4);
-    s.p[kKappa] = uniform(0.6, 1.2);
-    s.p[kPayload] = uniform(0, 2);
-    s.p[kPayloadOffset] = uniform(-0.2, 0.2);
-    const auto g = geometry(std::span<const double>(s.p));
-    s.X = {{uniform(0, g.b), uniform(0.5, 1.5), uniform(-1.4, 0.9), uniform(-1.3, 1.3)}};
-    s.V = {{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-3, 3)}};
-    if (regular(g, s.X, s.mode)) all.push_back(s);
-  }
-  return all;
 }
 
 TEST(FourPpaDynamics, KineticEnergyIsThatOfThePointMasses) {
@@ -221,8 +176,6 @@ TEST(FourPpaDynamics, DerivativesByEveryParameterEqualDifferences) {
   }
 }
 
-// --- masses
-
 TEST(FourPpaDynamics, ScalingLaws) {
   for (const Drawn& s : random_states(50, 6)) {
     const auto M = joint_inertia(dynamics(s.p, s.X, s.V, s.mode));
@@ -286,218 +239,6 @@ TEST(FourPpaDynamics, LinksWithoutMassAreRefused) {
   p[kLambdaU] = 0;  // no survey of inertia, no question of masses
   EXPECT_GT(survey(p, columns(no_limits(four_ppa().info()))).volume, 0);
   EXPECT_THROW(survey(p, columns(no_limits(four_ppa().info())), {.fields = {&kCouplingIndex}}), std::domain_error);
-}
-
-// --- surveys of coupling
-
-TEST(FourPpaCoupling, KernelEqualsTheEquationsOfMotion) {
-  int compared = 0;
-  for (const Drawn& s : random_states(800, 7)) {
-    if (s.mode != 0) continue;
-    const auto g = geometry(std::span<const double>(s.p));
-    const auto limb =
-        inverse(g, SchoenfliesPose<double>{s.X[0], s.X[1], s.X[2], s.X[3]}, {Branch::lower, Branch::lower});
-    const auto [sine, cosine] = sincos(s.X[3]);
-    const auto fast = four_ppa_two_par::joint_inertia(g, masses(std::span<const double>(s.p)), sine, cosine, limb.x,
-                                                      limb.sigma, limb.z_c);
-    const auto full = pkm::joint_inertia(dynamics(s.p, s.X, s.V, 0));
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(fast(i, j), full(i, j), 1e-11 * full(i, i));
-    ++compared;
-  }
-  EXPECT_EQ(compared, 200);
-}
-
-const Demand kAll{.fields = {&kConditioning, &kCouplingIndex, &kInertiaCondition}, .poses = true};
-
-TEST(FourPpaCoupling, WhereInertiaHasNoValueTheWorstIsTaken) {
-  auto M = Matrix<double, 4, 4>::identity();
-  const auto values = [&M] {
-    Survey<double> survey;
-    survey.clear(kAll.fields);
-    add_inertia(M, survey);
-    return std::array{survey.of(kCouplingIndex)[0], survey.of(kInertiaCondition)[0]};
-  };
-  EXPECT_EQ(values(), (std::array{0.0, 1.0}));
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    M(2, 1) = M(1, 2) = bad;
-    EXPECT_EQ(values(), (std::array{1.0, 0.0}));
-  }
-}
-
-/// A design whose payload makes all four joints differ.
-std::vector<double> lopsided() {
-  auto p = nominal();
-  p[kPayload] = 2;
-  p[kPayloadOffset] = 0.08;
-  return p;
-}
-
-LimitSpec away() {
-  LimitSpec spec = no_limits(four_ppa().info());
-  const double given[] = {0.15, 0.15, 1.3, 0.08, 0.3, 0.3};
-  std::ranges::copy(given, spec.given.begin());
-  return spec;
-}
-
-void expect_lengths(const Survey<double>& s) {
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.of(kCouplingIndex, i).size(), s.weight.size());
-  EXPECT_EQ(s.of(kInertiaCondition).size(), s.weight.size());
-  EXPECT_EQ(s.of(kConditioning).size(), s.weight.size());
-  EXPECT_EQ(s.pose.size(), s.weight.size());
-}
-
-/// Every sample of a column survey is what the equations of motion give at its pose, and feasible.
-void expect_poses(const std::vector<double>& p, const Survey<double>& s, const LimitSpec& limits) {
-  ASSERT_GT(s.pose.size(), 100u);
-  for (std::size_t k = 0; k < s.pose.size(); k += 17) {
-    const pkm::Pose<double>& at = s.pose[k];
-    const auto M = joint_inertia(dynamics(p, fixed<4>(at), {}, 0));
-    const AxisVector<double> index = coupling_indices(M);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(s.of(kCouplingIndex, i)[k], index[i], 1e-8);
-    EXPECT_NEAR(s.of(kInertiaCondition)[k], inertia_condition(M), 1e-8);
-    const PoseReport report = four_ppa().inspect(p, at, "lower,lower", limits);
-    EXPECT_TRUE(report.feasible) << report.reason;
-    EXPECT_NEAR(s.of(kConditioning)[k], *report.conditioning, 1e-8);
-  }
-}
-
-void expect_alike(const Survey<double>& exact, const Survey<double>& cells, double accuracy) {
-  expect_lengths(exact);
-  expect_lengths(cells);
-  for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kCouplingIndex, i)),
-                weighted_mean(exact.weight, exact.of(kCouplingIndex, i)), accuracy)
-        << i;
-  EXPECT_NEAR(weighted_mean(cells.weight, cells.of(kInertiaCondition)),
-              weighted_mean(exact.weight, exact.of(kInertiaCondition)), accuracy);
-}
-
-TEST(FourPpaCoupling, VoxelsConvergeToColumns) {
-  const auto p = lopsided();
-  for (const double y : {1.25, 0.55, 1.9}) {  // both limbs free or alike; one or the other short of stroke
-    const HeldCoordinate held = at_y(y);
-    const auto exact = survey(p, columns(away(), held), kAll);
-    expect_alike(exact, survey(p, voxels(away(), {50, 56, 60}, held), kAll), 2e-3);
-    double sum = 0;
-    for (const double w : exact.weight) sum += w;
-    EXPECT_NEAR(sum, exact.volume, 1e-4 * exact.volume);
-    expect_poses(p, exact, away());
-    // the joints do differ, so the comparison tells them apart
-    EXPECT_GT(std::fabs(weighted_mean(exact.weight, exact.of(kCouplingIndex, 0)) -
-                        weighted_mean(exact.weight, exact.of(kCouplingIndex, 2))),
-              0.006);
-  }
-}
-
-TEST(FourPpaCoupling, IntegratedOverY) {
-  auto p = lopsided();
-  p[kL0] = 1.4;
-  const SurveyPlan cells = voxels(away(), {24, 28, 30}, over_y(24));
-  const auto exact = survey(p, columns(away(), over_y(), 1e-8), kAll);
-  expect_alike(exact, survey(p, cells, kAll), 4e-3);
-  double sum = 0;
-  for (const double w : exact.weight) sum += w;
-  EXPECT_NEAR(sum, exact.volume, 1e-2 * exact.volume);
-}
-
-TEST(FourPpaCoupling, ASampleIsWhatThePoseHas) {
-  const auto p = lopsided();
-  const auto cells = voxels(away(), {9, 10, 11});
-  const auto found = survey(p, cells, kAll);
-  const VoxelMap map = voxel_map(four_ppa(), p, cells);
-  std::size_t sample = 0;
-  for (std::int64_t k = 0; k < 11; ++k)
-    for (std::int64_t i = 0; i < 9; ++i)
-      for (std::int64_t j = 0; j < 10; ++j) {
-        if (!map.feasible[static_cast<std::size_t>((i * 10 + j) * 11 + k)]) continue;
-        const auto centre = [&](int axis, std::int64_t index, double count) {
-          return map.lower[axis] + (static_cast<double>(index) + 0.5) * (map.upper[axis] - map.lower[axis]) / count;
-        };
-        const auto M = joint_inertia(dynamics(p, {{centre(0, i, 9), 1.25, centre(1, j, 10), centre(2, k, 11)}}, {}, 0));
-        const AxisVector<double> index = coupling_indices(M);
-        ASSERT_LT(sample, found.weight.size());
-        for (std::size_t joint = 0; joint < 4; ++joint)
-          EXPECT_NEAR(found.of(kCouplingIndex, joint)[sample], index[joint], 1e-9);
-        EXPECT_NEAR(found.of(kInertiaCondition)[sample], inertia_condition(M), 1e-9);
-        EXPECT_NEAR(found.pose[sample][3], centre(2, k, 11), 1e-12);
-        ++sample;
-      }
-  EXPECT_EQ(sample, found.weight.size());
-  EXPECT_GT(sample, 50u);
-}
-
-TEST(FourPpaCoupling, OnlyWhatIsDemandedAndTheSameConditioning) {
-  const auto plan = columns(away());
-  const auto plain = survey(nominal(), plan, {.fields = {&kConditioning}}), all = survey(nominal(), plan, kAll),
-             indices = survey(nominal(), plan, {.fields = {&kCouplingIndex}});
-  EXPECT_TRUE(plain.of(kCouplingIndex, 0).empty() && plain.of(kInertiaCondition).empty());
-  EXPECT_TRUE(indices.of(kConditioning).empty() && indices.of(kInertiaCondition).empty());
-  EXPECT_EQ(indices.of(kCouplingIndex, 3), all.of(kCouplingIndex, 3));
-  EXPECT_NEAR(weighted_mean(all.weight, all.of(kConditioning)), weighted_mean(plain.weight, plain.of(kConditioning)),
-              1e-12);
-  // Without an uneven payload the joints change places under mirroring, and have the same mean.
-  for (std::size_t i = 1; i < 4; ++i)
-    EXPECT_NEAR(weighted_mean(all.weight, all.of(kCouplingIndex, i)),
-                weighted_mean(all.weight, all.of(kCouplingIndex, 0)), 1e-12);
-}
-
-TEST(FourPpaCoupling, AnotherModeIsRefused) {
-  const auto plan = columns(away());
-  EXPECT_NO_THROW(prepare_survey(four_ppa(), plan, {.fields = {&kCouplingIndex}, .mode = "lower,lower"}));
-  try {
-    prepare_survey(four_ppa(), plan, {.fields = {&kInertiaCondition}, .mode = "upper,upper"});
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "workspaces of mechanism 4ppa-2par are of the working mode lower,lower, so inertia is not surveyed in "
-                 "the mode upper,upper");
-  }
-}
-
-TEST(FourPpaCoupling, DerivativesOfMeansEqualDifferences) {
-  Uniform uniform(8);
-  int compared = 0, missing = 0;
-  for (int k = 0; k < 12; ++k) {
-    auto design = lopsided();
-    std::vector<double> direction;
-    for (double& value : design) value *= uniform(0.9, 1.1);
-    for (const double value : design) direction.push_back(value * uniform(-1, 1));
-    SurveyPlan plan = columns(away(), at_y(k % 2 ? 0.6 : design[kL0] / 2));
-    column_options(plan).nodes = {3, 3};
-    const auto surveyor = prepare_survey(four_ppa(), plan, kAll);
-    const auto means = [&](double t) {
-      std::vector<Dual4> p;
-      for (std::size_t i = 0; i < design.size(); ++i) {
-        p.emplace_back(design[i] + t * direction[i]);
-        p.back().v[0] = direction[i];
-      }
-      Survey<Dual4> found;
-      survey_once<Dual4>(*surveyor, p, found);
-      std::vector<Dual4> all;
-      for (std::size_t i = 0; i < 4; ++i) all.push_back(weighted_mean(found.weight, found.of(kCouplingIndex, i)));
-      all.push_back(weighted_mean(found.weight, found.of(kInertiaCondition)));
-      return all;
-    };
-    const auto here = means(0);
-    std::vector<double> scale;
-    for (const Dual4& mean : here) scale.push_back(std::fmax(std::fabs(mean.v[0]), 0.1 * mean.a));
-    const auto slopes = test::differences(
-        [&](double t) {
-          std::vector<double> values;
-          for (const Dual4& mean : means(t)) values.push_back(mean.a);
-          return values;
-        },
-        scale);
-    for (std::size_t i = 0; i < here.size(); ++i, ++compared) {
-      if (slopes[i])
-        EXPECT_NEAR(here[i].v[0], *slopes[i], 1e-6 * scale[i]);
-      else
-        ++missing;  // an entry of M_q changes its sign at a node within the least steps
-    }
-  }
-  EXPECT_EQ(compared, 60);
-  EXPECT_LE(missing, 6);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The one statement of what keeps a pose of 4PPa-2PaR feasible against the plain test of a pose, and the closed-form
-// sections against both. (Cells: workspace_test.cpp.)
+// sections against both. (Cells: voxels_test.cpp.)
 #include "engine/mechanisms/four_ppa_two_par/margins.hpp"
 
 #include <algorithm>

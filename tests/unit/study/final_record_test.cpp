@@ -1,5 +1,5 @@
 // What the end of a study records: the best design, rounded, is what a reader expects or says what is wrong with it.
-#include "engine/study/records.hpp"
+#include "engine/study/final_record.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "constraints/all.hpp"
 #include "engine/mechanisms/all.hpp"
+#include "engine/study/records.hpp"
 #include "objectives/all.hpp"
 
 namespace pkm {

@@ -1,0 +1,63 @@
+#include "engine/study/design_record.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "engine/core/unit.hpp"
+#include "engine/problem/certain_volume.hpp"
+#include "engine/study/stop_request.hpp"
+
+namespace pkm {
+
+DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters,
+                       std::optional<double> certain) {
+  DesignReport r = problem.report(parameters);
+  std::optional<VolumeBounds> bounds;
+  if (certain && r.status != Status::failed) try {
+      bounds = check_volume(problem, r, *certain, [] { return StopRequest::signal() != 0; });
+    } catch (const std::invalid_argument& reason) {
+      r.status = Status::failed;
+      r.reason = reason.what();
+    }
+  const bool box_matters = problem.parts().plan.box().has_value();  // the default box ends where the mechanism does
+  return {.parameters = r.parameters,
+          .objectives = r.objectives,
+          .margins = r.margins,
+          .reports = r.reports,
+          .status = r.status,
+          .reason = r.reason,
+          .volume = r.survey.volume,
+          .cells = r.survey.cells,
+          .feasible_cells = r.survey.feasible_cells,
+          .cell_volume = r.survey.cell_volume,
+          .touches_box = box_matters && r.survey.touches_box,
+          .certain = bounds};
+}
+
+DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters,
+                               std::optional<double> certain) {
+  const ProblemParts& parts = problem.parts();
+  if (const Refusal refusal = parts.mechanism->refuse(parameters)) {
+    const auto nothing = [](std::size_t size) {
+      return std::vector<double>(size, std::numeric_limits<double>::quiet_NaN());
+    };
+    return {.parameters = parameters,
+            .objectives = nothing(problem.objectives().size()),
+            .margins = nothing(problem.margins().size()),
+            .reports = nothing(problem.reports().size()),
+            .status = Status::failed,
+            .reason = *refusal};
+  }
+  DesignRecord record = evaluated(problem, parameters, certain);
+  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    const Variable& v = parts.space[i];
+    const double value = parameters[parts.varies[i]], roundoff = 1e-12 * std::fabs(value);
+    if (value >= v.lower - roundoff && value <= v.upper + roundoff) continue;
+    record.reason +=
+        (record.reason.empty() ? "" : "; ") + v.name + " = " + with_unit(value, v.unit) + " lies outside its bounds";
+  }
+  return record;
+}
+
+}  // namespace pkm

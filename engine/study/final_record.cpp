@@ -1,0 +1,103 @@
+#include "engine/study/final_record.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <span>
+
+#include "engine/core/unit.hpp"
+#include "engine/study/design_record.hpp"
+#include "engine/study/exact_values.hpp"
+#include "engine/survey/picture_plan.hpp"
+#include "engine/survey/survey_set.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr const char* kWideBounds = "certain bounds of the ";
+
+/// Cells of the map that a study by columns stores.
+constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
+
+MapRecord map_of(const ProblemParts& parts, std::span<const double> parameters) {
+  const MechanismInfo& info = parts.mechanism->info();
+  MapRecord map;
+  map.voxels = voxel_map(*parts.mechanism, parameters, picture_plan(info, parts.plan, kMapCells));
+  for (const int swept : sweep_of(info, parts.plan).swept) {
+    const AxisInfo& axis = info.coordinates[static_cast<std::size_t>(swept)];
+    map.axes.push_back(axis.name);
+    map.units.push_back(axis.unit);
+  }
+  map.axes.resize(3);  // an axis along which nothing is swept has no name
+  map.units.resize(3, "1");
+  return map;
+}
+
+/// Sentences on bounds and constraints that hold the best design back.
+std::vector<std::string> active_sentences(const DesignProblem& problem, const DesignRecord& best) {
+  std::vector<std::string> sentences;
+  const ProblemParts& parts = problem.parts();
+  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
+    const Variable& v = parts.space[i];
+    const double value = best.parameters[parts.varies[i]], near = 1e-6 * (v.upper - v.lower);
+    if (value - v.lower <= near) sentences.push_back(v.name + " at its lower bound " + with_unit(v.lower, v.unit));
+    if (v.upper - value <= near) sentences.push_back(v.name + " at its upper bound " + with_unit(v.upper, v.unit));
+  }
+  for (std::size_t i = 0; i < best.margins.size(); ++i) {
+    const MarginInfo& m = problem.margins()[i];
+    if (!(best.margins[i] <= 1e-4)) continue;
+    char margin[32];
+    std::snprintf(margin, sizeof margin, "%.3g", best.margins[i]);
+    sentences.push_back(m.name + (best.margins[i] < 0 ? " is violated" : " is active") + ", margin " + margin +
+                        (m.unit == "1" ? "" : " " + m.unit));
+  }
+  return sentences;
+}
+
+}  // namespace
+
+double rounded_to(double value, double step) {
+  // Dividing by a whole number rounds once; multiplying by a step such as 0.1, itself rounded, would round twice.
+  const double per_unit = std::nearbyint(1 / step);
+  if (per_unit >= 1 && std::fabs(1 / step - per_unit) <= 1e-9 * per_unit)
+    return std::nearbyint(value * per_unit) / per_unit;
+  return std::nearbyint(value / step) * step;
+}
+
+FinalRecord final_record(const Study& study, StudyContents& contents) {
+  const DesignProblem& problem = *study.problem;
+  const ProblemParts& parts = problem.parts();
+  std::erase_if(contents.notes, [](const std::string& note) {
+    return note.starts_with(ExactValues::kNone) || note.starts_with(kWideBounds);
+  });
+  const ExactValues exact(parts);
+  const std::optional<double> certain = parts.plan.columns() ? parts.plan.columns()->certain : std::nullopt;
+  const auto note_gap = [&](const char* name, const std::optional<VolumeBounds>& bounds) {
+    if (bounds && !bounds->stopped && bounds->gap() > *certain)
+      contents.notes.push_back(kWideBounds + std::string(name) + " have the gap " + shortest(bounds->gap()) +
+                               ", asked for " + shortest(*certain) + ": " + std::to_string(bounds->boxes) + " boxes");
+  };
+  FinalRecord f;
+  f.volume_unit = volume_unit(parts.mechanism->info(), parts.plan);
+  if (study.baseline) {
+    f.baseline = evaluated(problem, *study.baseline, certain);
+    note_gap("baseline", f.baseline->certain);
+    f.baseline_exact = exact.of("baseline", *study.baseline, contents.notes);
+  }
+  if (contents.best.row < 0) return f;
+  const auto best = problem.parameters(contents.best_design());
+  f.best = evaluated(problem, best, certain);
+  note_gap("best design", f.best->certain);
+  f.best_exact = exact.of("best design", best, contents.notes);
+  f.active = active_sentences(problem, *f.best);
+  if (study.round) {
+    auto rounded = best;
+    for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
+    f.rounded = evaluated_rounded(problem, rounded, certain);
+    note_gap("rounded design", f.rounded->certain);
+  }
+  f.map = map_of(parts, best);
+  return f;
+}
+
+}  // namespace pkm

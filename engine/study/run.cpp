@@ -1,0 +1,225 @@
+#include "engine/study/run.hpp"
+
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include "engine/problem/order.hpp"
+#include "engine/problem/replay.hpp"
+#include "engine/problem/row_exchange.hpp"
+#include "engine/study/generations.hpp"
+#include "engine/study/optimality_record.hpp"
+#include "engine/study/records.hpp"
+#include "engine/study/starts.hpp"
+#include "engine/study/stop_request.hpp"
+
+namespace pkm {
+namespace {
+
+/// Every stage has streams of its own.
+std::uint64_t stage_seed(std::uint64_t study, std::size_t stage) {
+  return study + 0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(stage);
+}
+
+}  // namespace
+
+Run::Run(const Study& study, StudyContents contents, StudyOutput* output, const RunOptions& options, Progress& progress)
+    : study_(study),
+      output_(output),
+      options_(options),
+      progress_(progress),
+      clock_(study.checkpoint_every),
+      evaluator_(options.threads > 0 ? options.threads : ranks::threads()),
+      contents_(std::move(contents)),
+      recorded_(std::exchange(contents_.stages, {})),
+      earlier_seconds_(contents_.seconds),
+      replaying_(!recorded_.empty()) {
+  contents_.best = {};
+  contents_.final.reset();
+  contents_.program_version = options.program.version;
+  contents_.program_revision = options.program.revision;
+  contents_.algorithms = kAlgorithms;
+}
+
+void Run::begin() {
+  clock_.first([&] {
+    if (recorded_.empty()) write(StudyState::running);
+  });
+}
+
+RunOutcome Run::operator()() {
+  for (const std::string& each : ranks::all_gather(std::to_string(evaluator_.threads()))) threads_ += std::stoi(each);
+  RunOutcome result;
+  try {
+    with_team(evaluator_.threads(), [&] {
+      run_stages();
+      if (failure_) std::rethrow_exception(failure_);
+      if (ranks::rank() == 0) result = outcome();
+    });
+  } catch (const std::bad_alloc&) {
+    if (ranks::size() == 1) keep_what_is_whole();
+    ranks::abandon("out of memory");
+  }
+  return result;
+}
+
+void Run::run_stages() {
+  try {
+    for (std::size_t i = 0; i < study_.stages.size(); ++i)
+      if (!run_stage(i)) break;
+  } catch (const ReplayMismatch&) {  // on every rank
+    throw;
+  } catch (const std::exception& error) {  // the others would wait for this one
+    if (ranks::size() > 1) ranks::abandon(message_of(error));
+    throw;
+  }
+}
+
+bool Run::run_stage(std::size_t index) {
+  stage_ = index;
+  whole_rows_ = 0;
+  const Stage& stage = study_.stages[index];
+  const StageInput input = input_of(index);
+  contents_.stages.push_back({stage.entry->name, option_lines(stage.options),
+                              EvaluationTable(study_.problem->shape(stage.optimiser->detail()))});
+  StageRecord& record = contents_.stages.back();
+  limit_ = stage.optimiser->evaluation_limit(*study_.problem);
+  const StageResult result = stage.optimiser->minimise(input, record.table);
+  record.starts = result.starts;
+  record.ahead = result.ahead;
+  ahead_ = {};
+  if (failed_ || result.reason == StopReason::interrupted) return false;
+  take_best(record.table, result.best_row);
+  const bool restarted = !warnings_.empty();  // a start that left its recorded path may have become shorter
+  if (input.recorded && !restarted && record.table.size() < input.recorded->size())
+    throw ReplayMismatch("stage " + std::to_string(index + 1) + " ended after " + std::to_string(record.table.size()) +
+                         " of " + std::to_string(input.recorded->size()) + " recorded evaluations");
+  stopped_.clear();  // the stage came to its own end in the same generation
+  record.finished = true;
+  record.stop = words(result.reason);
+  record.best_row = result.best_row;
+  if (result.front && !record.front) record.front = {.rows = result.front->rows, .reference = result.front->reference};
+  if (record.table.shape().detail == Detail::derivatives) record.optimality = optimality_record(study_, record);
+  return true;
+}
+
+StageInput Run::input_of(std::size_t index) {
+  StageInput input{.problem = *study_.problem,
+                   .evaluator = evaluator_,
+                   .monitor = *this,
+                   .seed = stage_seed(contents_.seed, index),
+                   .starts = start_designs(study_, study_.stages[index], contents_),
+                   .known_front = known_front(study_, contents_)};
+  if (index < recorded_.size()) {
+    input.recorded = &recorded_[index].table;
+    input.recorded_starts = recorded_[index].starts;
+    input.recorded_ahead = recorded_[index].ahead;
+  }
+  return input;
+}
+
+bool Run::generation(const Generation& g) {
+  whole_rows_.reset();
+  const std::int64_t made = evaluator_.made();
+  const auto index = static_cast<std::size_t>(g.number);
+  const StageRecord* const before = stage_ < recorded_.size() ? &recorded_[stage_] : nullptr;
+  replaying_ = before && made == made_;
+  made_ = made;
+  const bool timed = replaying_ && index < before->generations.size();
+  record_generation(g, study_.problem->space(),
+                    timed ? before->generations.seconds[index] : earlier_seconds_ + seconds(), contents_.stages.back());
+  ahead_ = g.ahead;
+  whole_rows_ = g.table->size();
+  // A solver's starts are points of a front: of them only the stage's end says which stands for all.
+  if (g.front || study_.problem->objectives().size() < 2) take_best(*g.table, g.best_row);
+  if (ranks::rank() == 0) {
+    try {
+      decide(g);
+    } catch (...) {  // told to the others before it is told to the user
+      if (ranks::size() == 1 || g.alone) throw;
+      failure_ = std::current_exception();
+    }
+  }
+  if (ranks::size() > 1 && !g.alone) agree(g);
+  return stopped_.empty() && !failed_;
+}
+
+bool Run::goes_on() {
+  if (ranks::rank() != 0) return true;
+  if (const int signal = StopRequest::signal())
+    stopped_ = StopRequest::name(signal);
+  else if (options_.time_limit && seconds() >= *options_.time_limit)
+    stopped_ = "time limit";
+  return stopped_.empty();
+}
+
+void Run::warn(const std::string& sentence) {
+  const std::string note = "stage " + std::to_string(stage_ + 1) + ": " + sentence;
+  contents_.notes.push_back(note);
+  warnings_.push_back(note);
+}
+
+void Run::take_best(const EvaluationTable& table, std::int64_t row) {
+  const auto& objectives = study_.problem->objectives();
+  if (row < 0 || objectives.empty()) return;
+  const auto stage = static_cast<std::int64_t>(stage_);
+  if (contents_.best.row >= 0 && contents_.best.stage != stage) {
+    // Earlier stages win ties, so that a stage that finds nothing better changes nothing.
+    const Ranked before =
+        ranked(objectives, contents_.best_stage().table, static_cast<std::size_t>(contents_.best.row));
+    const Ranked candidate = ranked(objectives, table, static_cast<std::size_t>(row));
+    // Of several objectives the best is a stage's compromise; the last one that is as feasible stands.
+    if (objectives.size() > 1 ? candidate.status > before.status : !better(candidate, before)) return;
+  }
+  contents_.best = {stage, row};
+}
+
+void Run::decide(const Generation& g) {
+  progress_.generation(report_of(g));
+  if (goes_on() && !replaying_ && clock_.due()) clock_.checkpoint([&] { write(StudyState::running); });
+}
+
+void Run::agree(const Generation& g) {
+  constexpr char kDecision = 'd', kFailed = '!';
+  const std::uint64_t own = hash_of_rows(*g.table, g.first_row, g.table->size());
+  std::string message(1, kDecision);
+  message.append(reinterpret_cast<const char*>(&own), sizeof own) += failure_ ? std::string(1, kFailed) : stopped_;
+  ranks::broadcast(message);
+  std::uint64_t hash = 0;
+  if (message.size() > sizeof hash) std::memcpy(&hash, message.data() + 1, sizeof hash);
+  if (message.front() != kDecision || hash != own)
+    ranks::abandon("what was evaluated in generation " + std::to_string(g.number) + " of stage " +
+                   std::to_string(stage_ + 1) + " differs from that of rank 0 on " + ranks::host(0) +
+                   ": the same program with the same libraries has to run on every host");
+  stopped_ = message.substr(1 + sizeof hash);
+  failed_ = stopped_.starts_with(kFailed);
+}
+
+ProgressReport Run::report_of(const Generation& g) const {
+  const StageRecord& stage = contents_.stages.back();
+  ProgressReport r{.stage = stage_,
+                   .stages = study_.stages.size(),
+                   .optimiser = stage.optimiser,
+                   .generation = g.number,
+                   .evaluations = static_cast<std::int64_t>(g.table->size()),
+                   .evaluation_limit = limit_,
+                   .seconds = seconds()};
+  r.evaluations_per_second = r.seconds > 0 ? static_cast<double>(made_) / r.seconds : 0;
+  r.feasible_share = stage.generations.feasible_share.back();
+  if (!study_.problem->objectives().empty() && g.best_row >= 0) {
+    const auto row = static_cast<std::size_t>(g.best_row);
+    r.objective = study_.problem->objectives()[0].name;
+    r.has_best = g.table->status[row] == Status::feasible;
+    if (r.has_best)
+      r.best = g.table->objective_row(row)[0];
+    else
+      r.violation = violation(g.table->margin_row(row));
+  }
+  if (g.front && r.has_best) {
+    r.front = g.front->rows.size();
+    r.hypervolume = g.front->hypervolume;
+  }
+  return r;
+}
+
+}  // namespace pkm

@@ -1,0 +1,191 @@
+// pkmopt run --seeds: the same study over several seeds.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+
+#include "engine/core/printable.hpp"
+#include "engine/report/standing.hpp"
+#include "engine/study/stop_request.hpp"
+#include "experiments/app/next_step.hpp"
+#include "experiments/app/print.hpp"
+#include "experiments/app/run.hpp"
+#include "experiments/app/summary.hpp"
+#include "experiments/app/target.hpp"
+
+namespace pkm {
+namespace {
+
+constexpr int kMostCompared = 4;  // studies in the report that is proposed
+
+std::string seed_file(const std::string& output, std::uint64_t seed) {
+  const std::filesystem::path path(output);
+  return (path.parent_path() / (path.stem().string() + "-seed-" + std::to_string(seed) + path.extension().string()))
+      .string();
+}
+
+/// Says which of the seeds is under way.
+class SeedProgress final : public Progress {
+ public:
+  SeedProgress(Progress& screen, int seeds) : screen_(screen), seeds_(seeds) {}
+  void next() { ++seed_; }
+  void generation(const ProgressReport& report) override {
+    ProgressReport named = report;
+    named.optimiser = "seed " + std::to_string(seed_) + " of " + std::to_string(seeds_) + ", " + report.optimiser;
+    screen_.generation(named);
+  }
+
+ private:
+  Progress& screen_;
+  int seeds_, seed_ = 0;
+};
+
+/// The last hypervolume of the study's evolved front; none where its corner is not the study's to say: hypervolumes
+/// from different corners cannot be compared.
+std::optional<double> evolved_hypervolume(const Study& study, const StudyContents& contents) {
+  for (std::size_t i = contents.stages.size(); i-- > 0;) {
+    const std::optional<FrontRecord>& front = contents.stages[i].front;
+    if (!front || front->hypervolume.empty() || !study.stages[i].options.has("reference")) continue;
+    if (std::isfinite(front->hypervolume.back())) return front->hypervolume.back();
+  }
+  return {};
+}
+
+/// What came of the seeds: a row each, and the numbers of the spread.
+struct SeedTable {
+  bool trade_off;
+  int feasible_seeds = 0;
+  std::vector<Row> rows = {{"seed", trade_off ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
+  std::vector<double> best = {}, exact = {}, seconds = {};
+  std::string note = {};                ///< the first
+  std::optional<Verdict> verdict = {};  ///< of the first seed that found nothing
+  std::vector<std::string> wrong = {};  ///< volumes outside of their certain bounds
+
+  void add(const Study& study, const StudyContents& contents, const std::string& file) {
+    const FinalRecord final = contents.final.value_or(FinalRecord());
+    const auto objective = [](const std::optional<DesignRecord>& record) -> std::optional<double> {
+      if (!record || record->objectives.empty() || std::isnan(record->objectives[0])) return {};
+      return record->objectives[0];
+    };
+    const auto nothing = verdict_on(contents, study.problem.get());
+    if (!verdict) verdict = nothing;
+    const bool feasible = !nothing && objective(final.best) && final.best->status == Status::feasible;
+    feasible_seeds += feasible;
+    const auto keep = [feasible](std::optional<double> value, std::vector<double>& all) -> std::string {
+      if (!feasible || !value) return "";
+      all.push_back(*value);
+      return digits(*value);
+    };
+    const auto value = trade_off ? evolved_hypervolume(study, contents) : objective(final.best);
+    for (const std::string& sentence : contradicted(contents))
+      wrong.push_back("seed " + std::to_string(contents.seed) + ": " + sentence);
+    const bool fails = final.best && final.best->certain && final.best->status == Status::failed;
+    const std::string best_text = feasible ? keep(value, best) : fails ? "outside of its bounds" : "nothing feasible";
+    seconds.push_back(contents.seconds);
+    if (note.empty() && !contents.notes.empty())
+      note = "note of seed " + std::to_string(contents.seed) + ": " + printable(join(contents.notes, "; ")) + '\n';
+    rows.push_back({std::to_string(contents.seed), best_text, trade_off ? "" : keep(objective(final.best_exact), exact),
+                    std::to_string(contents.evaluations()), duration_text(contents.seconds), file});
+  }
+
+  void add_spread() {
+    const auto row = [&](const char* name, const auto& pick) {
+      const auto of = [&](std::vector<double> values, const auto& text) {
+        std::ranges::sort(values);
+        return values.empty() ? std::string() : text(pick(values));
+      };
+      rows.push_back({name, of(best, digits), of(exact, digits), "", of(seconds, duration_text), ""});
+    };
+    row("least", [](const std::vector<double>& v) { return v.front(); });
+    row("median", [](const std::vector<double>& v) { return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]); });
+    row("greatest", [](const std::vector<double>& v) { return v.back(); });
+  }
+};
+
+/// Refuses files of seeds that may not be written.
+void check_files(const std::vector<std::string>& files, const Study& study, const RunArguments& arguments) {
+  for (const std::string& file : files) {
+    check_outputs({file}, inputs_of(study), Existing::replaced);
+    if (!arguments.force && !arguments.resume && exists(file))
+      throw StorageError(file + " exists already; resume it with --resume, or overwrite it with --force");
+  }
+}
+
+void print_verdict(const SeedTable& table, const RunArguments& arguments, Session& session) {
+  if (!arguments.common.quiet)
+    std::cout << "verdict: " << table.verdict->finding << ": " << table.verdict->sentence << '\n'
+              << reasons_text(table.verdict->reasons);
+  conclude(table.verdict, arguments.common, session);
+}
+
+/// How the user goes on: to a report, or with the seeds that are left.
+void print_next_step(const std::string& output, std::uint64_t first, const std::vector<std::string>& files,
+                     const RunArguments& arguments, const Session& session) {
+  if (session.exit_code == kStoppedEarly) {
+    std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study);
+    for (const std::string& word : arguments.changes.arguments()) std::cout << ' ' << quoted(word);
+    std::cout << " --seeds " << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output)
+              << '\n';
+  } else if (!arguments.common.quiet) {
+    std::vector<std::string> words = {"report"};
+    words.insert(words.end(), files.begin(),
+                 files.begin() + std::min<std::ptrdiff_t>(std::ssize(files), kMostCompared));
+    std::cout << next_step(session, words);
+  }
+}
+
+}  // namespace
+
+void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
+               Session& session) {
+  const StopRequest listen;  // one for all, so that a signal between two seeds counts
+  const std::optional<double> time_limit = options.time_limit;  // of all
+  double seconds = 0;
+  const std::uint64_t first = study.seed;
+  if (first > std::numeric_limits<std::uint64_t>::max() - static_cast<std::uint64_t>(arguments.seeds))
+    throw ConfigError({"", 0, "--seeds"}, "a first seed of " + std::to_string(first), "one that leaves room for them");
+  std::vector<std::string> files;
+  for (int i = 0; i < arguments.seeds; ++i) files.push_back(seed_file(output, first + static_cast<std::uint64_t>(i)));
+  check_files(files, study, arguments);
+
+  SeedTable table{study.problem->objectives().size() > 1};
+  const auto screen = make_progress(arguments.common);
+  SeedProgress progress(*screen, arguments.seeds);
+  std::optional<std::string> unwritten;  // why what was found is not in its file
+  for (std::size_t i = 0; i < files.size() && session.exit_code == kDone; ++i) {
+    study.seed = first + i;
+    progress.next();
+    if (time_limit) options.time_limit = *time_limit - seconds;
+    RunEnd end;
+    try {
+      end = end_of_run([&] { return run_one(study, files[i], arguments, options, session, progress); });
+    } catch (const StorageError& failure) {
+      if (table.seconds.empty()) throw;
+      unwritten = failure.what();
+      break;
+    }
+    const RunOutcome& outcome = end.outcome;
+    seconds += outcome.seconds;
+    if (outcome.stopped.empty()) table.add(study, outcome.contents, end.unwritten ? "not written" : files[i]);
+    unwritten = end.unwritten;
+    if (unwritten) break;
+    const bool last = i + 1 == files.size();
+    if (!outcome.stopped.empty() || (StopRequest::signal() != 0 && !last)) session.exit_code = kStoppedEarly;
+  }
+  screen->finish();
+  table.add_spread();
+  if (!arguments.common.quiet || unwritten)
+    std::cout << printable(study.name) << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
+              << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
+              << " seeds ended feasible\n"
+              << table.note << std::flush;
+  if (unwritten) throw StorageError(*unwritten);
+  if (!table.wrong.empty()) throw std::runtime_error(join(table.wrong, "; "));
+  if (session.exit_code == kDone && table.feasible_seeds == 0 && table.verdict)
+    print_verdict(table, arguments, session);
+  print_next_step(output, first, files, arguments, session);
+}
+
+}  // namespace pkm

@@ -1,0 +1,38 @@
+// A mechanism of the catalogue, or a user's, and poses within and without its workspace.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/report/workspace_fields.hpp"
+#include "tests/unit/contracts/nominal.hpp"
+
+namespace pkm {
+
+class MechanismContract : public testing::TestWithParam<std::string> {
+ protected:
+  const Mechanism& mechanism() const { return *test::mechanism_called(GetParam()); }
+  const MechanismInfo& info() const { return mechanism().info(); }
+  std::vector<double> parameters() const { return test::nominal(info()); }
+
+  struct Found {
+    std::vector<Pose<double>> inside, outside;  ///< centres of feasible cells and of the others
+  };
+  /// Some 2700 cells of the usual sweep.
+  Found centres() const {
+    const auto axes = static_cast<double>(info().sweeps.front().swept.size());
+    const test::Cells cells = test::some_cells(mechanism(), std::lround(std::pow(14, 3 / axes)));
+    Found found;
+    for (std::size_t i = 0; i < cells.poses.size(); ++i)
+      (cells.feasible[i] ? found.inside : found.outside).push_back(cells.poses[i]);
+    return found;
+  }
+  PoseReport inspect(const Pose<double>& pose) const {
+    return mechanism().inspect(parameters(), pose, info().modes[0], no_limits(info()));
+  }
+};
+
+}  // namespace pkm
