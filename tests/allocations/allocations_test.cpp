@@ -45,8 +45,8 @@ std::vector<std::string> experiments() {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS))
     if (const auto folder = entry.path().parent_path().filename();  // motions and mechanisms are no studies
-        entry.path().extension() == ".toml" && folder != "motions" && folder != "mechanisms" &&
-        folder != "motors")  // forces of described mechanisms take room for a row of states
+        entry.path().extension() == ".toml" && folder != "motions" && folder != "mechanisms" && folder != "motors" &&
+        folder != "obstacles")  // forces and reports of poses of described mechanisms take room
       paths.push_back(entry.path());
   std::ranges::sort(paths);
   return paths;
