@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "engine/problem/order.hpp"
 
@@ -10,6 +13,8 @@ namespace pkm {
 namespace {
 
 constexpr std::size_t kMostStarts = 12, kMostStartsOnFront = 20;  // that a table shows
+/// Share of the greatest sensitivity below which one is what an optimum leaves of 0.
+constexpr double kLeftByOptimum = 1e-6;
 
 /// The starts, best end first; as they come where there are several objectives.
 std::vector<std::size_t> by_end(const ProblemRecord& problem, const StageRecord& stage) {
@@ -66,6 +71,30 @@ Row objectives_text(const StageRecord& stage, const StartOutcome& start) {
   return texts;
 }
 
+/// The records, unit by unit as they come; of a unit those first of which `size` makes most.
+template <class Record, class Size>
+std::vector<Record> greatest_first(std::vector<Record> records, const Size& size) {
+  std::map<std::string, std::size_t> place;  // of a unit among the units
+  for (const Record& r : records) place.try_emplace(r.unit, place.size());
+  const auto key = [&](const Record& r) { return std::pair(place[r.unit], -std::fabs(size(r))); };
+  std::ranges::stable_sort(records, std::less(), key);
+  return records;
+}
+
+double influence(const SensitivityRecord& s) { return std::fmax(std::fabs(s.as_built), std::fabs(s.reoptimised)); }
+
+/// Those that have an influence, with 0 where an optimum has left next to nothing of it, beside the greatest of the
+/// unit.
+std::vector<SensitivityRecord> without_remains(std::vector<SensitivityRecord> all) {
+  std::erase_if(all, [](const SensitivityRecord& s) { return influence(s) == 0; });
+  std::map<std::string, double> greatest;
+  for (const SensitivityRecord& s : all) greatest[s.unit] = std::fmax(greatest[s.unit], influence(s));
+  for (SensitivityRecord& s : all)
+    for (double* const rate : {&s.as_built, &s.reoptimised})
+      if (std::fabs(*rate) < kLeftByOptimum * greatest[s.unit]) *rate = 0;
+  return all;
+}
+
 }  // namespace
 
 std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) {
@@ -94,24 +123,25 @@ std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) 
 std::string optimality_text(const ProblemRecord& problem, const StageRecord& stage) {
   if (!stage.optimality) return "";
   const OptimalityRecord& record = *stage.optimality;
-  const auto per = [&problem](const Step& step) {
-    return problem.objectives[0].unit + (step.unit == "1" ? "" : " per " + step.unit);
-  };
-  std::vector<Row> active = {{"active", "", "multiplier", ""}},
-                   rates = {{"sensitivity", "", "as built", "reoptimised"}};
-  for (const ActiveRecord& a : record.active) {
-    const Step step = handy(a.unit);
-    active.push_back({a.name, a.kind, formatted("%.4g", a.multiplier * step.size), per(step)});
+  const ObjectiveInfo& objective = problem.objectives[0];
+  const std::string of = objective.name + (objective.unit == "1" ? "" : " [" + objective.unit + "]");
+  std::string text = "first-order optimality " + formatted("%.1e", record.optimality) + '\n';
+  if (!record.active.empty()) {
+    std::vector<Row> rows = {{"", "", "per", "multiplier"}};
+    for (const ActiveRecord& a : greatest_first(record.active, [](const ActiveRecord& a) { return a.multiplier; }))
+      rows.push_back({a.name, a.kind, handy(a.unit).unit, formatted("%.4g", a.multiplier * handy(a.unit).size)});
+    text += titled("active, and the gain of " + of + " where it gives way", rows);
   }
-  for (const SensitivityRecord& s : record.sensitivities) {
+  std::vector<Row> rows = {{"", "", "per", "as built", "reoptimised"}};
+  for (const SensitivityRecord& s : greatest_first(without_remains(record.sensitivities), influence)) {
     const bool varies = std::isnan(s.reoptimised);
-    if (s.as_built == 0 && (varies || s.reoptimised == 0)) continue;  // has no influence
-    const Step step = handy(s.unit);
-    rates.push_back({s.parameter, varies ? "varies" : "fixed", formatted("%+.4g", s.as_built * step.size),
-                     varies ? "" : formatted("%+.4g", s.reoptimised * step.size), per(step)});
+    const auto rate = [step = handy(s.unit).size](double value) {
+      return value == 0 ? "0" : formatted("%+.4g", value * step);
+    };
+    rows.push_back({s.parameter, varies ? "varies" : "fixed", handy(s.unit).unit, rate(s.as_built),
+                    varies ? "" : rate(s.reoptimised)});
   }
-  return "first-order optimality " + formatted("%.1e", record.optimality) + '\n' +
-         (active.size() > 1 ? '\n' + aligned(active) : "") + '\n' + aligned(rates);
+  return text + titled("sensitivity of " + of + ", of each unit the greatest first", rows) + '\n';
 }
 
 Json starts_json(const ProblemRecord& problem, const StageRecord& stage) {
