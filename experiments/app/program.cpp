@@ -24,6 +24,7 @@
 #include "experiments/app/colours.hpp"
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
+#include "experiments/app/fitted.hpp"
 #include "experiments/app/printable_stream.hpp"
 #include "experiments/app/version.hpp"
 #include "objectives/all.hpp"
@@ -90,12 +91,13 @@ void add(const Command& command, CLI::App& app, Session& session) {
 /// What is said where no command is named.
 constexpr const char* kFirstSteps =
     "Commands to begin with:\n"
-    "  pkmopt list                                the mechanisms, objectives, constraints and optimisers there are\n"
-    "  pkmopt new study 4ppa-2par -o study.toml   a study to begin with\n"
-    "  pkmopt check study.toml                    what is understood of it\n"
-    "  pkmopt run study.toml                      the best design, into study.h5\n"
-    "  pkmopt report study.h5                     what was found, as a page with plots\n"
-    "  pkmopt workspace 4ppa-2par                 the workspace of one design\n"
+    "  pkmopt list mechanisms                        the robots that are built in\n"
+    "  pkmopt new mechanism my-robot -o robot.toml   one of your own, as a text to change\n"
+    "  pkmopt new study robot.toml -o study.toml     what may vary, and what is wanted\n"
+    "  pkmopt check study.toml                       what is understood of it\n"
+    "  pkmopt run study.toml                         the best design, into study.h5\n"
+    "  pkmopt report study.h5                        what was found, as a page with plots\n"
+    "  pkmopt workspace robot.toml                   the workspace of one design\n"
     "'pkmopt --help' lists all commands, 'pkmopt COMMAND --help' tells more of one.\n";
 
 void run(const std::vector<std::string>& arguments, Session& session) {
@@ -138,8 +140,12 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   Session session{catalogues, name.empty() ? "pkmopt" : name};
   const auto paint_on = [&session](int descriptor) -> PrintableStream::Paint {
-    if (!shows_colours(descriptor)) return {};
-    return [&session](std::string_view lines) { return painted(lines, session.program); };
+    const std::size_t columns = columns_of_terminal(descriptor);
+    const bool colours = shows_colours(descriptor);
+    if (!colours && columns == 0) return {};
+    return [&session, columns, colours](std::string_view lines) {
+      return fitted(colours ? painted(lines, session.program) : std::string(lines), columns);
+    };
   };
   const PrintableStream out(std::cout, paint_on(STDOUT_FILENO)), err(std::cerr, paint_on(STDERR_FILENO));
   const auto complain = [&session](const std::string& sentence, int exit_code) {

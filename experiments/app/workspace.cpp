@@ -149,9 +149,9 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
                                   {"least", range ? Json(range->least) : Json()},
                                   {"greatest", range ? Json(range->greatest) : Json()},
                                   {"meaning", field.meaning}};
+    const std::string unit = field.unit == "mixed" ? "1" : field.unit;  // the meaning has the units
     if (range && field.name != "feasible")
-      rows.push_back(
-          {field.name, position(range->least, field.unit), position(range->greatest, field.unit), field.meaning});
+      rows.push_back({field.name, position(range->least, unit), position(range->greatest, unit), field.meaning});
   }
   out.section("fields (least and greatest value)", rows);
 }

@@ -82,7 +82,8 @@ TEST(CliErrors, NoCommandIsExitCodeTwoAndTheFirstSteps) {
   const auto result = pkmopt({});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.out, "");
-  EXPECT_THAT(result.err, HasSubstr("\n  pkmopt new study 4ppa-2par -o study.toml   a study to begin with\n"));
+  EXPECT_THAT(result.err,
+              HasSubstr("\n  pkmopt new study robot.toml -o study.toml     what may vary, and what is wanted\n"));
   EXPECT_THAT(result.err, HasSubstr("'pkmopt --help' lists all commands"));
 }
 

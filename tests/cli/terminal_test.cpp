@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/app/colours.hpp"
+#include "experiments/app/fitted.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/study_folder.hpp"
 
@@ -23,13 +24,15 @@ const std::vector<std::string> kPoseCommand = {"pose",    "4ppa-2par",     "--at
 
 /// What the program writes, on stdout and stderr, to a terminal of its own.
 std::string on_terminal(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment = {},
-                        const std::string& folder = ".") {
+                        const std::string& folder = ".", unsigned short columns = 0) {
   arguments.insert(arguments.begin(), PKM_PROGRAM);
   std::vector<char*> argv;
   for (const auto& word : arguments) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   int terminal = -1;
-  const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+  winsize size{};
+  size.ws_col = columns;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, &size);
   if (child < 0) throw std::runtime_error("no pseudo-terminal");
   if (child == 0) {
     unsetenv("NO_COLOR");
@@ -113,6 +116,32 @@ TEST(Colours, WarningsNamesOfColumnsAndWhatIsLeftAsItIs) {
             "{\n  \"active\": 1,\n  \"next: \": \"yes\"\n}\n");
   EXPECT_EQ(painted("  name  unit  default\n  a     m     0.2\n", "pkmopt"),
             "  \x1b[2mname\x1b[0m  \x1b[2munit\x1b[0m  \x1b[2mdefault\x1b[0m\n  a     m     0.2\n");
+}
+
+TEST(Fitted, TheSentenceOfARowGoesOnBelowItsBeginning) {
+  const char* const row = "  a  0.2 m  distance of the platform's two revolute joints\n";
+  EXPECT_EQ(fitted(row, 40), "  a  0.2 m  distance of the platform's\n            two revolute joints\n");
+  EXPECT_EQ(fitted(row, 38), "  a  0.2 m  distance of the platform's\n            two revolute joints\n");
+  EXPECT_EQ(fitted(row, 37), "  a  0.2 m  distance of the\n            platform's two revolute\n            joints\n");
+  for (const std::size_t columns : {0u, 20u, 58u}) EXPECT_EQ(fitted(row, columns), row) << columns;
+  EXPECT_EQ(fitted("  alpha  \x1b[31mno: 20\u00B0 are too many for it\x1b[0m", 33),
+            "  alpha  \x1b[31mno: 20\u00B0 are too many for\n         it\x1b[0m");
+}
+
+TEST(Fitted, WhatIsCopiedStaysOnItsLine) {
+  for (const char* line : {"next: pkmopt run a-study-of-a-long-name.toml  or another one of these\n",
+                           "  \"meaning\": \"what is said  in two parts by a text of JSON\"\n",
+                           "  0.123456789012  0.123456789012  0.123456789012  0.123456789012\n",
+                           "    pkmopt pose 4ppa-2par --at x=0.25,y=0.85,z=-0.8,theta=30deg\n"})
+    EXPECT_EQ(fitted(line, 40), line);
+}
+
+TEST(Fitted, AsWideAsTheTerminal) {
+  const std::vector<std::string> command = {"evaluate", "4ppa-2par"};
+  const std::string text = without_colours(on_terminal(command, {}, ".", 80));
+  EXPECT_THAT(text, HasSubstr("upper ones have\n                        lambda_u d_u"));
+  EXPECT_EQ(without_colours(on_terminal(command, {}, ".", 300)), pkmopt(command).out);
+  EXPECT_EQ(on_terminal(command, {{"NO_COLOR", "1"}}, ".", 80), text);
 }
 
 }  // namespace
