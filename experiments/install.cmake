@@ -45,9 +45,21 @@ if(NOT PKM_PROGRAM)
   return()
 endif()
 set(programs pkmopt_app pkmopt_check_proof)
+# Debian asks for an address. This one is reserved for those that there are not: docs/help.md says where people are.
+set(CPACK_PACKAGE_CONTACT "pkmopt authors <pkmopt@pkmopt.invalid>")
 if(NOT PKM_BUNDLE)
   install(TARGETS ${programs} RUNTIME)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # what Debian calls it
+  string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
+  file(CONFIGURE OUTPUT debian/changelog @ONLY CONTENT [[
+pkmopt (@PROJECT_VERSION@) stable; urgency=medium
+
+  * What users see of the changes is told in CHANGELOG.md.
+
+ -- @CPACK_PACKAGE_CONTACT@  @now@
+]])
+  execute_process(COMMAND gzip -9nf ${CMAKE_CURRENT_BINARY_DIR}/debian/changelog COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/debian/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
   set(CPACK_GENERATOR DEB)
 else()
   set(CPACK_GENERATOR TGZ)
@@ -74,7 +86,6 @@ else()
     endforeach()]])
 endif()
 
-set(CPACK_PACKAGE_CONTACT "the pkmopt authors")
 set(CPACK_PACKAGE_DESCRIPTION "For a parallel robot, pkmopt finds its workspace, its best dimensions, its
 coupling and its forces, with exact derivatives where there are closed forms.
 The robot is built in or described by a file.")

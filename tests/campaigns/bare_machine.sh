@@ -5,7 +5,7 @@
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 source experiments/debian-packages.sh
-pkm_install_missing debootstrap
+pkm_install_missing debootstrap lintian
 
 work=$(mktemp -d)
 root=$work/root bare=${1:-$work/bare}
@@ -45,6 +45,7 @@ offered() {
 
 ls packages/pkmopt* >/dev/null 2>&1 || quietly experiments/package.sh
 package=$(ls packages/pkmopt_*.deb) archive=$(ls packages/pkmopt-*.tar.gz)
+quietly lintian --allow-root --fail-on error,warning "$package"
 [[ -x $bare/usr/bin/apt-get ]] || quietly debootstrap --variant=minbase bookworm "$bare"
 
 begin_again "the archive, where nothing is installed, in a folder of any name"

@@ -13,7 +13,7 @@ for file in bin/pkmopt bin/pkmopt-check-proof 'lib[^/]*(/.*)?/libpkmopt\.a' 'lib
   'lib[^/]*(/.*)?/cmake/pkmopt/pkmopt-config\.cmake' include/pkmopt/engine/mechanism/mechanism.hpp \
   include/pkmopt/experiments/app/program.hpp share/man/man1/pkmopt{,-check-proof}\\.1\\.gz share/bash-completion/completions/pkmopt \
   share/zsh/vendor-completions/_pkmopt share/fish/vendor_completions.d/pkmopt.fish \
-  share/doc/pkmopt/{README.md,CHANGELOG.md,LICENSE,docs/install.md,docs/tutorials/cluster.md,licences/libhdf5-dev} \
+  share/doc/pkmopt/{README.md,CHANGELOG.md,changelog.gz,LICENSE,docs/install.md,docs/tutorials/cluster.md,licences/libhdf5-dev} \
   share/pkmopt/experiments/{4ppa-2par/paper-problem.toml,mechanisms/linear-delta.toml,slurm/study.sbatch}; do
   installed "$file"
 done
