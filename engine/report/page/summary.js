@@ -221,7 +221,7 @@ function holdingBack(study) {
     panel.append(
       simpleTable(
         ["active", "", "gain if moved"],
-        optimality.active.map((a) => [a.name, a.kind, rateText(a.multiplier, objective, a.unit)]),
+        byMultiplier(optimality).map((a) => [a.name, a.kind, rateText(a.multiplier, objective, a.unit)]),
       ),
     );
   // Of a unit the greatest first; what an optimum leaves of the others is 0.
