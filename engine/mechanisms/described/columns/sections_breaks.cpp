@@ -43,14 +43,14 @@ void SectionsIntegral::look_again(std::size_t level, IntegralRoom& room) const {
   }
 }
 
-/// Where the outermost coordinate's places found little or nothing: in the middle of boxes between them that may hold
-/// something, which are halved until all are known to be empty, or there are many of them.
+/// Between places of the outermost coordinate that found nothing: in the middle of boxes that may hold something, which
+/// are halved until all are known to be empty, or there are many of them.
 void SectionsIntegral::look_between(IntegralRoom& room) const {
-  constexpr std::ptrdiff_t kLittle = 3;
   constexpr std::size_t kMany = 2000;
   std::vector<Slice>& scanned = room.levels[0].scanned;
-  const std::ptrdiff_t found = std::ranges::count_if(scanned, [](const Slice& slice) { return slice.hash != 0; });
-  if (found > kLittle || (levels() > 1 && found > 0)) return;
+  const auto is_found = [](const Slice& slice) { return slice.hash != 0; };
+  const bool has_found = std::ranges::any_of(scanned, is_found);
+  if (levels() > 1 && has_found) return;  // its sections are integrals, which take long
 
   const SectionSearch search(plan());
   search.start(room.registers, room.search);
@@ -61,6 +61,7 @@ void SectionsIntegral::look_between(IntegralRoom& room) const {
   }
   std::vector<double>& places = room.levels[0].places;
   const std::size_t known = scanned.size();
+  const long sections = room.sections;
   std::vector<SearchRoom::Box>& boxes = room.search.boxes;
   while (room.search.examined < kMany && room.sections < room.most) {
     search.examine(room.search);
@@ -78,12 +79,13 @@ void SectionsIntegral::look_between(IntegralRoom& room) const {
     search.halve(room.search);
   }
   for (IntegralRoom::Level& level : room.levels) level.hints.clear();
-  if (found == 0) room.levels[0].unresolved += search.unknown(room.search);
-  if (std::any_of(scanned.begin() + static_cast<std::ptrdiff_t>(known), scanned.end(),
-                  [](const Slice& slice) { return slice.hash != 0; }))
+  if (!has_found) room.levels[0].unresolved += search.unknown(room.search);
+  if (std::any_of(scanned.begin() + static_cast<std::ptrdiff_t>(known), scanned.end(), is_found)) {
     std::ranges::sort(scanned, {}, &Slice::at);
-  else
+  } else {  // the integral is what it was
     scanned.resize(known);
+    room.sections = sections;
+  }
 }
 
 /// Of the coordinates within the outermost one.
