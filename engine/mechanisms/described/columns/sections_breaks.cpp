@@ -70,7 +70,7 @@ void SectionsIntegral::look_between(IntegralRoom& room) const {
     for (const SearchRoom::Box& box : boxes)
       if (search.halves_outermost(box, room.search)) places.push_back(0.5 * (box.side[0].lower + box.side[0].upper));
     std::ranges::sort(places);
-    places.erase(std::ranges::unique(places).begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
     for (const double at : places) {
       give_hints(at, room);
       scanned.push_back(slice(0, at, room));
@@ -96,7 +96,7 @@ void SectionsIntegral::give_hints(double at, IntegralRoom& room) const {
     for (const SearchRoom::Box& box : room.search.boxes)
       if (box.side[0].holds(at)) hints.push_back(0.5 * (box.side[level].lower + box.side[level].upper));
     std::ranges::sort(hints);
-    hints.erase(std::ranges::unique(hints).begin(), hints.end());
+    hints.erase(std::unique(hints.begin(), hints.end()), hints.end());
   }
 }
 
