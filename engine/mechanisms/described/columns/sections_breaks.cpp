@@ -43,6 +43,63 @@ void SectionsIntegral::look_again(std::size_t level, IntegralRoom& room) const {
   }
 }
 
+/// Between places of the outermost coordinate that found nothing: in the middle of boxes that may hold something, which
+/// are halved until all are known to be empty, or there are many of them.
+void SectionsIntegral::look_between(IntegralRoom& room) const {
+  constexpr std::size_t kMany = 2000;
+  std::vector<Slice>& scanned = room.levels[0].scanned;
+  const auto is_found = [](const Slice& slice) { return slice.hash != 0; };
+  const bool has_found = std::ranges::any_of(scanned, is_found);
+  if (levels() > 1 && has_found) return;  // its sections are integrals, which take long
+
+  const SectionSearch search(plan());
+  search.start(room.registers, room.search);
+  for (std::size_t first = 0, last; first < scanned.size(); first = last + 1) {
+    for (last = first; last < scanned.size() && scanned[last].hash == 0; ++last) {
+    }
+    if (last > first + 1) search.add(scanned[first].at, scanned[last - 1].at, room.search);
+  }
+  std::vector<double>& places = room.levels[0].places;
+  const std::size_t known = scanned.size();
+  const long sections = room.sections;
+  std::vector<SearchRoom::Box>& boxes = room.search.boxes;
+  while (room.search.examined < kMany && room.sections < room.most) {
+    search.examine(room.search);
+    if (boxes.empty()) break;
+    places.clear();
+    for (const SearchRoom::Box& box : boxes)
+      if (search.halves_outermost(box, room.search)) places.push_back(0.5 * (box.side[0].lower + box.side[0].upper));
+    std::ranges::sort(places);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    for (const double at : places) {
+      give_hints(at, room);
+      scanned.push_back(slice(0, at, room));
+      if (scanned.back().hash != 0) search.leave_out(at, room.search);
+    }
+    search.halve(room.search);
+  }
+  for (IntegralRoom::Level& level : room.levels) level.hints.clear();
+  if (!has_found) room.levels[0].unresolved += search.unknown(room.search);
+  if (std::any_of(scanned.begin() + static_cast<std::ptrdiff_t>(known), scanned.end(), is_found)) {
+    std::ranges::sort(scanned, {}, &Slice::at);
+  } else {  // the integral is what it was
+    scanned.resize(known);
+    room.sections = sections;
+  }
+}
+
+/// Of the coordinates within the outermost one.
+void SectionsIntegral::give_hints(double at, IntegralRoom& room) const {
+  for (std::size_t level = 1; level < levels(); ++level) {
+    std::vector<double>& hints = room.levels[level].hints;
+    hints.clear();
+    for (const SearchRoom::Box& box : room.search.boxes)
+      if (box.side[0].holds(at)) hints.push_back(0.5 * (box.side[level].lower + box.side[level].upper));
+    std::ranges::sort(hints);
+    hints.erase(std::unique(hints.begin(), hints.end()), hints.end());
+  }
+}
+
 /// Where structures are compared: all over the range, and in the middle of expected parts, however narrow they are.
 void SectionsIntegral::find_places(std::size_t level, double low, double high, IntegralRoom& room) const {
   IntegralRoom::Level& own = room.levels[level];
@@ -57,6 +114,7 @@ void SectionsIntegral::find_places(std::size_t level, double low, double high, I
     const double step = 0.618 * i;
     own.places.push_back(low + whole * (i + 0.2 + 0.6 * (step - std::floor(step))) / samples);
   }
+  own.places.insert(own.places.end(), own.hints.begin(), own.hints.end());
   if (level > 0) add_expected_places(room.levels[level - 1].at, own);
   std::ranges::sort(own.places);
 }

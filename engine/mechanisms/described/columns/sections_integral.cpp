@@ -81,6 +81,7 @@ Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, Integ
   find_places(level, low, high, room);
   if (level == 0) room.is_scanning = true;
   for (const double at : own.places) own.scanned.push_back(slice(level, at, room));
+  if (level == 0) look_between(room);
   if (level == 0) room.is_scanning = false;
   if (level + 1 < levels()) look_again(level, room);
   breaks.push_back({low, false, false, {}, own.scanned.front(), true});

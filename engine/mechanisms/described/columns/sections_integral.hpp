@@ -11,6 +11,7 @@
 #include "engine/mechanisms/described/columns/break_motion.hpp"
 #include "engine/mechanisms/described/columns/column.hpp"
 #include "engine/mechanisms/described/columns/column_event.hpp"
+#include "engine/mechanisms/described/columns/section_search.hpp"
 
 namespace pkm::described {
 
@@ -62,6 +63,7 @@ struct IntegralRoom {
     };
     std::vector<Seen> seen;
     std::size_t seen_count = 0;
+    std::vector<double> hints;   ///< where something may be
     std::vector<double> places;  ///< that are looked at first
     std::vector<Slice> scanned;  ///< there
     double greatest = 0;         ///< slice so far
@@ -69,6 +71,7 @@ struct IntegralRoom {
   };
   SectionRoom section;
   ColumnRoom column;
+  SearchRoom search;
   ColumnEvent event;  ///< of columns: the change of structure that is closed in on
   std::vector<double> registers, adjoints, own;
   std::vector<Dual4> moving, along;  ///< registers, where nodes move with the design, and with an outer coordinate
@@ -119,6 +122,8 @@ class SectionsIntegral {
   static void remember(double outside, IntegralRoom::Level& own);
   Slice integrate(std::size_t level, Structure& structure, IntegralRoom& room) const;
   bool jumps(const Slice& low, const Slice& high, std::size_t level, const IntegralRoom& room) const;
+  void look_between(IntegralRoom& room) const;
+  void give_hints(double at, IntegralRoom& room) const;
   void look_again(std::size_t level, IntegralRoom& room) const;
   void find_breaks(std::size_t level, Slice from, Slice& to, double whole, Breaks& breaks, IntegralRoom& room) const;
   /// Brings two slices of different structures near to each other, to a place where the structure changes.

@@ -182,11 +182,16 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     fill_inputs<S>(parameters, samples.inputs);
     room.inputs.resize(samples.inputs.size());
     std::ranges::transform(samples.inputs, room.inputs.begin(), [](const S& x) { return value_of(x); });
+    Integral<double> found;
     if constexpr (std::is_same_v<S, double>) {
       room.known.of = nullptr;
-      take_volume(integral_->measure(room.inputs, room.integral), survey);
+      found = integral_->measure(room.inputs, room.integral);
     } else {
-      take_volume(with_slopes(samples.inputs, room), survey);
+      found = with_slopes(samples.inputs, room);
+    }
+    take_volume(found, survey);
+    if (found.value == 0 && found.error > 0) survey.error = 1;
+    if constexpr (!std::is_same_v<S, double>) {
       for (std::size_t i = 0; i < samples.inputs.size(); ++i)
         survey.volume.v = survey.volume.v + samples.inputs[i].v * room.known.by_input[i];
     }
