@@ -23,6 +23,10 @@ bool is_positive(const Graph& graph, Node node, const std::vector<Interval>& inp
   const auto number = of_design(graph, node, inputs);
   return number && number->surely_holds();
 }
+bool is_zero(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
+  const auto number = of_design(graph, node, inputs);
+  return number && number->lower == 0 && number->upper == 0;
+}
 bool is_angle(const Graph& graph, Node node, const std::vector<Interval>& inputs) {
   const auto number = of_design(graph, node, inputs);
   return number && number->surely_holds() && number->upper <= kPi;  // which is less than pi
@@ -34,7 +38,7 @@ std::optional<Node> radicand(const Graph& graph, Node node) {
   return entry.arguments[0];
 }
 
-/// Without the root, where a length is compared with one of the design.
+/// Without the root, where a length is compared with one of the design: with 0, it is the condition that there is a root.
 Node squared(Graph& graph, Node condition, const std::vector<Interval>& inputs) {
   const Entry entry = graph[condition];
   if (!entry.operation || entry.operation->code != Code::subtract) return condition;
@@ -43,7 +47,7 @@ Node squared(Graph& graph, Node condition, const std::vector<Interval>& inputs) 
   if (const auto a = radicand(graph, right); a && is_positive(graph, left, inputs))
     return (square(left) - Term(graph, *a)).node();
   if (const auto a = radicand(graph, left); a && is_positive(graph, right, inputs))
-    return (Term(graph, *a) - square(right)).node();
+    return is_zero(graph, right, inputs) ? *a : (Term(graph, *a) - square(right)).node();
   return condition;
 }
 
@@ -106,6 +110,9 @@ PoseConditions pose_conditions(const Model& model, const std::vector<Interval>& 
       if (value) conditions.push_back({result.name, exists(graph, *value)});
     }
   for (const Node node : model.defined) conditions.push_back({"formulas have values", node});
+  // the first of its kind: of two that are open over the same boxes neither would have the root
+  std::unordered_set<Node> seen;
+  std::erase_if(conditions, [&](const auto& condition) { return !seen.insert(condition.node).second; });
 
   Guard guard(graph, conditions);
   std::vector<Node> roots;
