@@ -38,7 +38,7 @@ std::optional<Node> radicand(const Graph& graph, Node node) {
   return entry.arguments[0];
 }
 
-/// Without the root, where a length is compared with one of the design: with 0, it is the condition that there is a root.
+/// Without the root, where a length is compared with one of the design; with 0: the condition that there is a root.
 Node squared(Graph& graph, Node condition, const std::vector<Interval>& inputs) {
   const Entry entry = graph[condition];
   if (!entry.operation || entry.operation->code != Code::subtract) return condition;

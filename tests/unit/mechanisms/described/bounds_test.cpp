@@ -8,6 +8,7 @@
 #include "engine/mechanisms/all.hpp"
 #include "engine/motion/motions.hpp"
 #include "engine/survey/survey_set.hpp"
+#include "tests/unit/contracts/everything.hpp"
 #include "tests/unit/mechanisms/described/files.hpp"
 
 namespace pkm {
@@ -77,6 +78,15 @@ TEST(CertainBounds, HoldReferenceVolumesOfFiles) {
   };
   expect_holds(at(nlohmann::json::object(), 0.15, 0.1), 0.272714271224695, 5e-2);
   expect_holds(at({{"r", 0.5}, {"l_min", 1.15}, {"l_max", 1.75}}, 0.07, -0.2), 0.250842061521403, 5e-2);
+}
+
+/// A length is compared with a threshold of 0, and its root has a condition by itself: one, not two with one root.
+TEST(CertainBounds, AreOfSecondOrderWhereALimitIsInactive) {
+  const Mechanism& file = *test::described("4ppa-2par");
+  const double volume = test::survey(file, test::nominal(file.info()), test::columns(file.info())).volume;
+  const VolumeBounds found = bounds_of(file, 1e-2);
+  expect_holds(found, volume, 1e-2);
+  EXPECT_LE(found.boxes, 12'000U);  // 109 000 with both
 }
 
 TEST(CertainBounds, OfABallAndOfWhatIsEmpty) {
