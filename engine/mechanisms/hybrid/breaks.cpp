@@ -146,7 +146,7 @@ class Search {
  public:
   Search(const Frame<double>& plain, const Frame<Dual<1>>& still, BreakScratch& scratch)
       : plain_(plain), still_(still), scratch_(scratch) {
-    constexpr std::size_t kSamples = 24;
+    constexpr std::size_t kSamples = 192;  // gaps may be as narrow
     const double low = plain.l.beta_min, high = plain.l.beta_max;
     scratch_.count = 0;
     whole_ = high - low;
@@ -202,7 +202,7 @@ class Search {
   void explore(const Sample& low, const Sample& high, int depth) {
     if (alike(low.structure, high.structure)) return;
     const double length = high.beta - low.beta;
-    if (!(length > 1e-13 * whole_) || depth == 0) {
+    if (!(length > 1e-10 * whole_) || depth == 0) {
       const double at = 0.5 * (low.beta + high.beta);
       end(at, {});
       begin(at, {}, high);
