@@ -64,7 +64,7 @@ template <class S>
 void find_outer_pieces(const Sweeping<S>& s, const Sweeping<double>& plain, const Sweeping<Dual<1>>& still,
                        ColumnScratch<S>& scratch) {
   // In x, only where a corner of two circles crosses a third does a break have no closed form; in phi, most are such.
-  const int samples = s.cuts.outer_is_phi ? 64 : 24;
+  const int samples = s.cuts.outer_is_phi ? 192 : 48;
   scratch.breaks.clear();
   scratch.pieces.clear();
   if (s.cuts.outer_is_phi) {  // the box may leave no phi at all
