@@ -136,7 +136,7 @@ TEST_P(OldStudiesOfOtherAlgorithms, AreRefusedByTheVersions) {
        {std::vector<std::string>{"resume", "s.h5"}, {"resume", "s.h5", "--generations", "50"}}) {
     EXPECT_EQ(run(arguments), 1);
     EXPECT_EQ(output_, "pkmopt: s.h5 was written by pkmopt " + old.program + ", whose algorithms have version " +
-                           std::to_string(old.algorithms) + "; this program has version 3 and would not repeat it\n");
+                           std::to_string(old.algorithms) + "; this program has version 4 and would not repeat it\n");
   }
   EXPECT_EQ(slurp("s.h5"), before);
   EXPECT_EQ(files(), (std::set<std::string>{"s.h5", "output.txt"}));

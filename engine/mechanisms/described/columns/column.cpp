@@ -137,9 +137,8 @@ void Column::settle(std::span<const double> registers, double tie, ColumnRoom& r
 }
 
 double Column::measure(std::span<double> registers, ColumnRoom& room) const {
-  Structure& structure = room.structure;
-  structure.hash = 0;
-  structure.corners.clear();
+  room.structure = 0;
+  room.labels.clear();
   room.pieces.clear();
   room.ends.clear();
   Signs signs = 0;
@@ -192,11 +191,11 @@ double Column::measure(std::span<double> registers, ColumnRoom& room) const {
   for (const auto& [low, high] : room.pieces) {
     sum += high.first - low.first;
     for (const EndLabel end : {low.second, high.second}) {
-      structure.corners.push_back(end);
+      room.labels.push_back(end);
       hash.add(end);
     }
   }
-  structure.hash = hash.value() | 1U;
+  room.structure = hash.value() | 1U;
   return sum;
 }
 

@@ -19,7 +19,8 @@ struct ColumnRoom {
   Ends ends;         ///< all places where surfaces change their signs and it may matter
   Ends flat, steep;  ///< of surfaces of degree two or less and curves, in order; of others between two of those
   std::vector<Interval> intervals;  ///< registers
-  Structure structure;
+  std::vector<EndLabel> labels;     ///< of the pieces' ends
+  Structure structure = 0;
 };
 
 class Column {

@@ -9,7 +9,7 @@ namespace pkm::described {
 /// squared where they are both of one, which has them on one side only.
 class ColumnEvent {
  public:
-  /// Begins anew, with Structure::corners below a change.
+  /// Begins anew, with the labels of a column's ends below a change.
   void set_below(const std::vector<EndLabel>& corners);
   /// And with those above it; where they differ by more than two ends nothing is guessed.
   void set_above(const std::vector<EndLabel>& corners);

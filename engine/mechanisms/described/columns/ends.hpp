@@ -17,12 +17,9 @@ inline Signs bit(std::size_t surface) { return Signs{1} << surface; }
 
 using Ends = std::vector<std::pair<double, EndLabel>>;
 
-/// What a section is bounded by: the corners at which arcs end. Where an arc turns back is none, but for a conic that
-/// is there as a whole. Of a column, its ends. As long as they are the same, the measure is a smooth function.
-struct Structure {
-  std::uint64_t hash = 0;  ///< in whatever order they are; 0: nothing is feasible
-  std::vector<std::uint32_t>
-      corners;  ///< labels: of a crossing by both arcs, of an upright side by its lower and upper
-};
+/// Of what bounds a section: the corners at which arcs end, in whatever order. Where an arc turns back is none, but for
+/// a conic that is there as a whole. Of a column, its ends. As long as they are the same, the measure is a smooth
+/// function. 0: nothing is feasible.
+using Structure = std::uint64_t;
 
 }  // namespace pkm::described

@@ -119,25 +119,22 @@ void Section::find_structure(SectionRoom& room) const {
       return;
     }
     cut |= bit(surface);
-    structure.corners.push_back(label);
     Fnv1a corner;
     corner.add(surface);
     corner.add(label);
-    structure.hash += corner.value();
+    structure += corner.value();
   };
   for_each_arc_end(room, [&](EndLabel end, std::size_t first, double t) { add(end >> 1U, first, t); });
   for (Signs whole = round & ~cut; whole != 0; whole &= whole - 1) {
     Fnv1a conic;
     conic.add(static_cast<std::uint64_t>(std::countr_zero(whole)));
-    structure.hash += conic.value();
+    structure += conic.value();
   }
-  if (!room.pieces.empty() && structure.hash == 0) structure.hash = 1;
+  if (!room.pieces.empty() && structure == 0) structure = 1;
 }
 
 double Section::measure(std::span<double> registers, SectionRoom& room) const {
-  Structure& structure = room.structure;
-  structure.hash = 0;
-  structure.corners.clear();
+  room.structure = 0;
   room.pieces.clear();
   room.spans.clear();
   if (!load(registers, room)) return 0;

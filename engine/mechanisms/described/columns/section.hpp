@@ -11,9 +11,6 @@
 
 namespace pkm::described {
 
-/// Whether a corner is at an upright side, where it counts once.
-bool is_upright(std::uint32_t corner);
-
 /// What a section overwrites, in coordinates t, s in [-1, 1] for v and z.
 struct SectionRoom {
   struct Corner {
@@ -46,7 +43,7 @@ struct SectionRoom {
   std::vector<Span> spans, column;
   Ends ends;
   std::vector<double> before, now, other_adjoints;
-  Structure structure;
+  Structure structure = 0;
 };
 
 /// An end of columns at t.

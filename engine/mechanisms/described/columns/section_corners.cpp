@@ -28,8 +28,6 @@ void drop_touching(std::vector<SectionRoom::Corner>& corners) {
 
 }  // namespace
 
-bool is_upright(std::uint32_t corner) { return (corner & kKind) <= kUpright; }
-
 /// Unless the place is known to be infeasible whatever the surfaces `of` say there.
 void Section::add_corner(double t, double s, Signs of, std::uint32_t label, SectionRoom& room) const {
   if (!(std::fabs(s) <= 1 + 1e-9)) return;

@@ -11,17 +11,33 @@ namespace {
 constexpr double kNear = 1e-15;         // of the range: how well breaks are known
 constexpr double kNearInLines = 1e-11;  // the same where sections are lines: measures go on where structures change
 constexpr double kFar = 1e-3;           // of the range: slices that are further from a break may differ in small parts
+constexpr double kNextTo = 1e-8;        // of the range: breaks that are one
+constexpr double kCloseBy = 64;         // steps from a break to the next one: where rounding may decide
 constexpr double kJump = 1e-7;          // of the greatest slice: what is no rounding
 // Places at which structures are compared: where sections are areas, of one outer coordinate and of each of several;
 // where they are lines, of the outermost coordinate, of the next while that is scanned, and of the next later, when it
-// is known what to expect.
-constexpr int kSamples[] = {40, 24}, kSamplesInLines[] = {64, 192, 12};
+// is known what to expect. And of one outer coordinate where there is something: gaps and dents may be as narrow.
+constexpr int kSamples[] = {40, 24}, kSamplesInLines[] = {64, 192, 12}, kSamplesInside = 240;
 
-/// Whether there are two more corners of a kind: they meet where the structure changes.
-bool has_pair_more(std::span<const std::uint32_t> more, std::span<const std::uint32_t> fewer) {
-  return std::ranges::any_of(more, [&](std::uint32_t label) {
-    return std::ranges::count(more, label) - std::ranges::count(fewer, label) >= (is_upright(label) ? 2 : 4);
-  });
+/// The i-th place of some: not at equal distances, which symmetric mechanisms would have their breaks at.
+double spread(double low, double high, int i, int places) {
+  const double step = 0.618 * i;
+  return low + (high - low) * (i + 0.4 + 0.2 * (step - std::floor(step))) / places;
+}
+
+/// Takes two breaks that are next to each other as one: where conics touch, labels change once more a little later,
+/// when rounding no longer hides that they cross. It is at the one where the measure begins to behave like a root,
+/// which the parts on both sides have to know to many digits: their derivatives are infinite there.
+bool join(SliceBreak& first, const SliceBreak& second, double whole) {
+  const double apart = second.at - first.at;
+  if (first.is_box || apart > kNextTo * whole) return false;
+  if (first.below.hash == 0 || first.above.hash == 0 || second.above.hash == 0) return false;
+  const double soon = std::fabs(first.above.measure - first.below.measure),
+               in_all = std::fabs(second.above.measure - first.below.measure);
+  const double like_root = std::sqrt((first.above.at - first.at) / apart);
+  if (!(soon > 0.5 * like_root * in_all)) first.at = second.at;
+  first.above = second.above;
+  return true;
 }
 
 }  // namespace
@@ -88,6 +104,19 @@ void SectionsIntegral::look_between(IntegralRoom& room) const {
   }
 }
 
+/// Closer, from where something begins to where the last of it ends.
+void SectionsIntegral::look_closer(IntegralRoom& room) const {
+  std::vector<Slice>& scanned = room.levels[0].scanned;
+  const auto is_found = [](const Slice& slice) { return slice.hash != 0; };
+  const auto first = std::ranges::find_if(scanned, is_found);
+  if (first == scanned.end()) return;
+  const auto last = std::find_if(scanned.rbegin(), scanned.rend(), is_found);
+  const double low = (first == scanned.begin() ? first : first - 1)->at,
+               high = (last == scanned.rbegin() ? last : last - 1)->at;
+  for (int i = 0; i < kSamplesInside; ++i) scanned.push_back(slice(0, spread(low, high, i, kSamplesInside), room));
+  std::ranges::sort(scanned, {}, &Slice::at);
+}
+
 /// Of the coordinates within the outermost one.
 void SectionsIntegral::give_hints(double at, IntegralRoom& room) const {
   for (std::size_t level = 1; level < levels(); ++level) {
@@ -109,11 +138,7 @@ void SectionsIntegral::find_places(std::size_t level, double low, double high, I
                       : level == 0     ? kSamplesInLines[0]
                                        : kSamplesInLines[room.is_scanning ? 1 : 2];
   own.places.assign({low + kSettled * whole, high - kSettled * whole});
-  for (int i = 0; i < samples; ++i) {
-    // not at equal distances, which symmetric mechanisms would have their breaks at
-    const double step = 0.618 * i;
-    own.places.push_back(low + whole * (i + 0.2 + 0.6 * (step - std::floor(step))) / samples);
-  }
+  for (int i = 0; i < samples; ++i) own.places.push_back(spread(low, high, i, samples));
   own.places.insert(own.places.end(), own.hints.begin(), own.hints.end());
   if (level > 0) add_expected_places(room.levels[level - 1].at, own);
   std::ranges::sort(own.places);
@@ -171,6 +196,8 @@ bool SectionsIntegral::jumps(const Slice& low, const Slice& high, std::size_t le
 /// Adds the breaks between two slices, in order.
 void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, double whole, Breaks& breaks,
                                    IntegralRoom& room) const {
+  const double least = kSettled * whole;
+  double step = least;
   for (int more = 0; more < 24 && from.hash != to.hash && room.sections < room.most; ++more) {
     Slice low = from, high = to;
     close_in(level, low, high, whole, room);
@@ -190,14 +217,14 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
       to = again;
       if (is_other) continue;
     }
-    // Where rounding decides, structures change again and again; ever longer steps leave that behind.
-    const double beyond = high.at + kSettled * whole * std::ldexp(1.0, 3 * more);
+    // Where rounding decides, structures change again and again close by; ever longer steps leave that behind.
+    step = more > 0 && high.at - from.at < kCloseBy * step ? 8 * step : least;
+    const double beyond = high.at + step;
     const Slice after = beyond < to.at ? slice(level, beyond, room) : to;
-    SliceBreak found{high.at, true, true, low, after};
+    SliceBreak found{high.at, true, low, after};
     if (level + 1 < levels() && jumps(low, high, level, room))
       found.overlooked = std::fabs(low.measure - high.measure) * whole / kSamplesInLines[0];
-    find_kind(level, found, std::max(from.at, low.at - kSettled * whole), after.at, room);
-    breaks.push_back(found);
+    if (ends_in_lines() || breaks.empty() || !join(breaks.back(), found, whole)) breaks.push_back(found);
     from = after;
   }
 }
@@ -207,14 +234,14 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
   const bool is_guessed = ends_in_lines() && level + 1 == levels();
   const auto look = [&](double at) {
     const Slice found = slice(level, at, room);
-    if (is_guessed) room.event.take(at, room.column.ends, room.column.structure.corners);
+    if (is_guessed) room.event.take(at, room.column.ends, room.column.labels);
     return found;
   };
   if (is_guessed) {
     slice(level, low.at, room);
-    room.event.set_below(room.column.structure.corners);
+    room.event.set_below(room.column.labels);
     slice(level, high.at, room);
-    room.event.set_above(room.column.structure.corners);
+    room.event.set_above(room.column.labels);
     look(low.at);
     look(high.at);
   }
@@ -227,19 +254,6 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     (next.hash == low.hash ? low : high) = next;
   }
   if (level == 0) room.is_scanning = false;
-}
-
-/// On which sides the measure behaves like a root: where two corners of one kind meet.
-void SectionsIntegral::find_kind(std::size_t level, SliceBreak& at, double before, double after,
-                                 IntegralRoom& room) const {
-  if (level + 1 < levels() || ends_in_lines()) return;
-  slice(level, before, room);
-  std::vector<std::uint32_t>& corners = room.levels[level].corners;
-  corners = room.levels[level].structure.corners;
-  slice(level, after, room);
-  const std::vector<std::uint32_t>& others = room.levels[level].structure.corners;
-  at.root_below = has_pair_more(corners, others);
-  at.root_above = has_pair_more(others, corners);
 }
 
 }  // namespace pkm::described

@@ -26,7 +26,7 @@ Integral<double> SectionsIntegral::measure(std::span<const double> inputs, Integ
   program.start<double>(room.registers);
   program.run<double>(0, inputs, room.registers);
   room.measured = false;
-  const Slice all = inside(0, room.levels.back().structure, room);
+  const Slice all = inside(0, room);
   room.measured = true;
   return {all.measure, all.error, room.sections};
 }
@@ -37,21 +37,15 @@ void SectionsIntegral::set(std::size_t level, double at, IntegralRoom& room) con
   plan().program.run<double>(level + 1, std::span<double>(room.registers));
 }
 
-Slice SectionsIntegral::inside(std::size_t level, Structure& structure, IntegralRoom& room) const {
+Slice SectionsIntegral::inside(std::size_t level, IntegralRoom& room) const {
   const auto& plain = plan().plain[level];
   for (std::size_t i = 0; i < plain.size(); ++i)
-    if (!(room.registers[plain[i]] >= 0)) {
-      structure.hash = 0;
-      structure.corners.clear();
-      return {.broken = static_cast<std::uint32_t>(i + 1)};
-    }
-  if (level < levels()) return integrate(level, structure, room);
+    if (!(room.registers[plain[i]] >= 0)) return {.broken = static_cast<std::uint32_t>(i + 1)};
+  if (level < levels()) return integrate(level, room);
   ++room.sections;
   const auto measured = [&](const auto& innermost, auto& own) {
-    const Slice found{.measure = innermost.measure(room.registers, own), .hash = own.structure.hash};
-    structure.hash = own.structure.hash;
-    structure.corners = own.structure.corners;
-    return found;
+    const double measure = innermost.measure(room.registers, own);
+    return Slice{.measure = measure, .hash = own.structure};
   };
   const auto* const section = std::get_if<Section>(&innermost_);
   return section ? measured(*section, room.section) : measured(std::get<Column>(innermost_), room.column);
@@ -59,15 +53,13 @@ Slice SectionsIntegral::inside(std::size_t level, Structure& structure, Integral
 
 Slice SectionsIntegral::slice(std::size_t level, double at, IntegralRoom& room) const {
   set(level, at, room);
-  Slice found = inside(level + 1, room.levels[level].structure, room);
+  Slice found = inside(level + 1, room);
   found.at = at;
   if (!room.measured) room.levels[level].greatest = std::max(room.levels[level].greatest, found.measure);
   return found;
 }
 
-Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, IntegralRoom& room) const {
-  structure.hash = 0;
-  structure.corners.clear();
+Slice SectionsIntegral::integrate(std::size_t level, IntegralRoom& room) const {
   IntegralRoom::Level& own = room.levels[level];
   own.parts.clear();
   own.unresolved = 0;
@@ -82,12 +74,13 @@ Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, Integ
   if (level == 0) room.is_scanning = true;
   for (const double at : own.places) own.scanned.push_back(slice(level, at, room));
   if (level == 0) look_between(room);
+  if (levels() == 1 && !ends_in_lines()) look_closer(room);
   if (level == 0) room.is_scanning = false;
   if (level + 1 < levels()) look_again(level, room);
-  breaks.push_back({low, false, false, {}, own.scanned.front(), true});
+  breaks.push_back({low, false, {}, own.scanned.front(), true});
   for (std::size_t i = 1; i < own.scanned.size(); ++i)
     find_breaks(level, own.scanned[i - 1], own.scanned[i], whole, breaks, room);
-  breaks.push_back({high, false, false, own.scanned.back(), {}, true});
+  breaks.push_back({high, false, own.scanned.back(), {}, true});
   add_parts(level, breaks, whole, 0, room);
   refine(level, whole, room);
 
@@ -104,7 +97,7 @@ Slice SectionsIntegral::integrate(std::size_t level, Structure& structure, Integ
     last = part.below.hash;
   }
   if (!own.parts.empty()) {
-    structure.hash = sum.hash = hash.value() | 1U;
+    sum.hash = hash.value() | 1U;
     if (level > 0) remember(room.levels[level - 1].at, own);
   }
   return sum;
@@ -120,7 +113,7 @@ void SectionsIntegral::add_parts(std::size_t level, const Breaks& breaks, double
     room.levels[level].unresolved += lower.overlooked;
     if (lower.above.hash == 0 && upper.below.hash == 0) continue;
     add_part(level,
-             {.piece = {lower.at, upper.at, lower.root_above, upper.root_below},
+             {.piece = {lower.at, upper.at, lower.root, upper.root},
               .below = lower.above,
               .above = upper.below,
               .lower = closing(lower, lower.below),
@@ -155,16 +148,14 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
   if (!same && depth < kDeepest && width > (ends_in_lines() ? kBlurredInLines : kBlurred) * whole &&
       room.sections < room.most) {
     Breaks& breaks = own.breaks[static_cast<std::size_t>(depth) + 1];
-    breaks.assign(
-        1, {part.piece.lower, false, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox});
+    breaks.assign(1, {part.piece.lower, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox});
     Slice before = part.below;
     for (Slice& next : slices) {
       find_breaks(level, before, next, whole, breaks, room);
       before = next;
     }
     find_breaks(level, before, part.above, whole, breaks, room);
-    breaks.push_back(
-        {part.piece.upper, part.piece.root_upper, false, part.above, {.broken = part.upper}, part.upper == kBox});
+    breaks.push_back({part.piece.upper, part.piece.root_upper, part.above, {.broken = part.upper}, part.upper == kBox});
     return add_parts(level, breaks, whole, depth + 1, room);
   }
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)

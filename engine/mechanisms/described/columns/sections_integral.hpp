@@ -18,7 +18,7 @@ namespace pkm::described {
 /// Of a value of an outer coordinate.
 struct Slice {
   double at = 0, measure = 0, error = 0;
-  std::uint64_t hash = 0;    ///< of its structure; 0: empty
+  Structure hash = 0;        ///< 0: empty
   std::uint32_t broken = 0;  ///< where it is empty: 1 + the place of the plain condition that is broken
 };
 
@@ -29,7 +29,7 @@ inline constexpr Closing kChange = 0, kBox = ~Closing{0};
 /// Where the structure changes. @param below, above  just beside it
 struct SliceBreak {
   double at;
-  bool root_below, root_above;
+  bool root;  ///< beside it, measures or their derivatives may behave like roots
   Slice below, above;
   bool is_box = false;
   double overlooked = 0;  ///< error that a jump of the measure tells of
@@ -53,9 +53,7 @@ struct IntegralRoom {
   struct Level {
     std::vector<SlicePart> parts;
     std::array<std::vector<SliceBreak>, kDeepest + 1> breaks;  ///< of the range, and of parts by their depth
-    Structure structure;
-    std::vector<std::uint32_t> corners;
-    double at = 0;  ///< the coordinate
+    double at = 0;                                             ///< the coordinate
     /// Parts of this coordinate at places of the one outside, in their order.
     struct Seen {
       double outside;
@@ -115,20 +113,20 @@ class SectionsIntegral {
   bool ends_in_lines() const { return std::holds_alternative<Column>(innermost_); }
   void set(std::size_t level, double at, IntegralRoom& room) const;
   /// With the coordinates before `level` set.
-  Slice inside(std::size_t level, Structure& structure, IntegralRoom& room) const;
+  Slice inside(std::size_t level, IntegralRoom& room) const;
   Slice slice(std::size_t level, double at, IntegralRoom& room) const;
   void find_places(std::size_t level, double low, double high, IntegralRoom& room) const;
   static void add_expected_places(double outside, IntegralRoom::Level& own);
   static void remember(double outside, IntegralRoom::Level& own);
-  Slice integrate(std::size_t level, Structure& structure, IntegralRoom& room) const;
+  Slice integrate(std::size_t level, IntegralRoom& room) const;
   bool jumps(const Slice& low, const Slice& high, std::size_t level, const IntegralRoom& room) const;
   void look_between(IntegralRoom& room) const;
+  void look_closer(IntegralRoom& room) const;
   void give_hints(double at, IntegralRoom& room) const;
   void look_again(std::size_t level, IntegralRoom& room) const;
   void find_breaks(std::size_t level, Slice from, Slice& to, double whole, Breaks& breaks, IntegralRoom& room) const;
   /// Brings two slices of different structures near to each other, to a place where the structure changes.
   void close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const;
-  void find_kind(std::size_t level, SliceBreak& at, double before, double after, IntegralRoom& room) const;
   void add_parts(std::size_t level, const Breaks& breaks, double whole, int depth, IntegralRoom& room) const;
   void add_part(std::size_t level, SlicePart part, double whole, int depth, IntegralRoom& room) const;
   void refine(std::size_t level, double whole, IntegralRoom& room) const;

@@ -1,8 +1,11 @@
 // Surveys of the papers' mechanisms: the closed forms of the built-in ones against the engine for any mechanism on
-// their files, for random designs and limits, whichever coordinate is held and however.
+// their files, for random designs and limits, whichever coordinate is held and however. PKM_PAPER_DESIGNS: how many
+// designs have their volumes compared for each held coordinate.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <iostream>
 
 #include "engine/math/statistics.hpp"
 #include "tests/unit/mechanisms/described/papers.hpp"
@@ -48,13 +51,17 @@ class ClosedForms : public test::PaperPair {
   }
 };
 
-/// With derivatives along four directions of all parameters. Closed forms compare finitely many places, too: what is
-/// less than 1e-7 of the default design's volume, they overlook now and then.
+/// With derivatives along four directions of all parameters, of which the generic engine now and then has fewer digits.
+/// What is less than 1e-7 of the default design's volume, closed forms overlook now and then: they compare finitely
+/// many places, too.
 TEST_P(ClosedForms, HaveTheSameVolumesAndSlopes) {
+  const char* const asked = std::getenv("PKM_PAPER_DESIGNS");
+  const std::size_t usual = own().info().sweeps.size() > 1 ? 2 : 40,
+                    designs = asked ? static_cast<std::size_t>(std::atoi(asked)) : usual;
   Stream random(23, 0, 0, Stream::Use::start);
   Survey<Dual4> mine, theirs;
-  int compared = 0;
-  for (const Case& one : cases(own().info().sweeps.size() > 1 ? 2 : 40, 21)) {
+  int compared = 0, rough = 0;
+  for (const Case& one : cases(designs, 21)) {
     SCOPED_TRACE(words(one));
     if (one.own.held.front().kind == Kind::integrated) continue;  // files take seconds; cells are compared below
     std::vector<Dual4> moving, of_file;
@@ -66,10 +73,10 @@ TEST_P(ClosedForms, HaveTheSameVolumesAndSlopes) {
       of_file.push_back(moving[static_cast<std::size_t>(find_named(own().info().parameters, p.name) -
                                                         own().info().parameters.data())]);
     survey_once<Dual4>(*prepare_survey(own(), one.own, {}), moving, theirs);
-    SurveyPlan usual = one.own;
-    usual.limits = no_limits(own().info());
+    SurveyPlan unlimited = one.own;
+    unlimited.limits = no_limits(own().info());
     const double volume = theirs.volume.a;
-    const double least = 1e-7 * test::survey(own(), test::nominal(own().info()), usual).volume;
+    const double least = 1e-7 * test::survey(own(), test::nominal(own().info()), unlimited).volume;
     survey_once<Dual4>(*prepare_survey(file(), one.file, {}), of_file, mine);
     if (volume < least) {
       EXPECT_LT(mine.volume.a, least);
@@ -78,11 +85,17 @@ TEST_P(ClosedForms, HaveTheSameVolumesAndSlopes) {
     }
     const double apart = 1e-7 + mine.error + theirs.error;
     EXPECT_NEAR(mine.volume.a, volume, apart * volume + 1e-12);
-    for (int k = 0; k < 4; ++k)  // the generic engine's derivatives have fewer digits than its volumes
-      EXPECT_NEAR(mine.volume.v[k], theirs.volume.v[k], 500 * apart * (volume + std::fabs(theirs.volume.v[k])) + 1e-11);
+    double of_slopes = 0;
+    for (int k = 0; k < 4; ++k)
+      of_slopes = std::max(of_slopes, std::fabs(mine.volume.v[k] - theirs.volume.v[k]) /
+                                          (volume + std::fabs(theirs.volume.v[k]) + 1e-11 / apart));
+    EXPECT_LT(of_slopes, 1e-3);
+    rough += of_slopes > 10 * apart;
     ++compared;
   }
   EXPECT_GE(compared, 3);
+  EXPECT_LE(rough, compared / 30);
+  if (asked) std::cerr << GetParam() << ": " << compared << " compared, slopes of " << rough << " have fewer digits\n";
 }
 
 TEST_P(ClosedForms, HaveTheSameCells) {
