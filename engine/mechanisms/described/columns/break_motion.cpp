@@ -62,14 +62,14 @@ std::vector<ArcEnd> arc_ends(const Section& section, const SectionRoom& room) {
   return ends;
 }
 
-Dual4 moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> outside, const SectionRoom& room,
-                   const SectionMotion& by_design, const SectionMotion& by_x) {
+std::optional<Dual4> moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> outside,
+                                  const SectionRoom& room, const SectionMotion& by_design, const SectionMotion& by_x) {
   drop_common(inside, outside, room);
   inside.insert(inside.end(), outside.begin(), outside.end());
   // An arc that turns back has no corner there, unless nothing else changes: then its conic comes or goes.
   const auto turns = [](const ArcEnd& end) { return (end.label & kKind) == kExtreme; };
   if (!std::ranges::all_of(inside, turns)) std::erase_if(inside, turns);
-  if (inside.empty()) return at;
+  if (inside.empty()) return {};
   const ArcEnd first = inside.front();
   std::erase_if(inside, [&](const ArcEnd& end) { return !are_near(end, first, room); });
 
@@ -90,12 +90,12 @@ Dual4 moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> ou
       add(kind == kSide || kind == kPlain ? end.label : number);
     }
   }
-  if (bounds.size() > kMostThatMeet) return at;
+  if (bounds.size() > kMostThatMeet) return {};
   const double t = (v - room.v[0]) / room.v[1], s = (z - room.z[0]) / room.z[1];
   std::vector<SectionMotion::Boundary> meet;
   for (const std::uint32_t bound : bounds) meet.push_back(by_design.boundary(bound, t, s));
   const auto factors = factors_of(meet);
-  if (!depend(meet, factors, meet.size() == 1 ? room.conics[bounds[0] & ~kKind].scale : 0)) return at;
+  if (!depend(meet, factors, meet.size() == 1 ? room.conics[bounds[0] & ~kKind].scale : 0)) return {};
   Components<4> change;
   double slope = 0, size = 0;  // of the sum, and of its terms
   for (std::size_t i = 0; i < meet.size(); ++i) {
@@ -105,7 +105,8 @@ Dual4 moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> ou
     size += std::fabs(each);
   }
   constexpr double kNothing = 1e-8;
-  return std::fabs(slope) > kNothing * size ? moved(at, change, slope) : Dual4(at);
+  if (!(std::fabs(slope) > kNothing * size)) return {};
+  return moved(at, change, slope);
 }
 
 }  // namespace pkm::described

@@ -6,6 +6,7 @@
 //   dx/dp = - sum f P_p / sum f P_x.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/mechanisms/described/columns/section_motion.hpp"
@@ -22,11 +23,11 @@ struct ArcEnd {
 /// Of a section, after measure().
 std::vector<ArcEnd> arc_ends(const Section& section, const SectionRoom& room);
 
-/// A break with its derivatives; it stays where it cannot be told what meets there.
+/// A break with its derivatives; nothing where it cannot be told what meets there.
 /// @param inside, outside  ends of arcs just beside it
 /// @param room             of the section inside
 /// @param by_design, by_x  motions there while the outer coordinate stays, and by it alone
-Dual4 moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> outside, const SectionRoom& room,
-                   const SectionMotion& by_design, const SectionMotion& by_x);
+std::optional<Dual4> moving_break(double at, std::vector<ArcEnd> inside, std::vector<ArcEnd> outside,
+                                  const SectionRoom& room, const SectionMotion& by_design, const SectionMotion& by_x);
 
 }  // namespace pkm::described

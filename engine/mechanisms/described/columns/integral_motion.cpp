@@ -52,18 +52,23 @@ Dual4 SectionsIntegral::moving_end(std::size_t level, const SlicePart& part, boo
   }
   const auto* const section = std::get_if<Section>(&innermost_);
   if (level + 1 < levels() || !section) return at;
-  const double beside = (upper ? -kSettled : kSettled) * (room.registers[to] - room.registers[from]);
-  const auto ends_at = [&](double place) {
-    return slice(level, place, room).hash == 0 ? std::vector<ArcEnd>() : arc_ends(*section, room.section);
-  };
-  const std::vector<ArcEnd> outside = ends_at(at - beside), inside = ends_at(at + beside);
   set_moving(level, at, room);
   room.along.assign(room.registers.begin(), room.registers.end());
   for (const auto& input : program.stages()[level + 1].inputs) room.along[input.to] = Dual4::variable(at, 0);
   program.run<Dual4>(level + 1, std::span<Dual4>(room.along));
-  return moving_break(at, inside, outside, room.section,
-                      SectionMotion(*section, room.section, room.moving, room.registers),
-                      SectionMotion(*section, room.section, room.along, room.registers));
+  const auto ends_at = [&](double place) {
+    return slice(level, place, room).hash == 0 ? std::vector<ArcEnd>() : arc_ends(*section, room.section);
+  };
+  // Beside the break; further off, where rounding decides what is beside it.
+  for (double share = kSettled; share < 1e-3; share *= 1e3) {
+    const double beside = (upper ? -share : share) * (room.registers[to] - room.registers[from]);
+    const std::vector<ArcEnd> outside = ends_at(at - beside), inside = ends_at(at + beside);
+    const auto motion = moving_break(at, inside, outside, room.section,
+                                     SectionMotion(*section, room.section, room.moving, room.registers),
+                                     SectionMotion(*section, room.section, room.along, room.registers));
+    if (motion) return *motion;
+  }
+  return at;
 }
 
 }  // namespace pkm::described
