@@ -31,7 +31,8 @@ void PrintTo(const OldStudy& study, std::ostream* out) { *out << study.name; }
 
 const OldStudy kOldStudies[] = {{"interrupted-schema-1", 1, "0.1.0 (259d3de3a709)", {"ga", "ga"}},
                                 {"interrupted-schema-2", 2, "0.1.0 (3640aaead440)", {"ga", "nlopt", "ipopt"}},
-                                {"interrupted-schema-3", 3, "0.1.0 (cccc14640680)", {"nsga2", "nlopt"}}};
+                                {"interrupted-schema-3", 3, "0.1.0 (cccc14640680)", {"nsga2", "nlopt"}},
+                                {"interrupted-schema-4", 4, "0.1.0 (4c8ead2ce885)", {"nsga2", "nlopt"}}};
 
 class OldStudies : public StudyProgram, public ::testing::WithParamInterface<OldStudy> {
  protected:
@@ -146,7 +147,7 @@ class OldStudiesOfTheseAlgorithms : public OldStudies {};
 
 // The straight study is of the program that was interrupted: its bits and this program's are compared.
 TEST_P(OldStudiesOfTheseAlgorithms, EndAsTheirOwnProgramEndedThem) {
-  const StudyContents straight = read_study(PKM_TEST_DATA "/straight-schema-3.h5");
+  const StudyContents straight = read_study(PKM_TEST_DATA "/straight-schema-4.h5");
   ASSERT_EQ(straight.state, StudyState::finished);
   for (const std::vector<std::string>& how :
        {std::vector<std::string>{"--threads", "1"}, {"--threads", "3", "--instruction-set", "baseline"}}) {
@@ -166,9 +167,9 @@ std::string name_of_schema(const ::testing::TestParamInfo<OldStudy>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, OldStudies, ::testing::ValuesIn(kOldStudies), name_of_schema);
-INSTANTIATE_TEST_SUITE_P(Refused, OldStudiesOfOtherAlgorithms, ::testing::Values(kOldStudies[0], kOldStudies[1]),
-                         name_of_schema);
-INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfTheseAlgorithms, ::testing::Values(kOldStudies[2]), name_of_schema);
+INSTANTIATE_TEST_SUITE_P(Refused, OldStudiesOfOtherAlgorithms,
+                         ::testing::Values(kOldStudies[0], kOldStudies[1], kOldStudies[2]), name_of_schema);
+INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfTheseAlgorithms, ::testing::Values(kOldStudies[3]), name_of_schema);
 
 }  // namespace
 }  // namespace pkm::testing
