@@ -236,7 +236,7 @@ bool follow_strips(const Section<double>& s, Structure& structure) {
   const double low = s.lower[lower], high = s.upper[upper];
   if (lower != structure.lower || upper != structure.upper || hole_of(s, low, high) != structure.hole) return false;
   if (structure.strips.empty()) return false;  // of a gap that no break is known of: there are strips beyond it
-  StripEnd from, to;  // of the strip before, where it was
+  StripEnd from, to;                           // of the strip before, where it was
   const Strip* before = nullptr;
   const auto follow = [&](StripEnd& end) {
     const auto was = [&end](const StripEnd& other) { return alike(end, other) && end.z == other.z; };
