@@ -3,7 +3,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "engine/graph/interval_step.hpp"
+#include "engine/graph/interval_steps.hpp"
 
 namespace pkm::graph {
 
@@ -23,7 +23,8 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
     const std::size_t stage = stage_for(entry.groups);
     stage_of_.push_back(entry.is_number() ? -1 : static_cast<int>(stage));
     if (entry.operation) {
-      Step step{.operation = entry.operation, .to = to, .from = {}, .count = entry.count};
+      Step step{
+          .operation = entry.operation, .to = to, .from = {}, .count = entry.count, .code = entry.operation->code};
       for (std::size_t i = 0; i < entry.count; ++i) step.from[i] = registers.at(entry.arguments[i]);
       stages_[stage].steps.push_back(step);
     } else if (entry.is_number()) {
@@ -47,7 +48,7 @@ bool run_directly(const Program::Step& step, std::span<S> registers) {
     registers[step.to] = result;
     return true;
   };
-  switch (step.operation->code) {
+  switch (step.code) {
     case Code::add:
       return keep(x + registers[step.from[1]]);
     case Code::subtract:
@@ -75,12 +76,14 @@ void Program::run(std::size_t stage, std::span<S> registers) const {
   }
 }
 
+namespace {
+
 /// A square of one number is less than a product of two from the same range.
-void run_step(const Program::Step& step, std::span<Interval> registers) {
+[[gnu::always_inline]] inline void run_step(const Program::Step& step, std::span<Interval> registers) {
   const Interval& x = registers[step.from[0]];
   const Interval& y = registers[step.from[1]];
   Interval& to = registers[step.to];
-  switch (step.operation->code) {
+  switch (step.code) {
     case Code::add:
       to = x + y;
       break;
@@ -108,8 +111,19 @@ void run_step(const Program::Step& step, std::span<Interval> registers) {
   }
 }
 
+}  // namespace
+
+[[gnu::flatten]] void run_steps(std::span<const Program::Step> steps, std::uint64_t now, std::span<std::uint64_t> since,
+                                std::span<Interval> registers) {
+  for (const Program::Step& step : steps) {
+    if (since[step.to] == now) continue;
+    run_step(step, registers);
+    since[step.to] = now;
+  }
+}
+
 template <>
-void Program::run(std::size_t stage, std::span<Interval> registers) const {
+[[gnu::flatten]] void Program::run(std::size_t stage, std::span<Interval> registers) const {
   for (const Step& step : stages_[stage].steps) run_step(step, registers);
 }
 

@@ -18,6 +18,7 @@ class Program {
     std::uint32_t to;
     std::array<std::uint32_t, kMostArguments> from;
     std::uint8_t count;
+    Code code;  ///< the operation's
   };
   struct Input {
     std::uint32_t position;  ///< among the graph's inputs

@@ -28,7 +28,7 @@ RowStage::RowStage(const Program& program, std::size_t stage, std::span<const st
   }
   for (std::size_t k = 0; k < of.steps.size(); ++k) {
     const Program::Step& step = of.steps[k];
-    RowStep made{.code = step.operation->code,
+    RowStep made{.code = step.code,
                  .rule = std::get<Rule<double>>(step.operation->rules),
                  .count = step.count,
                  .to = 0,

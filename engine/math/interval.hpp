@@ -70,11 +70,36 @@ inline Regularity worse(Regularity a, Regularity b) { return a < b ? b : a; }
 inline Regularity worse(const Interval& x, const Interval& y) { return worse(x.regularity, y.regularity); }
 
 namespace rounding {
-// Bounds of a sum and a product. A sum that rounds to 0 is 0; a product with the factor 0 is 0, the other being finite.
-inline double sum_down(double a, double b) { return a + b == 0 ? 0 : next_down(a + b); }
-inline double sum_up(double a, double b) { return a + b == 0 ? 0 : next_up(a + b); }
-inline double product_down(double a, double b) { return a == 0 || b == 0 ? 0 : next_down(a * b); }
-inline double product_up(double a, double b) { return a == 0 || b == 0 ? 0 : next_up(a * b); }
+// Bounds of a sum, a product and a quotient. A sum that rounds to 0 is 0; a product with the factor 0 is 0, the other
+// being finite, and so is a quotient of 0.
+/// next_up() and next_down() of what is not 0.
+inline double up_from(double x) {
+  if (!(std::fabs(x) <= std::numeric_limits<double>::max())) [[unlikely]]
+    return next_up(x);
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  return std::bit_cast<double>(bits + ((bits >> 63) | 1));
+}
+inline double down_from(double x) {
+  if (!(std::fabs(x) <= std::numeric_limits<double>::max())) [[unlikely]]
+    return next_down(x);
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  return std::bit_cast<double>(bits - ((bits >> 63) | 1));
+}
+inline bool is_nothing(double x) { return x == 0 || x != x; }
+inline double sum_down(double a, double b) { return a + b == 0 ? 0 : down_from(a + b); }
+inline double sum_up(double a, double b) { return a + b == 0 ? 0 : up_from(a + b); }
+inline double product_down(double a, double b) {
+  const double product = a * b;
+  if (is_nothing(product)) [[unlikely]]
+    return a == 0 || b == 0 ? 0 : next_down(product);
+  return down_from(product);
+}
+inline double product_up(double a, double b) {
+  const double product = a * b;
+  if (is_nothing(product)) [[unlikely]]
+    return a == 0 || b == 0 ? 0 : next_up(product);
+  return up_from(product);
+}
 inline double quotient_down(double a, double b) { return a == 0 ? 0 : next_down(a / b); }
 inline double quotient_up(double a, double b) { return a == 0 ? 0 : next_up(a / b); }
 }  // namespace rounding

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/math/non_negative_parts.hpp"
 
@@ -43,27 +44,24 @@ ColumnExamination::Root ColumnExamination::root_of(std::size_t condition, const 
   const std::size_t z = conditions_.axes() - 1;
   const Slope slope = conditions_.slope(condition, place[z], room.over);
   if (!slope.value.is_continuous()) return {};
-  Root root;
+  Root root{.is_continuous = true};
+  const Interval steep = slope.by[z];
+  root.is_known = slope.is_known_along && !steep.holds(0);
+  root.rises = steep.lower > 0;
   // near the root over the centre, or the end that is nearest to it
   const auto at = [&](double height) { return conditions_.value(condition, Interval(height), room.centre).middle(); };
-  const double from = place[z].lower, to = place[z].upper, at_from = at(from), at_to = at(to);
-  root.changes = (at_from < 0) != (at_to < 0);
-  const double guess = root.changes ? bracketed_root(at, from, at_from, to, at_to, 1e-3 * (to - from))
-                                    : (std::fabs(at_from) < std::fabs(at_to) ? from : to);
-  root.guess = heights_.below(guess, segment.from, segment.to);
-  const Interval near(heights_.at(root.guess));
-  if (root.changes) {
-    // about how far the root moves over the box, and half of that
-    const Slope there = conditions_.slope(condition, near, room.centre);
-    double moves = 0;
-    for (std::size_t axis = 0; axis < z; ++axis) moves += std::fabs(there.by[axis].middle()) * place[axis].width();
-    const double margin = 0.75 * moves / std::fabs(there.by[z].middle());
-    root.margin = std::isfinite(margin) ? margin : to - from;
+  const double from = place[z].lower, to = place[z].upper;
+  double guess = place[z].middle();
+  if (root.is_known) {
+    for (int step = 0; step < 2; ++step) guess = std::clamp(guess - at(guess) / steep.middle(), from, to);
+  } else {
+    const double at_from = at(from), at_to = at(to);
+    guess = (at_from < 0) != (at_to < 0) ? bracketed_root(at, from, at_from, to, at_to, 1e-3 * (to - from))
+                                         : (std::fabs(at_from) < std::fabs(at_to) ? from : to);
   }
-  const Interval steep = slope.by[z];
-  if (!slope.is_known_along || steep.holds(0)) return root;
-  root.is_known = true;
-  root.rises = steep.lower > 0;
+  root.guess = heights_.below(guess, segment.from, segment.to);
+  if (!root.is_known) return root;
+  const Interval near(heights_.at(root.guess));
   if (!slope.is_known) {  // over every place of the box by itself
     root.zone = root.mean = near - conditions_.value(condition, near, room.over) / steep;
     root.is_known = !root.zone.is_empty();
@@ -87,6 +85,24 @@ ColumnExamination::Root ColumnExamination::root_of(std::size_t condition, const 
   return root;
 }
 
+/// Whether a condition has another sign at the other end of a segment, over the box's centre.
+bool ColumnExamination::changes_at_centre(std::size_t condition, const Interval& along, Room& room) const {
+  const auto fails_at = [&](double height) {
+    return conditions_.value(condition, Interval(height), room.centre).middle() < 0;
+  };
+  return fails_at(along.lower) != fails_at(along.upper);
+}
+
+/// About how far the root over the centre moves over the box, and half of that; infinity: nobody knows.
+double ColumnExamination::margin_of(std::size_t condition, std::int64_t guess, const Place& place, Room& room) const {
+  const std::size_t z = conditions_.axes() - 1;
+  const Slope there = conditions_.slope(condition, Interval(heights_.at(guess)), room.centre);
+  double moves = 0;
+  for (std::size_t axis = 0; axis < z; ++axis) moves += std::fabs(there.by[axis].middle()) * place[axis].width();
+  const double margin = 0.75 * moves / std::fabs(there.by[z].middle());
+  return std::isfinite(margin) ? margin : std::numeric_limits<double>::infinity();
+}
+
 void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* steps) const {
   const std::size_t z = conditions_.axes() - 1;
   const auto note = [&](Step step) {
@@ -106,7 +122,8 @@ void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* s
   conditions_.enter(centre, room.centre);
   const auto shortest = static_cast<std::int64_t>(0.5 * widest * static_cast<double>(Heights::kSteps));
 
-  std::vector<Segment> left = std::move(box.open);
+  std::vector<Segment>& left = room.left;
+  left.swap(box.open);
   merge(left);
   std::ranges::reverse(left);
   box.open.clear();
@@ -164,12 +181,13 @@ void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* s
           continue;
         }
       }
+      if (!root.is_continuous || size <= kLeastSplit || !changes_at_centre(k, place[z], room)) continue;
       // around the guess, but no slice that is next to nothing
-      const double guess = heights_.at(root.guess),
-                   margin = std::max(root.margin, (place[z].upper - place[z].lower) / 16);
+      const double guess = heights_.at(root.guess), whole = place[z].upper - place[z].lower;
+      const double margin = std::max(std::min(margin_of(k, root.guess, place, room), whole), whole / 16);
       const std::int64_t low = heights_.below(guess - margin, segment.from, segment.to);
       const std::int64_t high = heights_.above(guess + margin, low, segment.to);
-      if (root.changes && size > kLeastSplit && 4 * (high - low) <= 3 * size) split(low, high);
+      if (4 * (high - low) <= 3 * size) split(low, high);
     }
     if (divided) continue;
 

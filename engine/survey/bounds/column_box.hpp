@@ -73,26 +73,28 @@ class ColumnExamination {
   /// For one worker.
   struct Room {
     Conditions::Room over, centre;  ///< of the box, of its centre
+    std::vector<Segment> left;
   };
-  Room room() const { return {conditions_.room(), conditions_.room()}; }
+  Room room() const { return {conditions_.room(), conditions_.room(), {}}; }
 
   /// @param steps  what was found is appended; null: nobody asks
   void examine(ColumnBox& box, Room& room, std::vector<Step>* steps) const;
 
  private:
   struct Root {
-    bool is_known = false;  ///< the condition rises or falls all over box and segment
+    bool is_continuous = false;  ///< the condition, over box and segment
+    bool is_known = false;       ///< it rises or falls all over them
     bool rises = false;
     Interval zone, mean;
-    bool changes = false;    ///< the sign, over the box's centre
     std::int64_t guess = 0;  ///< where the root over the centre is, about
-    double margin = 0;
   };
 
   /// @param place  box and segment
   /// @param centre  of the box
   Root root_of(std::size_t condition, const Segment& segment, const Place& place, const Place& centre,
                Room& room) const;
+  bool changes_at_centre(std::size_t condition, const Interval& along, Room& room) const;
+  double margin_of(std::size_t condition, std::int64_t guess, const Place& place, Room& room) const;
 
   const Conditions& conditions_;
   const Heights heights_;

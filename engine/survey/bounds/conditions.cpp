@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/graph/derivative.hpp"
-#include "engine/graph/interval_step.hpp"
+#include "engine/graph/interval_steps.hpp"
 
 namespace pkm::bounds {
 
@@ -92,15 +92,8 @@ void Conditions::enter(const Place& place, Room& room) const {
 }
 
 void Conditions::run(const Part& part, const Interval& along, Room& room) const {
-  const auto compute = [&room](const std::vector<Program::Step>& steps, std::uint64_t since) {
-    for (const Program::Step& step : steps) {
-      if (room.since_[step.to] == since) continue;
-      graph::run_step(step, room.registers_);
-      room.since_[step.to] = since;
-    }
-  };
   if (room.computed_[part.number] != room.box_) {
-    compute(part.outer, room.box_);
+    graph::run_steps(part.outer, room.box_, room.since_, room.registers_);
     room.computed_[part.number] = room.box_;
   }
   if (along.lower != room.along_.lower || along.upper != room.along_.upper) {
@@ -108,7 +101,7 @@ void Conditions::run(const Part& part, const Interval& along, Room& room) const 
     room.along_since_ = ++room.now_;
     if (registers_.back()) room.registers_[*registers_.back()] = along;
   }
-  compute(part.last, room.along_since_);
+  graph::run_steps(part.last, room.along_since_, room.since_, room.registers_);
 }
 
 Interval Conditions::value(std::size_t k, const Interval& along, Room& room) const {

@@ -1,7 +1,6 @@
 #include "engine/survey/bounds/volume_bounds.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "engine/core/team.hpp"
 
@@ -27,11 +26,12 @@ class Search {
     all.open.push_back({0, Heights::kSteps, open});
     if (tree_) tree_->resize(1);
     boxes_.push_back({.box = std::move(all)});
-    examine(boxes_[0], rooms_[0]);
+    found_.resize(1);
+    examine(0, rooms_[0]);
     VolumeBounds found{.boxes = 1, .examined = 1};
     while (true) {
       Interval sum(0.0);
-      for (const Leaf& leaf : boxes_) sum += leaf.box.volume;
+      for (const Found& found_there : found_) sum += found_there.volume;
       found.lower = sum.lower;
       found.upper = sum.upper;
       found.boxes = boxes_.size();
@@ -42,6 +42,7 @@ class Search {
       if (split.empty()) return found;
       const std::size_t first = boxes_.size();
       boxes_.resize(first + split.size());
+      found_.resize(boxes_.size());
       const std::size_t node = tree_ ? tree_->size() : 0;
       if (tree_) tree_->resize(node + 2 * split.size());
       for (std::size_t i = 0; i < split.size(); ++i) {
@@ -55,8 +56,8 @@ class Search {
       }
       share_pieces(split.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
         for (std::size_t i = begin; i < end; ++i) {
-          examine(boxes_[split[i]], rooms_[worker]);
-          examine(boxes_[first + i], rooms_[worker]);
+          examine(split[i], rooms_[worker]);
+          examine(first + i, rooms_[worker]);
         }
       });
       found.examined += 2 * split.size();
@@ -69,23 +70,29 @@ class Search {
     std::size_t node = 0;  ///< of the tree
   };
 
+  /// Of a box, beside it: all of them are looked at after each round.
+  struct Found {
+    Interval volume{0.0};
+    double width = 0;  ///< of the volume, where halving may narrow it
+  };
+
   /// The boxes with most of what is unknown: so many that halving them could be enough, at most 3/4 of it.
-  std::vector<std::size_t> worst(const VolumeBounds& found) const {
-    std::vector<std::size_t> order(boxes_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::erase_if(order, [&](std::size_t i) { return boxes_[i].box.open.empty() || !may_halve(boxes_[i].box); });
-    std::ranges::sort(order, [&](std::size_t i, std::size_t j) {
-      const double a = boxes_[i].box.volume.width(), b = boxes_[j].box.volume.width();
-      return a > b || (a == b && i < j);
-    });
-    const double unknown = found.upper - found.lower;
-    const double wanted = unknown - options_.gap * (found.upper + found.lower) / 2;
+  std::vector<std::size_t> worst(const VolumeBounds& bounds) {
+    order_.clear();
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      if (found_[i].width > 0) order_.emplace_back(-found_[i].width, i);
+    const double unknown = bounds.upper - bounds.lower;
+    const double wanted = unknown - options_.gap * (bounds.upper + bounds.lower) / 2;
+    const double enough = std::min(0.75 * unknown, 1.5 * wanted);
+    std::ranges::sort(order_);
+    std::vector<std::size_t> split;
     double sum = 0;
-    std::size_t count = 0;
-    while (count < order.size() && sum < std::min(0.75 * unknown, 1.5 * wanted))
-      sum += boxes_[order[count++]].box.volume.width();
-    order.resize(count);
-    return order;
+    for (const auto& [width, i] : order_) {
+      if (!(sum < enough)) break;
+      sum -= width;
+      split.push_back(i);
+    }
+    return split;
   }
 
   /// The side that is the greatest share of the whole.
@@ -101,11 +108,17 @@ class Search {
     return from < middle && middle < to;
   }
 
-  void examine(Leaf& leaf, ColumnExamination::Room& room) {
-    if (!tree_) return examination_.examine(leaf.box, room, nullptr);
-    std::vector<Step> steps;
-    examination_.examine(leaf.box, room, &steps);
-    tree_->note(leaf.node, steps);
+  void examine(std::size_t i, ColumnExamination::Room& room) {
+    Leaf& leaf = boxes_[i];
+    if (tree_) {
+      std::vector<Step> steps;
+      examination_.examine(leaf.box, room, &steps);
+      tree_->note(leaf.node, steps);
+    } else {
+      examination_.examine(leaf.box, room, nullptr);
+    }
+    const bool is_open = !leaf.box.open.empty() && may_halve(leaf.box);
+    found_[i] = {leaf.box.volume, is_open ? leaf.box.volume.width() : 0};
   }
 
   ProofTree* tree_;
@@ -117,6 +130,8 @@ class Search {
   ColumnExamination examination_;
   std::vector<ColumnExamination::Room> rooms_;
   std::vector<Leaf> boxes_;
+  std::vector<Found> found_;
+  std::vector<std::pair<double, std::size_t>> order_;
 };
 
 }  // namespace
