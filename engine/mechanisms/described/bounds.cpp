@@ -51,7 +51,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
                           const SurveyPlan& plan, std::size_t mode, const BoundsOptions& options) {
   refuse_bounds(e.model, plan);
   const std::vector<int>& swept = sweep_of(mechanism.info(), plan).swept;
-  const Ranges given = e.survey_box(parameters, plan.box(), swept);
+  const Ranges given = e.survey_box(parameters, plan, mode, swept);
   for (std::size_t i = 0; i < swept.size(); ++i)
     if (!(given[i][0] < given[i][1])) return {.innermost = swept[i]};
   const std::vector<Interval> inputs = inputs_of(mechanism, e, parameters, plan, mode);

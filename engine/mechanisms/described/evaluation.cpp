@@ -104,27 +104,36 @@ std::optional<S> Evaluation::of_design(const Program& program, std::span<const S
   });
 }
 
-std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> parameters,
-                                                       std::size_t coordinate) const {
-  const auto from = of_design<double>(lower[coordinate], parameters),
-             to = of_design<double>(upper[coordinate], parameters);
+std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> parameters, const LimitSpec& limits,
+                                                       std::size_t mode, std::size_t coordinate) const {
+  const auto end = [&](const Program& program) -> std::optional<double> {
+    if (program.outputs().empty()) return {};
+    return with_room<double>(model.inputs.count() + program.registers(), [&](std::span<double> room) {
+      const std::span<double> values = room.first(model.inputs.count()), registers = room.subspan(values.size());
+      fill_inputs<double>(parameters, limits, mode, values);
+      program.run_all<double>(values, registers);
+      return registers[program.outputs().front()];
+    });
+  };
+  const auto from = end(lower[coordinate]), to = end(upper[coordinate]);
   if (!from || !to) return {};
   return {{*from, *to}};
 }
 
-std::array<double, 2> Evaluation::needed_range(std::span<const double> parameters, std::size_t coordinate) const {
-  if (const auto known = range(parameters, coordinate)) return *known;
+std::array<double, 2> Evaluation::needed_range(std::span<const double> parameters, const LimitSpec& limits,
+                                               std::size_t mode, std::size_t coordinate) const {
+  if (const auto known = range(parameters, limits, mode, coordinate)) return *known;
   throw std::invalid_argument("mechanism " + model.info.name + " has no [survey] box for " +
                               model.info.coordinates[coordinate].name + "; give a box");
 }
 
-Box Evaluation::survey_box(std::span<const double> parameters, const std::optional<Box>& given,
+Box Evaluation::survey_box(std::span<const double> parameters, const SurveyPlan& plan, std::size_t mode,
                            const std::vector<int>& swept) const {
-  if (given) return *given;
+  if (const auto given = plan.box()) return *given;
   Box box;
   box.fill({0, 1});
   for (std::size_t axis = 0; axis < swept.size(); ++axis)
-    box[axis] = needed_range(parameters, static_cast<std::size_t>(swept[axis]));
+    box[axis] = needed_range(parameters, plan.limits, mode, static_cast<std::size_t>(swept[axis]));
   return box;
 }
 

@@ -35,12 +35,14 @@ struct Evaluation {
   /// What a program of the design alone gives in the default working mode; none where it has no output.
   template <class S>
   std::optional<S> of_design(const graph::Program& program, std::span<const S> parameters) const;
-  /// Range of a coordinate that holds the workspace.
-  std::optional<std::array<double, 2>> range(std::span<const double> parameters, std::size_t coordinate) const;
+  /// Range of a coordinate that holds the workspace under limits, in a working mode.
+  std::optional<std::array<double, 2>> range(std::span<const double> parameters, const LimitSpec& limits,
+                                             std::size_t mode, std::size_t coordinate) const;
   /// The same; throws std::invalid_argument with a sentence where there is none.
-  std::array<double, 2> needed_range(std::span<const double> parameters, std::size_t coordinate) const;
+  std::array<double, 2> needed_range(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
+                                     std::size_t coordinate) const;
   /// Where a survey looks, by its axes: in the box that is given, else in the ranges of the swept coordinates.
-  Box survey_box(std::span<const double> parameters, const std::optional<Box>& given,
+  Box survey_box(std::span<const double> parameters, const SurveyPlan& plan, std::size_t mode,
                  const std::vector<int>& swept) const;
 };
 

@@ -115,7 +115,7 @@ class Starts {
  public:
   Starts(const Evaluation& e, std::span<const double> parameters) {
     for (std::size_t i = 0; i < e.model.inputs.coordinates; ++i)
-      ranges_.push_back(e.range(parameters, i).value_or(std::array{-1.0, 1.0}));
+      ranges_.push_back(e.range(parameters, no_limits(e.model.info), 0, i).value_or(std::array{-1.0, 1.0}));
   }
   Pose<double> operator[](std::size_t number) const {
     Pose<double> pose(ranges_.size());

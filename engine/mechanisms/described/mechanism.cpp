@@ -41,7 +41,7 @@ class DescribedMechanism final : public Mechanism,
   std::optional<std::vector<std::array<double, 2>>> ranges(std::span<const double> parameters) const override {
     std::vector<std::array<double, 2>> all;
     for (std::size_t i = 0; i < e_.model.inputs.coordinates; ++i) {
-      const auto range = e_.range(parameters, i);
+      const auto range = e_.range(parameters, no_limits(info()), 0, i);
       if (!range) return {};
       all.push_back(*range);
     }

@@ -60,11 +60,14 @@ class DescribedVoxels final : public GridSurveyor<DescribedVoxels> {
 
   GriddedSlices start(std::span<const double> parameters, Rooms& rooms) const {
     if (inertia_) check_masses(e_, parameters);
-    const VoxelGrid grid(voxels_.cells, e_.survey_box(parameters, voxels_.box, sweep_.swept));
+    const VoxelGrid grid(voxels_.cells, e_.survey_box(parameters, plan_, mode_, sweep_.swept));
     Common& common = rooms.common;
     find_held_cells(
         sweep_.held, plan_,
-        [&](int coordinate) { return e_.needed_range(parameters, static_cast<std::size_t>(coordinate)); }, common.held);
+        [&](int coordinate) {
+          return e_.needed_range(parameters, plan_.limits, mode_, static_cast<std::size_t>(coordinate));
+        },
+        common.held);
     fill_inputs(parameters, common.inputs);
     for (Room& room : rooms.of) room.number.reset();
     return {{grid, test_.shape(grid)[0], common.held}, parameters, common};

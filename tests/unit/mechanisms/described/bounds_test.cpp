@@ -60,6 +60,21 @@ void expect_holds(const VolumeBounds& found, double truth, double gap) {
   EXPECT_LE(found.gap(), gap);
 }
 
+/// A limit that is given in place of a parameter may be weaker: the workspace then reaches further than the box of the
+/// parameters.
+TEST(DescribedBounds, LookAsFarAsGivenLimitsAllow) {
+  const Mechanism& hybrid = *test::described("2t1r-p-hybrid");
+  const MechanismInfo& info = hybrid.info();
+  SurveyPlan plan = test::columns(info);
+  plan.limits = test::limits_with(info, {{"tau_s", 1e-3}});
+  const std::vector<double> design = test::design_with(info, {{"tau_s", 0.4}, {"psiA_max", 1.5}});
+  const Survey<double> exact = test::survey(hybrid, design, plan);
+  expect_holds(hybrid.bounds()->volume(design, plan, "", {.gap = 1e-2}), exact.volume, 1e-2);
+  plan.method = VoxelOptions{.cells = {100, 100, 100}};
+  EXPECT_NEAR(test::survey(hybrid, design, plan).volume / exact.volume, 1, 2e-2);
+  EXPECT_LT(test::survey(hybrid, design, test::columns(info)).volume, 0.95 * exact.volume);
+}
+
 TEST(CertainBounds, HoldVolumesThatTwoOtherRoutesProve) {
   const VolumeBounds equal = bounds_of(*read(three_cylinders(1, 1, 1, 0, 0, 0)), 1e-2);
   expect_holds(equal, 8 * (2 - std::sqrt(2.0)), 1e-2);
