@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "engine/math/hash.hpp"
 #include "engine/mechanisms/described/columns/corners.hpp"
@@ -131,6 +132,39 @@ void Section::find_structure(SectionRoom& room) const {
     structure += conic.value();
   }
   if (!room.pieces.empty() && structure == 0) structure = 1;
+}
+
+void Section::find_marks(const SectionRoom& room, Marks& marks) const {
+  for_each_arc_end(room, [&](EndLabel end, std::size_t first, double t) {
+    const std::uint64_t surface = end >> 1U;
+    const std::uint32_t label = corner_of(end >> 1U, first, t, room);
+    const auto corner = std::find_if(room.corners.begin() + static_cast<std::ptrdiff_t>(first), room.corners.end(),
+                                     [&](const SectionRoom::Corner& each) { return each.label == label; });
+    if (corner != room.corners.end() && ((label & kKind) == kCrossing || (label & kKind) == kExtreme)) {
+      // which both of its arcs have
+      const Mark mark{label, label, corner->t, corner->s};
+      if (std::ranges::none_of(marks, [&](const Mark& m) { return m.key == label && m.t == mark.t && m.s == mark.s; }))
+        marks.push_back(mark);
+    } else {
+      marks.push_back({surface << 32U | label, label, t, end_at(end, t, room)});
+    }
+  });
+}
+
+double Section::distance(const Mark& corner, const Mark& other, const SectionRoom& room) {
+  const auto surfaces = [](const Mark& mark) {
+    const auto place = static_cast<std::uint32_t>(mark.of) & ~kKind;
+    return std::array<std::size_t, 2>{place & 255U, place >> 8U};
+  };
+  const auto crosses = [](const Mark& mark) { return (mark.of & kKind) == kCrossing; };
+  double least = std::numeric_limits<double>::infinity();
+  if (!crosses(corner) || !crosses(other)) return least;
+  const auto lies_on = [own = surfaces(corner)](std::size_t k) { return own[0] == k || own[1] == k; };
+  for (const std::size_t k : surfaces(other)) {
+    const Conic& conic = room.conics[k];
+    if (!lies_on(k)) least = std::fmin(least, std::fabs(conic.at(corner.t, corner.s)) / conic.scale);
+  }
+  return least;
 }
 
 double Section::measure(std::span<double> registers, SectionRoom& room) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/math/quadrature.hpp"
+#include "engine/mechanisms/described/columns/change_guess.hpp"
 #include "engine/mechanisms/described/columns/conic.hpp"
 #include "engine/mechanisms/described/columns/ends.hpp"
 #include "engine/mechanisms/described/columns/section_plan.hpp"
@@ -110,6 +111,10 @@ class Section {
         }
     }
   }
+  /// The corners that its structure is made of, after measure().
+  void find_marks(const SectionRoom& room, Marks& marks) const;
+  /// How far a corner is from the surfaces of another one, of some design.
+  static double distance(const Mark& corner, const Mark& other, const SectionRoom& room);
   /// How much plain condition k changes with v, at t. @param by  as graph::slope_along()
   double slope_of_plain(std::size_t k, double t, std::span<double> registers, const SectionRoom& room,
                         std::vector<double>& by) const;

@@ -112,6 +112,19 @@ void SectionSearch::leave_out(double at, SearchRoom& room) const {
   });
 }
 
+void SectionSearch::spread(std::size_t side, std::optional<double> at, int count, std::vector<double>& places,
+                           SearchRoom& room) const {
+  room.stretches.clear();
+  for (const SearchRoom::Box& box : room.boxes)
+    if (!at || box.side[0].holds(*at)) room.stretches.push_back({box.side[side].lower, box.side[side].upper});
+  std::ranges::sort(room.stretches);
+  for (std::size_t i = 0; i < room.stretches.size();) {
+    auto [from, to] = room.stretches[i];
+    for (++i; i < room.stretches.size() && room.stretches[i][0] <= to; ++i) to = std::max(to, room.stretches[i][1]);
+    for (int k = 0; k < count; ++k) places.push_back(from + (to - from) * (k + 0.5) / count);
+  }
+}
+
 double SectionSearch::unknown(SearchRoom& room) const {
   std::vector<SearchRoom::Box>& all = room.halves;
   all = room.boxes;

@@ -24,6 +24,7 @@ struct SearchRoom {
   std::vector<Interval> registers;
   std::vector<Box> met;  ///< boxes with a section that is not empty
   std::vector<Box> halves;
+  std::vector<std::array<double, 2>> stretches;
 };
 
 class SectionSearch {
@@ -41,6 +42,10 @@ class SectionSearch {
   void halve(SearchRoom& room) const;
   /// A section there is not empty: who looks at its neighbours finds the rest.
   void leave_out(double at, SearchRoom& room) const;
+  /// Adds places on a side of the boxes, so many to each stretch that they cover without a gap.
+  /// @param at  boxes that are there along the outermost coordinate; none: all of them
+  void spread(std::size_t side, std::optional<double> at, int count, std::vector<double>& places,
+              SearchRoom& room) const;
   /// The volume of boxes that are left, but for those that reach as far as what was met.
   double unknown(SearchRoom& room) const;
 

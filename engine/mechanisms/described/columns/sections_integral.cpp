@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/graph/reverse.hpp"
 #include "engine/math/hash.hpp"
+#include "engine/math/lanes.hpp"
 
 namespace pkm::described {
 namespace {
@@ -16,6 +16,24 @@ constexpr std::size_t kMostParts = 3000;
 
 }  // namespace
 
+SectionsIntegral::SectionsIntegral(SectionPlan plan, double tolerance)
+    : innermost_(plan.order.v ? std::variant<Section, Column>(Section(std::move(plan)))
+                              : std::variant<Section, Column>(Column(std::move(plan)))),
+      tolerance_(tolerance) {
+  const SectionPlan& own = this->plan();
+  // curves are computed from whatever was before them
+  if (!ends_in_lines() || levels() == 0 || std::ranges::any_of(own.surfaces, &Surface::is_curve)) return;
+  const auto stage = static_cast<int>(levels());
+  const auto keep = [&](std::uint32_t at) {
+    if (own.program.stage_of()[at] == stage && std::ranges::find(kept_, at) == kept_.end()) kept_.push_back(at);
+  };
+  for (const Surface& surface : own.surfaces) std::ranges::for_each(surface.coefficients, keep);
+  for (const CrankSigns& crank : own.formula.cranks) keep(crank.half_turn);
+  for (const auto& ends : own.range) std::ranges::for_each(ends, keep);
+  std::ranges::for_each(own.plain[levels()], keep);
+  lines_.emplace(own.program, levels(), kept_);
+}
+
 Integral<double> SectionsIntegral::measure(std::span<const double> inputs, IntegralRoom& room, long most) const {
   const graph::Program& program = plan().program;
   room.registers.resize(program.registers());
@@ -25,10 +43,18 @@ Integral<double> SectionsIntegral::measure(std::span<const double> inputs, Integ
   for (IntegralRoom::Level& level : room.levels) level.greatest = 0;
   program.start<double>(room.registers);
   program.run<double>(0, inputs, room.registers);
-  room.measured = false;
+  room.measured = room.has_hints = false;
+  room.kept.clear();
   const Slice all = inside(0, room);
   room.measured = true;
   return {all.measure, all.error, room.sections};
+}
+
+Integral<double> SectionsIntegral::measure_for_slopes(std::span<const double> inputs, IntegralRoom& room) const {
+  room.keeps = levels() == 2;
+  const Integral<double> found = measure(inputs, room);
+  room.keeps = false;
+  return found;
 }
 
 void SectionsIntegral::set(std::size_t level, double at, IntegralRoom& room) const {
@@ -53,10 +79,38 @@ Slice SectionsIntegral::inside(std::size_t level, IntegralRoom& room) const {
 
 Slice SectionsIntegral::slice(std::size_t level, double at, IntegralRoom& room) const {
   set(level, at, room);
+  if (level == 0 && room.has_hints) give_hints(at, room);
+  return set_slice(level, at, room);
+}
+
+Slice SectionsIntegral::set_slice(std::size_t level, double at, IntegralRoom& room) const {
   Slice found = inside(level + 1, room);
   found.at = at;
   if (!room.measured) room.levels[level].greatest = std::max(room.levels[level].greatest, found.measure);
   return found;
+}
+
+/// What differs between lines is computed for many of them side by side.
+void SectionsIntegral::find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
+                                   IntegralRoom& room) const {
+  if (!lines_ || level + 1 < levels()) {
+    for (std::size_t i = 0; i < places.size(); ++i) slices[i] = slice(level, places[i], room);
+    return;
+  }
+  room.rows.resize(lines_->slots() * graph::kRow);
+  for (std::size_t first = 0; first < places.size(); first += graph::kRow) {
+    const auto now = places.subspan(first, std::min(graph::kRow, places.size() - first));
+    const std::size_t count = (now.size() + kLanes - 1) / kLanes * kLanes;
+    for (const std::uint32_t input : lines_->inputs()) {
+      double* const row = &room.rows[input * graph::kRow];
+      std::fill(std::copy(now.begin(), now.end(), row), row + count, now.back());
+    }
+    lines_->run(room.registers.data(), room.rows.data(), count);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      for (const std::uint32_t at : kept_) room.registers[at] = room.rows[lines_->operand(at).index * graph::kRow + i];
+      slices[first + i] = set_slice(level, now[i], room);
+    }
+  }
 }
 
 Slice SectionsIntegral::integrate(std::size_t level, IntegralRoom& room) const {
@@ -72,7 +126,8 @@ Slice SectionsIntegral::integrate(std::size_t level, IntegralRoom& room) const {
   breaks.clear();
   find_places(level, low, high, room);
   if (level == 0) room.is_scanning = true;
-  for (const double at : own.places) own.scanned.push_back(slice(level, at, room));
+  own.scanned.resize(own.places.size());
+  find_slices(level, own.places, own.scanned, room);
   if (level == 0) look_between(room);
   if (levels() == 1 && !ends_in_lines()) look_closer(room);
   if (level == 0) room.is_scanning = false;
@@ -132,13 +187,26 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
   }
   const NestedRule& rule = kronrod_rule();
   const NestedRule::Level& weights = rule.level.front();
+  std::array<double, NestedRule::kNodes> jacobians;
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+    const auto [at, jacobian] = map_node(part.piece, rule.node[i]);
+    part.at[i] = at;
+    jacobians[i] = jacobian;
+  }
   std::array<Slice, NestedRule::kNodes> slices;
+  if (room.keeps && level == 0) {
+    part.kept = room.kept.size();
+    for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+      slices[i] = slice(level, part.at[i], room);
+      room.kept.push_back(room.levels[1].parts);
+    }
+  } else {
+    find_slices(level, part.at, slices, room);
+  }
   double less = 0, spread = 0;
   bool same = part.below.hash == part.above.hash;
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
-    const auto [at, jacobian] = map_node(part.piece, rule.node[i]);
-    slices[i] = slice(level, at, room);
-    part.at[i] = at;
+    const double jacobian = jacobians[i];
     part.weight[i] = jacobian * weights.weight[i];
     part.value += part.weight[i] * slices[i].measure;
     part.unresolved += part.weight[i] * slices[i].error;
@@ -172,7 +240,8 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
 void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& room) const {
   IntegralRoom::Level& own = room.levels[level];
   // An inner integral need not be better than what the greatest one allows.
-  const double least = level == 0 ? 0 : 0.1 * tolerance_ * room.levels[level - 1].greatest;
+  const double share = level == 0 ? 1 : ends_in_lines() ? 0.5 : 0.1;
+  const double least = level == 0 ? 0 : share * tolerance_ * room.levels[level - 1].greatest;
   const auto less = [](const SlicePart& x, const SlicePart& y) { return x.error < y.error; };
   std::make_heap(own.parts.begin(), own.parts.end(), less);
   while (own.parts.size() < kMostParts && room.sections < room.most) {
@@ -181,7 +250,7 @@ void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& roo
       value += part.value;
       error += part.error;
     }
-    if (!(error > std::max({least, (level == 0 ? 1 : 0.1) * tolerance_ * value, 1e-15 * value}))) return;
+    if (!(error > std::max({least, share * tolerance_ * value, 1e-15 * value}))) return;
     std::pop_heap(own.parts.begin(), own.parts.end(), less);
     const SlicePart part = own.parts.back();
     own.parts.pop_back();
@@ -195,57 +264,6 @@ void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& roo
     for (std::size_t i = known + 1; i <= own.parts.size(); ++i)
       std::push_heap(own.parts.begin(), own.parts.begin() + static_cast<std::ptrdiff_t>(i), less);
   }
-}
-
-void SectionsIntegral::add_slopes(std::span<double> by_input, IntegralRoom& room) const {
-  room.adjoints.assign(plan().program.registers(), 0);
-  add_slopes(0, 1, room);
-  run_backwards(plan().program, 0, room.registers, room.adjoints);
-  for (const auto& input : plan().program.stages()[0].inputs) by_input[input.position] += room.adjoints[input.to];
-}
-
-/// After inside(level), with a factor.
-void SectionsIntegral::add_slopes(std::size_t level, double factor, IntegralRoom& room) const {
-  if (level == levels()) {
-    if (const auto* const section = std::get_if<Section>(&innermost_))
-      section->add_slopes(factor, room.registers, room.adjoints, room.section);
-    else
-      std::get<Column>(innermost_).add_slopes(factor, room.registers, room.adjoints, room.column);
-    return;
-  }
-  const auto& stage = plan().program.stages()[level + 1];
-  for (const SlicePart& part : room.levels[level].parts) {
-    for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
-      slice(level, part.at[i], room);
-      add_slopes(level + 1, factor * part.weight[i], room);
-      run_backwards(plan().program, level + 1, room.registers, room.adjoints);
-      for (const auto& input : stage.inputs) room.adjoints[input.to] = 0;
-    }
-    add_side(level, part, false, factor, room);
-    add_side(level, part, true, factor, room);
-  }
-}
-
-/// An end that moves with the design takes its slice along.
-void SectionsIntegral::add_side(std::size_t level, const SlicePart& part, bool upper, double factor,
-                                IntegralRoom& room) const {
-  const Closing closing = upper ? part.upper : part.lower;
-  if (closing == kChange) return;
-  const double at = upper ? part.piece.upper : part.piece.lower, sign = upper ? factor : -factor;
-  const double measure = (upper ? part.above : part.below).measure;
-  if (closing == kBox) {
-    room.adjoints[plan().range[level][upper ? 1 : 0]] += sign * measure;
-    return;
-  }
-  const double slope = slope_of_plain(level, closing, at, room);
-  if (slope == 0) return;
-  for (std::size_t i = 0; i < room.own.size(); ++i) room.adjoints[i] -= sign * measure / slope * room.own[i];
-}
-
-/// How much the plain condition that closes a part changes there with the coordinate; room.own: with the registers.
-double SectionsIntegral::slope_of_plain(std::size_t level, Closing closing, double at, IntegralRoom& room) const {
-  set(level, at, room);
-  return slope_along(plan().program, level + 1, plan().plain[level + 1][closing - 1], room.registers, room.own);
 }
 
 }  // namespace pkm::described

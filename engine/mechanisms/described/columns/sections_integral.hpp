@@ -7,10 +7,11 @@
 
 #include <variant>
 
+#include "engine/graph/rows.hpp"
 #include "engine/math/quadrature.hpp"
 #include "engine/mechanisms/described/columns/break_motion.hpp"
+#include "engine/mechanisms/described/columns/change_guess.hpp"
 #include "engine/mechanisms/described/columns/column.hpp"
-#include "engine/mechanisms/described/columns/column_event.hpp"
 #include "engine/mechanisms/described/columns/section_search.hpp"
 
 namespace pkm::described {
@@ -43,9 +44,11 @@ struct SlicePart {
   std::array<double, NestedRule::kNodes> at{}, weight{};
   double value = 0, error = 0;
   double unresolved = 0;  ///< error that smaller parts do not mend
+  std::size_t kept = 0;   ///< of what is kept of its nodes, the first
 };
 
 inline constexpr int kDeepest = 10;        ///< parts within parts
+inline constexpr int kPlacesInLines = 64;  ///< of the outermost coordinate that are compared, where sections are lines
 inline constexpr double kSettled = 1e-11;  ///< of the range: beyond a break, where structures can be told
 
 /// What an integral overwrites.
@@ -66,16 +69,22 @@ struct IntegralRoom {
     std::vector<Slice> scanned;  ///< there
     double greatest = 0;         ///< slice so far
     double unresolved = 0;       ///< of the parts that were given up
+    ChangeGuess guess;           ///< of the change of structure that is closed in on
+    Marks marks;                 ///< of the slice that was looked at last
   };
   SectionRoom section;
   ColumnRoom column;
   SearchRoom search;
-  ColumnEvent event;  ///< of columns: the change of structure that is closed in on
   std::vector<double> registers, adjoints, own;
+  graph::Rows rows;                  ///< of registers at several lines side by side
   std::vector<Dual4> moving, along;  ///< registers, where nodes move with the design, and with an outer coordinate
   std::vector<Level> levels;
+  bool has_hints = false;    ///< boxes of the search tell the inner coordinates where something may be
   bool is_scanning = false;  ///< the outermost coordinate is looked at first
   bool measured = false;     ///< then what is looked at changes nothing
+  /// Parts of the coordinate within the outermost one at its nodes, where derivatives will be asked for.
+  std::vector<std::vector<SlicePart>> kept;
+  bool keeps = false;
   long sections = 0;
   long most = 0;  ///< sections, after which what is not known counts as error
 };
@@ -83,10 +92,7 @@ struct IntegralRoom {
 class SectionsIntegral {
  public:
   /// @param tolerance  relative
-  SectionsIntegral(SectionPlan plan, double tolerance)
-      : innermost_(plan.order.v ? std::variant<Section, Column>(Section(std::move(plan)))
-                                : std::variant<Section, Column>(Column(std::move(plan)))),
-        tolerance_(tolerance) {}
+  SectionsIntegral(SectionPlan plan, double tolerance);
 
   const SectionPlan& plan() const {
     return std::visit([](const auto& each) -> const SectionPlan& { return each.plan(); }, innermost_);
@@ -94,6 +100,8 @@ class SectionsIntegral {
   /// @param inputs  of the graph, with held coordinates
   /// @param most    sections, after which what is not known counts as error; 0: more than are usually of use
   Integral<double> measure(std::span<const double> inputs, IntegralRoom& room, long most = 0) const;
+  /// The same, and what makes add_slopes() faster.
+  Integral<double> measure_for_slopes(std::span<const double> inputs, IntegralRoom& room) const;
   /// Adds derivatives of measure(), after it, by the graph's inputs.
   void add_slopes(std::span<double> by_input, IntegralRoom& room) const;
   /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure(). S is
@@ -115,16 +123,24 @@ class SectionsIntegral {
   /// With the coordinates before `level` set.
   Slice inside(std::size_t level, IntegralRoom& room) const;
   Slice slice(std::size_t level, double at, IntegralRoom& room) const;
+  /// The same with the coordinate set.
+  Slice set_slice(std::size_t level, double at, IntegralRoom& room) const;
+  /// Of several places. @param slices  as many
+  void find_slices(std::size_t level, std::span<const double> places, std::span<Slice> slices,
+                   IntegralRoom& room) const;
   void find_places(std::size_t level, double low, double high, IntegralRoom& room) const;
   static void add_expected_places(double outside, IntegralRoom::Level& own);
   static void remember(double outside, IntegralRoom::Level& own);
   Slice integrate(std::size_t level, IntegralRoom& room) const;
   bool jumps(const Slice& low, const Slice& high, std::size_t level, const IntegralRoom& room) const;
   void look_between(IntegralRoom& room) const;
+  void look_beside(IntegralRoom& room) const;
   void look_closer(IntegralRoom& room) const;
   void give_hints(double at, IntegralRoom& room) const;
   void look_again(std::size_t level, IntegralRoom& room) const;
   void find_breaks(std::size_t level, Slice from, Slice& to, double whole, Breaks& breaks, IntegralRoom& room) const;
+  /// What bounds the slice that was looked at last.
+  void find_marks(std::size_t level, Marks& marks, const IntegralRoom& room) const;
   /// Brings two slices of different structures near to each other, to a place where the structure changes.
   void close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const;
   void add_parts(std::size_t level, const Breaks& breaks, double whole, int depth, IntegralRoom& room) const;
@@ -189,6 +205,8 @@ class SectionsIntegral {
   }
 
   std::variant<Section, Column> innermost_;
+  std::optional<graph::RowStage> lines_;  ///< where sections are lines: what differs from one to the next
+  std::vector<std::uint32_t> kept_;       ///< its registers that columns are made of
   double tolerance_;
 };
 

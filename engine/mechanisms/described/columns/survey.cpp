@@ -208,7 +208,7 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
       return known.volume;
     known.of = this;
     known.inputs = inputs;
-    known.volume = integral_->measure(room.inputs, room.integral);
+    known.volume = integral_->measure_for_slopes(room.inputs, room.integral);
     known.by_input.assign(room.inputs.size(), 0);
     integral_->add_slopes(known.by_input, room.integral);
     return known.volume;

@@ -1,11 +1,12 @@
 // Exact volumes of mechanisms from files against bounds that rounding cannot make wrong: random designs, sweeps, limits
 // and held values. PKM_BOUNDED_DESIGNS: how many designs of each mechanism, to a gap of 2e-2 or the bounds of 200 000
-// boxes.
+// boxes; PKM_BOUNDED_FIRST: the number of the first one, to see a finding again.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <iomanip>
 #include <iostream>
 
 #include "tests/unit/contracts/everything.hpp"
@@ -41,6 +42,18 @@ class BoundedColumns : public ::testing::TestWithParam<std::string> {
       held = {held.coordinate, HeldCoordinate::Kind::value,
               *file().middle(design, held.coordinate) + 0.3 * (2 * random.u01() - 1)};
   }
+  std::string told(unsigned number, const std::vector<double>& design, const SurveyPlan& plan) const {
+    std::ostringstream text;
+    text << std::setprecision(17) << "design " << number << ':';
+    for (std::size_t i = 0; i < design.size(); ++i) text << ' ' << info().parameters[i].name << '=' << design[i];
+    text << "; held";
+    for (const HeldCoordinate& held : plan.held)
+      text << ' ' << info().coordinates[static_cast<std::size_t>(held.coordinate)].name << '=' << held.value;
+    text << "; limits";
+    for (std::size_t i = 0; i < plan.limits.given.size(); ++i)
+      if (plan.limits.given[i]) text << ' ' << info().limits[i].name << '=' << *plan.limits.given[i];
+    return text.str();
+  }
 };
 
 TEST_P(BoundedColumns, LieWithinTheBounds) {
@@ -54,7 +67,9 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
     std::cerr << '\r' << GetParam() << ": " << compared << " of " << designs << " designs, " << wrong << " outside, "
               << wide << " wide, " << std::lround(seconds.count()) << " s   " << std::flush;
   };
-  for (unsigned k = 0; compared < designs && k < 40 * designs; ++k) {
+  const char* const begin = std::getenv("PKM_BOUNDED_FIRST");
+  const unsigned first = begin ? static_cast<unsigned>(std::atoi(begin)) : 0;
+  for (unsigned k = first; compared < designs && k < first + 40 * designs; ++k) {
     Stream random(19, 0, k, Stream::Use::start);
     SurveyPlan plan = all[k % 2 == 0 ? 0 : random.below(all.size())];
     const std::vector<double> p = design(k % 4 >= 2, random);
@@ -64,7 +79,7 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
     const Survey<double> exact = test::survey(file(), p, plan);
     // those without a workspace are quick to bound, and say little
     if (!(exact.volume > 0) && k % 8 > 0) continue;
-    SCOPED_TRACE("design " + std::to_string(k));
+    SCOPED_TRACE(told(k, p, plan));
     const VolumeBounds bounds =
         file().bounds()->volume(p, plan, "", {.gap = 0.02, .most_boxes = asked ? 200'000U : 300U});
     const double off = (exact.error + 1e-9) * exact.volume;

@@ -61,5 +61,29 @@ TEST(Slivers, ComeInPairs) {
   EXPECT_NEAR(mine.volume / theirs.volume, 1, 1e-9);
 }
 
+/// Three that are small and far apart, in a box 500 000 times as large as they are together: one was met at first.
+TEST(Slivers, HaveOthersBesideThem) {
+  const Mechanism& gough = *test::described("gough");
+  const std::vector<double> design = test::design_with(
+      gough.info(), {{"R", 1.1109118008988916}, {"a_b", 0.15183758923947538}, {"a_p", 0.87266462599716477}});
+  SurveyPlan plan;
+  for (const Sweep& sweep : gough.info().sweeps)
+    if (sweep.swept == std::vector{0, 3, 5}) plan = test::columns(gough.info(), sweep);
+  ASSERT_FALSE(plan.held.empty());
+  const Survey<double> whole = test::survey(gough, design, plan);
+  EXPECT_LT(whole.error, 1e-8);
+  double sum = 0, off = 1e-8 * whole.volume;
+  for (const auto& alpha : {std::array{-kPi / 2, -1.0}, {-1.0, 1.0}, {1.0, kPi / 2}}) {
+    SurveyPlan part = plan;
+    part.method = ColumnOptions{.box = Box{{{-1.8, 1.8}, alpha, {-kPi, kPi}}}};
+    const Survey<double> found = test::survey(gough, design, part);
+    EXPECT_GT(found.volume, 3e-5);
+    EXPECT_LT(found.error, 1e-2);
+    sum += found.volume;
+    off += found.error * found.volume;
+  }
+  EXPECT_NEAR(whole.volume, sum, off);
+}
+
 }  // namespace
 }  // namespace pkm
