@@ -22,7 +22,8 @@ namespace {
 
 std::string text_of(const std::string& name) {
   std::ostringstream text;
-  text << std::ifstream(PKM_EXPERIMENTS "/mechanisms/" + name + ".toml").rdbuf();
+  for (const std::string folder : {"/mechanisms/", "/../tests/data/generic/"})
+    if (std::ifstream file(PKM_EXPERIMENTS + folder + name + ".toml"); file && text.str().empty()) text << file.rdbuf();
   return text.str();
 }
 const Mechanism& described(const std::string& name) {
@@ -203,10 +204,11 @@ BENCHMARK_CAPTURE(inverse_dynamics, delta, "rotary-delta")->Name("described/inve
 
 // Exact columns of files to 1e-8 beside the loop that counts the paper's cells, which gives two digits; a gradient by
 // all parameters, in passes of four, beside the value.
-void columns(benchmark::State& state, const std::string& name, bool limited) {
+void columns(benchmark::State& state, const std::string& name, bool limited, std::optional<int> held = {}) {
   const WithoutTeam alone;
   const Mechanism& mechanism = described(name);
   SurveyPlan plan{.method = ColumnOptions{}, .held = {}, .limits = no_limits(mechanism.info())};
+  if (held) plan.held = {{.coordinate = *held}};
   if (limited) plan.limits = plan_of(mechanism, with_limits(), kPaperGrid).limits;
   const auto surveyor = prepare_survey(mechanism, plan, {});
   const std::vector<double> design = nominal(mechanism);
@@ -240,6 +242,12 @@ void columns(benchmark::State& state, const std::string& name, bool limited) {
 }
 BENCHMARK_CAPTURE(columns, planar, "3-rrr", false)->Name("described/columns/3-rrr")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(columns, telescopes, "3-rpr", false)->Name("described/columns/3-rpr")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, upright_telescopes, "3-rpr", false, 2)
+    ->Name("described/columns/3-rpr_at_phi_0")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(columns, cylinders, "three-cylinders", false)
+    ->Name("described/columns/three-cylinders")
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(columns, slides, "orthoglide", false)
     ->Name("described/columns/orthoglide")
     ->Unit(benchmark::kMicrosecond);
