@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 #include "constraints/all.hpp"
@@ -114,6 +116,23 @@ inline std::vector<double> random_design(const MechanismInfo& info, Stream& rand
 
 /// Whether surveys under the limit have derivatives.
 inline bool has_slopes(const LimitInfo& limit) { return limit.group != "clearance"; }
+
+/// A design and what its survey holds and limits, to see a finding again.
+inline std::string told(const MechanismInfo& info, const std::vector<double>& design, const SurveyPlan& plan) {
+  std::ostringstream text;
+  text << std::setprecision(17) << "parameters";
+  for (std::size_t i = 0; i < design.size(); ++i) text << ' ' << info.parameters[i].name << '=' << design[i];
+  text << "; held";
+  for (const HeldCoordinate& held : plan.held) {
+    text << ' ' << info.coordinates[static_cast<std::size_t>(held.coordinate)].name;
+    if (held.kind == HeldCoordinate::Kind::value) text << '=' << held.value;
+    if (held.kind == HeldCoordinate::Kind::integrated) text << " integrated";
+  }
+  text << "; limits";
+  for (std::size_t i = 0; i < plan.limits.given.size(); ++i)
+    if (plan.limits.given[i]) text << ' ' << info.limits[i].name << '=' << *plan.limits.given[i];
+  return text.str();
+}
 
 /// Half of the limits that have slopes, each up to 0.4 of the way from inactive to where nothing passes (a length
 /// counts up to 1 m), or derived from the design where it can be.

@@ -45,7 +45,9 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
   double step = least;
   for (int more = 0; more < 24 && from.hash != to.hash && room.sections < room.most; ++more) {
     Slice low = from, high = to;
-    close_in(level, low, high, whole, room);
+    // Of many changes that rounding makes, halving meets any one, guesses each after the other.
+    const bool guesses = more < 2;
+    close_in(level, low, high, whole, guesses, room);
     for (int again = 0; again < 4 && level + 1 < levels() && jumps(low, high, level, room); ++again) {
       // A part that was overlooked on one side is found there now, and followed further on.
       const bool is_low = low.measure < high.measure;
@@ -54,7 +56,7 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
       (is_low ? high : low) = found;
       (is_low ? low : high) = is_low ? from : to;
       if (low.hash == high.hash) break;
-      close_in(level, low, high, whole, room);
+      close_in(level, low, high, whole, guesses, room);
     }
     if (high.at == to.at && level + 1 < levels()) {
       const Slice again = slice(level, to.at, room);
@@ -92,7 +94,8 @@ void SectionsIntegral::find_marks(std::size_t level, Marks& marks, const Integra
   }
 }
 
-void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const {
+void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, bool guesses,
+                                IntegralRoom& room) const {
   const double range = whole + std::fabs(low.at), near = (ends_in_lines() ? kNearInLines : kNear) * range;
   IntegralRoom::Level& own = room.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
@@ -139,10 +142,12 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     stays = {};
   };
   while (high.at - low.at > near || (jumps(low, high, level, room) && high.at - low.at > kNear * range)) {
-    const double at = own.guess.next(low.at, high.at, high.at - low.at > near ? near : kNear * range);
+    const double wanted = high.at - low.at > near ? near : kNear * range;
+    const double at = guesses ? own.guess.next(low.at, high.at, wanted) : 0.5 * (low.at + high.at);
     if (at <= low.at || at >= high.at) break;
     if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;
     const Slice next = look(at);
+    guesses = guesses && (next.hash == low.hash || next.hash == high.hash);  // else rounding may decide here
     (next.hash == low.hash ? low : high) = next;
     if (!is_innermost) look_back(next.hash != low.hash);
   }

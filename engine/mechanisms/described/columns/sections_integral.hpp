@@ -142,7 +142,8 @@ class SectionsIntegral {
   /// What bounds the slice that was looked at last.
   void find_marks(std::size_t level, Marks& marks, const IntegralRoom& room) const;
   /// Brings two slices of different structures near to each other, to a place where the structure changes.
-  void close_in(std::size_t level, Slice& low, Slice& high, double whole, IntegralRoom& room) const;
+  /// @param guesses  else they are halved
+  void close_in(std::size_t level, Slice& low, Slice& high, double whole, bool guesses, IntegralRoom& room) const;
   void add_parts(std::size_t level, const Breaks& breaks, double whole, int depth, IntegralRoom& room) const;
   void add_part(std::size_t level, SlicePart part, double whole, int depth, IntegralRoom& room) const;
   void refine(std::size_t level, double whole, IntegralRoom& room) const;

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <iomanip>
 #include <iostream>
 
 #include "tests/unit/contracts/everything.hpp"
@@ -42,18 +41,6 @@ class BoundedColumns : public ::testing::TestWithParam<std::string> {
       held = {held.coordinate, HeldCoordinate::Kind::value,
               *file().middle(design, held.coordinate) + 0.3 * (2 * random.u01() - 1)};
   }
-  std::string told(unsigned number, const std::vector<double>& design, const SurveyPlan& plan) const {
-    std::ostringstream text;
-    text << std::setprecision(17) << "design " << number << ':';
-    for (std::size_t i = 0; i < design.size(); ++i) text << ' ' << info().parameters[i].name << '=' << design[i];
-    text << "; held";
-    for (const HeldCoordinate& held : plan.held)
-      text << ' ' << info().coordinates[static_cast<std::size_t>(held.coordinate)].name << '=' << held.value;
-    text << "; limits";
-    for (std::size_t i = 0; i < plan.limits.given.size(); ++i)
-      if (plan.limits.given[i]) text << ' ' << info().limits[i].name << '=' << *plan.limits.given[i];
-    return text.str();
-  }
 };
 
 TEST_P(BoundedColumns, LieWithinTheBounds) {
@@ -79,7 +66,7 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
     const Survey<double> exact = test::survey(file(), p, plan);
     // those without a workspace are quick to bound, and say little
     if (!(exact.volume > 0) && k % 8 > 0) continue;
-    SCOPED_TRACE(told(k, p, plan));
+    SCOPED_TRACE("design " + std::to_string(k) + ": " + test::told(info(), p, plan));
     const VolumeBounds bounds =
         file().bounds()->volume(p, plan, "", {.gap = 0.02, .most_boxes = asked ? 200'000U : 300U});
     const double off = (exact.error + 1e-9) * exact.volume;

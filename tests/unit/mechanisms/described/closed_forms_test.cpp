@@ -44,11 +44,7 @@ class ClosedForms : public test::PaperPair {
     return all;
   }
 
-  static std::string words(const Case& one) {
-    const HeldCoordinate& held = one.own.held.front();
-    return "coordinate " + std::to_string(held.coordinate) + " held in way " +
-           std::to_string(static_cast<int>(held.kind));
-  }
+  std::string words(const Case& one) const { return test::told(own().info(), one.design, one.own); }
 };
 
 /// With derivatives along four directions of all parameters, of which the generic engine now and then has fewer digits.
