@@ -32,7 +32,8 @@ void PrintTo(const OldStudy& study, std::ostream* out) { *out << study.name; }
 const OldStudy kOldStudies[] = {{"interrupted-schema-1", 1, "0.1.0 (259d3de3a709)", {"ga", "ga"}},
                                 {"interrupted-schema-2", 2, "0.1.0 (3640aaead440)", {"ga", "nlopt", "ipopt"}},
                                 {"interrupted-schema-3", 3, "0.1.0 (cccc14640680)", {"nsga2", "nlopt"}},
-                                {"interrupted-schema-4", 4, "0.1.0 (4c8ead2ce885)", {"nsga2", "nlopt"}}};
+                                {"interrupted-schema-4", 4, "0.1.0 (4c8ead2ce885)", {"nsga2", "nlopt"}},
+                                {"interrupted-algorithms-5", 5, "0.1.0 (eff2312a104b)", {"nsga2", "nlopt"}}};
 
 class OldStudies : public StudyProgram, public ::testing::WithParamInterface<OldStudy> {
  protected:
@@ -137,7 +138,7 @@ TEST_P(OldStudiesOfOtherAlgorithms, AreRefusedByTheVersions) {
        {std::vector<std::string>{"resume", "s.h5"}, {"resume", "s.h5", "--generations", "50"}}) {
     EXPECT_EQ(run(arguments), 1);
     EXPECT_EQ(output_, "pkmopt: s.h5 was written by pkmopt " + old.program + ", whose algorithms have version " +
-                           std::to_string(old.algorithms) + "; this program has version 4 and would not repeat it\n");
+                           std::to_string(old.algorithms) + "; this program has version 5 and would not repeat it\n");
   }
   EXPECT_EQ(slurp("s.h5"), before);
   EXPECT_EQ(files(), (std::set<std::string>{"s.h5", "output.txt"}));
@@ -147,7 +148,7 @@ class OldStudiesOfTheseAlgorithms : public OldStudies {};
 
 // The straight study is of the program that was interrupted: its bits and this program's are compared.
 TEST_P(OldStudiesOfTheseAlgorithms, EndAsTheirOwnProgramEndedThem) {
-  const StudyContents straight = read_study(PKM_TEST_DATA "/straight-schema-4.h5");
+  const StudyContents straight = read_study(PKM_TEST_DATA "/straight-algorithms-5.h5");
   ASSERT_EQ(straight.state, StudyState::finished);
   for (const std::vector<std::string>& how :
        {std::vector<std::string>{"--threads", "1"}, {"--threads", "3", "--instruction-set", "baseline"}}) {
@@ -162,14 +163,15 @@ TEST_P(OldStudiesOfTheseAlgorithms, EndAsTheirOwnProgramEndedThem) {
   }
 }
 
-std::string name_of_schema(const ::testing::TestParamInfo<OldStudy>& info) {
-  return "Schema" + info.param.name.substr(info.param.name.size() - 1);
+std::string name_of_version(const ::testing::TestParamInfo<OldStudy>& info) {
+  return "Version" + info.param.name.substr(info.param.name.size() - 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, OldStudies, ::testing::ValuesIn(kOldStudies), name_of_schema);
+INSTANTIATE_TEST_SUITE_P(Every, OldStudies, ::testing::ValuesIn(kOldStudies), name_of_version);
 INSTANTIATE_TEST_SUITE_P(Refused, OldStudiesOfOtherAlgorithms,
-                         ::testing::Values(kOldStudies[0], kOldStudies[1], kOldStudies[2]), name_of_schema);
-INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfTheseAlgorithms, ::testing::Values(kOldStudies[3]), name_of_schema);
+                         ::testing::Values(kOldStudies[0], kOldStudies[1], kOldStudies[2], kOldStudies[3]),
+                         name_of_version);
+INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfTheseAlgorithms, ::testing::Values(kOldStudies[4]), name_of_version);
 
 }  // namespace
 }  // namespace pkm::testing
