@@ -113,7 +113,8 @@ class Section {
   }
   /// The corners that its structure is made of, after measure().
   void find_marks(const SectionRoom& room, Marks& marks) const;
-  /// How far a corner is from the surfaces of another one, of some design.
+  /// How far a corner is from the surfaces that meet in a corner of a section beside this one, as a share of what they
+  /// can be; infinity: it lies on them, or one of the two is no crossing.
   static double distance(const Mark& corner, const Mark& other, const SectionRoom& room);
   /// How much plain condition k changes with v, at t. @param by  as graph::slope_along()
   double slope_of_plain(std::size_t k, double t, std::span<double> registers, const SectionRoom& room,

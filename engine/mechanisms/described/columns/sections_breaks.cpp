@@ -147,7 +147,14 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     if (at <= low.at || at >= high.at) break;
     if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;
     const Slice next = look(at);
-    guesses = guesses && (next.hash == low.hash || next.hash == high.hash);  // else rounding may decide here
+    if (guesses && next.hash != low.hash && next.hash != high.hash) {  // rounding may decide here
+      guesses = false;
+      if (are_sections) {
+        low = outer[0];
+        high = outer[1];
+        continue;
+      }
+    }
     (next.hash == low.hash ? low : high) = next;
     if (!is_innermost) look_back(next.hash != low.hash);
   }
