@@ -62,7 +62,7 @@ void expect_holds(const VolumeBounds& found, double truth, double gap) {
 
 /// A limit that is given in place of a parameter may be weaker: the workspace then reaches further than the box of the
 /// parameters.
-TEST(DescribedBounds, LookAsFarAsGivenLimitsAllow) {
+TEST(CertainBounds, LookAsFarAsGivenLimitsAllow) {
   const Mechanism& hybrid = *test::described("2t1r-p-hybrid");
   const MechanismInfo& info = hybrid.info();
   SurveyPlan plan = test::columns(info);
