@@ -120,8 +120,13 @@ void SectionSearch::spread(std::size_t side, std::optional<double> at, int count
   std::ranges::sort(room.stretches);
   for (std::size_t i = 0; i < room.stretches.size();) {
     auto [from, to] = room.stretches[i];
-    for (++i; i < room.stretches.size() && room.stretches[i][0] <= to; ++i) to = std::max(to, room.stretches[i][1]);
-    for (int k = 0; k < count; ++k) places.push_back(from + (to - from) * (k + 0.5) / count);
+    int boxes = 1;  // beside each other
+    for (++i; i < room.stretches.size() && room.stretches[i][0] <= to; ++i) {
+      boxes += room.stretches[i][0] > room.stretches[i - 1][0] ? 1 : 0;
+      to = std::max(to, room.stretches[i][1]);
+    }
+    const int number = std::max(count, boxes);
+    for (int k = 0; k < number; ++k) places.push_back(from + (to - from) * (k + 0.5) / number);
   }
 }
 

@@ -42,7 +42,8 @@ class SectionSearch {
   void halve(SearchRoom& room) const;
   /// A section there is not empty: who looks at its neighbours finds the rest.
   void leave_out(double at, SearchRoom& room) const;
-  /// Adds places on a side of the boxes, so many to each stretch that they cover without a gap.
+  /// Adds places on a side of the boxes: to each stretch that they cover without a gap as many as there are boxes
+  /// beside each other, at least `count`.
   /// @param at  boxes that are there along the outermost coordinate; none: all of them
   void spread(std::size_t side, std::optional<double> at, int count, std::vector<double>& places,
               SearchRoom& room) const;

@@ -25,13 +25,14 @@ SectionsIntegral::SectionsIntegral(SectionPlan plan, double tolerance)
   if (!ends_in_lines() || levels() == 0 || std::ranges::any_of(own.surfaces, &Surface::is_curve)) return;
   const auto stage = static_cast<int>(levels());
   const auto keep = [&](std::uint32_t at) {
-    if (own.program.stage_of()[at] == stage && std::ranges::find(kept_, at) == kept_.end()) kept_.push_back(at);
+    if (own.program.stage_of()[at] == stage && std::ranges::find(line_registers_, at) == line_registers_.end())
+      line_registers_.push_back(at);
   };
   for (const Surface& surface : own.surfaces) std::ranges::for_each(surface.coefficients, keep);
   for (const CrankSigns& crank : own.formula.cranks) keep(crank.half_turn);
   for (const auto& ends : own.range) std::ranges::for_each(ends, keep);
   std::ranges::for_each(own.plain[levels()], keep);
-  lines_.emplace(own.program, levels(), kept_);
+  lines_.emplace(own.program, levels(), line_registers_);
 }
 
 Integral<double> SectionsIntegral::measure(std::span<const double> inputs, IntegralRoom& room, long most) const {
@@ -107,7 +108,8 @@ void SectionsIntegral::find_slices(std::size_t level, std::span<const double> pl
     }
     lines_->run(room.registers.data(), room.rows.data(), count);
     for (std::size_t i = 0; i < now.size(); ++i) {
-      for (const std::uint32_t at : kept_) room.registers[at] = room.rows[lines_->operand(at).index * graph::kRow + i];
+      for (const std::uint32_t at : line_registers_)
+        room.registers[at] = room.rows[lines_->operand(at).index * graph::kRow + i];
       slices[first + i] = set_slice(level, now[i], room);
     }
   }

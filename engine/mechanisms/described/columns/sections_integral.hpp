@@ -206,8 +206,8 @@ class SectionsIntegral {
   }
 
   std::variant<Section, Column> innermost_;
-  std::optional<graph::RowStage> lines_;  ///< where sections are lines: what differs from one to the next
-  std::vector<std::uint32_t> kept_;       ///< its registers that columns are made of
+  std::optional<graph::RowStage> lines_;       ///< where sections are lines: what differs from one to the next
+  std::vector<std::uint32_t> line_registers_;  ///< its registers that columns are made of
   double tolerance_;
 };
 

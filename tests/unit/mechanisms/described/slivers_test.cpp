@@ -61,7 +61,7 @@ TEST(Slivers, ComeInPairs) {
   EXPECT_NEAR(mine.volume / theirs.volume, 1, 1e-9);
 }
 
-/// Three that are small and far apart, in a box 500 000 times as large as they are together: one was met at first.
+/// Three that are small and far apart, in a box 500 000 times as large as they are together: two were met at first.
 TEST(Slivers, HaveOthersBesideThem) {
   const Mechanism& gough = *test::described("gough");
   const std::vector<double> design = test::design_with(
