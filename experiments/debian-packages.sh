@@ -32,6 +32,23 @@ pkm_test_packages+=("${pkm_docs_packages[@]}")
 # For the page of pkmopt report. By the command's name: where node comes from elsewhere, Debian's package does not install.
 command -v npm >/dev/null || pkm_build_packages+=(npm)
 
+# Seconds to wait for another package manager, which a machine that has just been started often runs.
+pkm_lock_timeout=600
+
+# pkm_update_lists [PREFIX...]: `apt-get update`, run by the prefix. Waits for the lock of the lists: unlike that of dpkg,
+# apt does not wait for it.
+pkm_update_lists() {
+  local errors deadline=$((SECONDS + pkm_lock_timeout))
+  until { errors=$("$@" env LC_ALL=C apt-get update -q 2>&1 >&3); } 3>&1; do
+    if [[ $errors != *"Could not get lock"* ]] || ((SECONDS >= deadline)); then
+      printf '%s\n' "$errors" >&2
+      return 1
+    fi
+    echo "Another package manager is running; waiting for it"
+    sleep 2
+  done
+}
+
 # Installs those of the named packages that are missing. Does nothing, and needs no rights, when none is.
 pkm_install_missing() {
   if ! command -v apt-get >/dev/null; then
@@ -52,7 +69,7 @@ pkm_install_missing() {
     as_root=(sudo)
   fi
   echo "Installing ${missing[*]}"
-  "${as_root[@]}" apt-get update -q
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -q --yes --no-install-recommends "${missing[@]}"
+  pkm_update_lists "${as_root[@]}" || return 1
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q --yes --no-install-recommends \
+    -o DPkg::Lock::Timeout="$pkm_lock_timeout" "${missing[@]}"
 }
