@@ -64,9 +64,9 @@ std::vector<double> DesignProblem::parameters(std::span<const double> design) co
   return all;
 }
 
-Survey<double> DesignProblem::workspace(std::span<const double> parameters) const {
+Survey<double> DesignProblem::workspace(std::span<const double> parameters, std::size_t k) const {
   Survey<double> survey;
-  survey_once(*surveyors_.front(), parameters, survey);
+  survey_once(*surveyors_[k], parameters, survey);
   return survey;
 }
 

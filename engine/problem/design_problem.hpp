@@ -63,8 +63,8 @@ class DesignProblem final : public Problem {
   const ProblemParts& parts() const { return parts_; }
   /// All parameters of a design given by its variables.
   std::vector<double> parameters(std::span<const double> design) const;
-  /// The survey of the workspace alone.
-  Survey<double> workspace(std::span<const double> parameters) const;
+  /// One survey alone: of the workspace, or of the k-th region.
+  Survey<double> workspace(std::span<const double> parameters, std::size_t k = 0) const;
   /// Evaluates a full parameter vector (a baseline may lie outside the variables' bounds). Computes what it can even
   /// where a design-level margin is violated.
   DesignReport report(std::span<const double> parameters) const;

@@ -35,7 +35,9 @@ std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignPro
 std::string name_of_best(const StudyContents& contents) {
   if (verdict_on(contents, nullptr)) {
     const Status status = contents.best_stage().table.status[static_cast<std::size_t>(contents.best.row)];
-    return status == Status::feasible ? "as good as any" : "least bad";
+    if (status != Status::feasible) return "least bad";
+    const bool has_workspace = contents.final && contents.final->best && contents.final->best->volume > 0;
+    if (!has_workspace) return "as good as any";
   }
   if (contents.problem.objectives.size() > 1) return "compromise";
   return contents.final ? "best" : "best so far";

@@ -80,7 +80,7 @@ NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& ent
             .direction = entry.direction,
             .quantity = entry.make(context),
             .survey = survey,
-            .reads_survey = entry.reads_survey,
+            .reads_survey = entry.reads(context),
             .range = entry.range(context)};
   });
 }

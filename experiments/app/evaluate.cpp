@@ -48,7 +48,7 @@ std::shared_ptr<const DesignProblem> default_problem(const Target& target, const
                                 .meaning = entry.meaning,
                                 .direction = entry.direction,
                                 .quantity = entry.make(context),
-                                .reads_survey = entry.reads_survey});
+                                .reads_survey = entry.reads(context)});
   }
   try {
     return std::make_shared<const DesignProblem>(std::move(parts));
