@@ -3,12 +3,9 @@
 // The margin is the least of all pose margins (reach, strokes, distances from singularities, ...) over a grid of the
 // box that holds its corners and faces, at every value of the held coordinate. Gradient solvers see a smooth lower
 // bound of it, which is below it by at most ln(number of margins) / sharpness.
-#include <cmath>
-#include <type_traits>
-
 #include "constraints/list.hpp"
+#include "constraints/pose_margins.hpp"
 #include "engine/core/catalogue.hpp"
-#include "engine/math/statistics.hpp"
 
 namespace pkm {
 namespace {
@@ -56,52 +53,18 @@ std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& in
   return poses;
 }
 
-template <class S>
-struct Margins {
-  std::vector<S> of_poses;
-};
-
-/// By the ability, else the margins that inspect names, NaN counting as broken: appended.
-template <class S>
-void append_margins(const DesignView<S>& design, const LimitSpec& limits, std::span<const Pose<double>> poses,
-                    std::vector<S>& margins) {
-  const Mechanism& mechanism = design.mechanism;
-  if (const PoseMargins* ability = mechanism.pose_margins()) {
-    ability->append(design.parameters, limits, poses, margins);
-  } else if constexpr (std::is_same_v<S, double>) {
-    for (const Pose<double>& pose : poses) {
-      const PoseReport report = mechanism.inspect(design.parameters, pose, mechanism.info().modes.front(), limits);
-      for (const auto& [name, margin] : report.margins) margins.push_back(margin == margin ? margin : -1);
-      if (!report.assembles) margins.push_back(-1);
-    }
-  }
-}
-
 std::unique_ptr<const Quantity> make(const EntryContext& context) {
   const Region& region = region_of(context);
   const MechanismInfo& info = context.mechanism.info();
-  const auto margins_of = [limits = region.plan.limits,
-                           poses =
-                               poses_of(region, info, static_cast<int>(context.options.integer("points")))]<class S>(
-                              const DesignView<S>& design) -> const std::vector<S>& {
-    std::vector<S>& margins = design.scratch.template get<Margins<S>>().of_poses;
-    margins.clear();
-    append_margins<S>(design, limits, poses, margins);
-    return margins;
-  };
+  const MarginPoses of{poses_of(region, info, static_cast<int>(context.options.integer("points"))), info.modes.front(),
+                       region.plan.limits};
   const double wanted = context.options.number("margin"), sharpness = context.options.number("sharpness");
-  Refusal no_derivatives;
-  if (!context.mechanism.pose_margins())
-    no_derivatives = "the margins of mechanism " + info.name + " under task-workspace have none";
-  return make_quantity([=](const DesignView<double>& design) { return least(margins_of(design)) - wanted; },
-                       [=](const DesignView<Dual4>& design) {
-                         const std::vector<Dual4>& margins = margins_of(design);
-                         const double shift = least(margins).a;
-                         Dual4 sum(0.0);
-                         for (const Dual4& margin : margins) sum += exp((margin - shift) * -sharpness);
-                         return Dual4(shift - log(sum) / sharpness - wanted);
-                       },
-                       no_derivatives);
+  return make_quantity(
+      [of, wanted](const DesignView<double>& design) { return least(margins_of(design, of)) - wanted; },
+      [of, wanted, sharpness](const DesignView<Dual4>& design) {
+        return Dual4(soft_minimum(margins_of(design, of), sharpness) - wanted);
+      },
+      no_margin_derivatives(context.mechanism, "task-workspace"));
 }
 
 }  // namespace
@@ -129,17 +92,9 @@ ConstraintEntry task_workspace() {
                  .lower = 2,
                  .upper = 65,
                  .meaning = "poses along each edge of the box that are tested, its corners among them"},
-                {.name = "sharpness",
-                 .initial = 1e5,
-                 .lower = 1,
-                 .upper = 1e9,
-                 .meaning = "of the smooth lower bound that gradient solvers are given: larger is nearer"}};
+                sharpness_of_minimum()};
           },
-      .unit =
-          [](const EntryContext& context) {
-            const PoseMargins* const margins = context.mechanism.pose_margins();
-            return margins ? margins->margin_unit() : std::string("1");
-          },
+      .unit = unit_of_minimum,
       .make = make,
   };
 }

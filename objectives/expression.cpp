@@ -19,6 +19,7 @@ ObjectiveEntry expression_objective() {
                 [expression = Expression(context)](const auto& design) { return expression.value(design); });
           },
       .detail = expression_text,
+      .needs_survey = [](const EntryContext& context) { return Expression(context).needs_survey(); },
   };
 }
 

@@ -1,10 +1,11 @@
 // Greatest magnitude along a motion, over its samples, of an actuator's force, of its power (force times speed, driving
-// or braking), and with drive trains of its motor's torque and speed; of the torque also the root of the mean square.
+// or braking), of its speed and acceleration, and with drive trains of its motor's torque and speed; of the torque also
+// the root of the mean square. Speeds and accelerations need no masses.
 // Gradient solvers see the power mean of the magnitudes (power_mean).
 //
-// They look at the design alone: no survey, and none of the limits of poses, which say where a workspace ends. What a
-// motion needs of the workspace is the affair of constraints. Where the mechanism does not assemble somewhere along the
-// motion there is no force to speak of: the value is NaN, the design `failed`, and the reason names the time.
+// They depend on the design alone: no survey, and none of the limits of poses, which the constraint `motion` tests
+// (constraints/motion.cpp). Where the mechanism does not assemble somewhere along the motion there is no force: the
+// value is NaN, the design `failed` unless the constraint has rejected it, and the reason names the time.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/math/statistics.hpp"
 #include "engine/mechanism/drive_along.hpp"
+#include "engine/problem/motion_options.hpp"
 #include "engine/problem/pose_options.hpp"
 #include "objectives/list.hpp"
 
@@ -21,17 +23,11 @@ namespace pkm {
 namespace {
 
 /// What is looked at of each actuator.
-enum class Load { force, power, motor_torque, motor_speed };
+enum class Load { force, power, motor_torque, motor_speed, joint_speed, joint_acceleration };
 
-const NamedMotion& motion_of(const EntryContext& context) {
-  const std::string& name = context.options.word("motion");
-  if (const NamedMotion* found = find_named(context.motions, name)) return *found;
-  const auto known = names_of(context.motions);
-  if (known.empty())
-    throw std::invalid_argument("the study has no motion called '" + name +
-                                "'; describe it in a table [[motion]] with name = \"" + name + "\"");
-  throw std::invalid_argument("the study has no motion called '" + name + "'; it has " + join(known) +
-                              did_you_mean(name, known));
+/// Speeds and accelerations need no masses.
+bool is_kinematic(Load load) {
+  return load == Load::motor_speed || load == Load::joint_speed || load == Load::joint_acceleration;
 }
 
 Wrench<double> wrench_of(const Options& options) {
@@ -59,19 +55,18 @@ class AlongMotion final : public Quantity {
  public:
   AlongMotion(const EntryContext& context, Load load)
       : name_(motion_of(context).name),
-        samples_(sample(*motion_of(context).motion, static_cast<std::size_t>(context.options.integer("samples")))),
+        samples_(samples_of(context)),
         mode_(mode_of(context)),
         wrench_(wrench_of(context.options)),
         joint_(context.options.word("joint")),
         sharpness_(context.options.number("sharpness")),
         load_(load),
         by_rms_(load == Load::motor_torque && context.options.word("statistic") == "rms") {
-    for (const MotionSample& at : samples_)
-      for (std::size_t i = 0; i < at.pose.size(); ++i)
-        if (!std::isfinite(at.pose[i] + at.velocity[i] + at.acceleration[i]))
-          throw std::invalid_argument("the motion " + name_ + " has no finite pose, velocity and acceleration at t = " +
-                                      with_unit(at.time, "s"));
+    if (const Refusal reason = no_joint_forces(context.mechanism))
+      why_no_derivatives_ = "speeds of the joints along a motion have none here: " + *reason;
   }
+
+  Refusal no_derivatives() const override { return why_no_derivatives_; }
 
   double value(const DesignView<double>& design) const override {
     std::vector<double>& loads = design.scratch.get<Loads<double>>().of_samples;
@@ -114,10 +109,25 @@ class AlongMotion final : public Quantity {
   template <class S>
   std::size_t collect(const DesignView<S>& design, std::vector<S>& loads) const {
     loads.clear();
+    if constexpr (std::is_same_v<S, double>)
+      if (why_no_derivatives_) return collect_rates(design, loads);
     if (has_team()) return collect_with_team(design, loads);
     return drive_along<S>(*design.mechanism.dynamics(), design.parameters, mode_, samples_, wrench_,
                           design.scratch.template get<DriveScratch<S>>(),
                           [&](std::size_t, const Drive<S>& drive) { append(design, drive, loads); });
+  }
+  /// By influence coefficients, of mechanisms whose drives have no forces.
+  std::size_t collect_rates(const DesignView<double>& design, std::vector<double>& loads) const {
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      const MotionSample& at = samples_[k];
+      const auto joints = design.mechanism.velocities()->influence(design.parameters, at.pose, mode_);
+      if (!joints) return k;
+      append(design,
+             Drive<double>{.speeds = joints->G * at.velocity,
+                           .accelerations = accelerations<double, 0>(*joints, at.velocity, at.acceleration)},
+             loads);
+    }
+    return samples_.size();
   }
   template <class S>
   std::size_t collect_with_team(const DesignView<S>& design, std::vector<S>& loads) const {
@@ -147,7 +157,7 @@ class AlongMotion final : public Quantity {
   template <class S>
   void append(const DesignView<S>& design, const Drive<S>& drive, std::vector<S>& loads) const {
     S total(0.0);
-    for (std::size_t i = 0; i < drive.forces.size(); ++i) {
+    for (std::size_t i = 0; i < drive.speeds.size(); ++i) {
       const S load = load_of(design, drive, i);
       total += load;
       if (joint_ == "worst" || joint_[0] == static_cast<char>('1' + i)) loads.push_back(magnitude(load));
@@ -158,6 +168,8 @@ class AlongMotion final : public Quantity {
   S load_of(const DesignView<S>& design, const Drive<S>& drive, std::size_t joint) const {
     if (load_ == Load::force) return drive.forces[joint];
     if (load_ == Load::power) return drive.power(joint);
+    if (load_ == Load::joint_speed) return drive.speeds[joint];
+    if (load_ == Load::joint_acceleration) return drive.accelerations[joint];
     const DriveTrain& train = (*design.mechanism.drive_trains())[joint];
     return load_ == Load::motor_torque ? drive.torque(train, joint) : drive.speeds[joint] * train.ratio;
   }
@@ -181,26 +193,23 @@ class AlongMotion final : public Quantity {
   double sharpness_;
   Load load_;
   bool by_rms_;
+  Refusal why_no_derivatives_;
 };
 
 /// @param joints  the words that `joint` knows besides numbers; the first is the default
-std::vector<OptionSpec> load_options(const std::vector<std::string>& joints) {
+/// @param forces  whether they depend on a wrench
+std::vector<OptionSpec> load_options(const std::vector<std::string>& joints, bool forces = true) {
   std::vector<std::pair<std::string, std::string>> wrench;
   for (std::size_t i = 0; i < wrench_names().size(); ++i) wrench.emplace_back(wrench_names()[i], i < 3 ? "N" : "N m");
-  return {
-      {.name = "motion", .kind = OptionKind::word, .required = true, .meaning = "name of a [[motion]] of the study"},
+  std::vector<OptionSpec> options = {
+      motion_option(),
       {.name = "joint",
        .kind = OptionKind::word,
        .initial = joints.front(),
        .choices = numbers_of_joints(joints),
        .meaning = "the joint looked at; worst: the greatest of all joints" +
                   std::string(joints.size() > 1 ? "; total: the sum over the joints" : "")},
-      {.name = "samples",
-       .kind = OptionKind::integer,
-       .initial = std::int64_t{201},
-       .lower = 2,
-       .upper = 100'000,
-       .meaning = "poses along the motion, at equal distances in time, both ends included"},
+      samples_option(),
       mode_option(),
       {.name = "wrench",
        .kind = OptionKind::named_numbers,
@@ -213,24 +222,40 @@ std::vector<OptionSpec> load_options(const std::vector<std::string>& joints) {
        .meaning = "of the smooth stand-in for the peak that gradient solvers are given, the mean of powers of this "
                   "exponent: larger is nearer"},
   };
+  if (!forces) std::erase_if(options, [](const OptionSpec& option) { return option.name == "wrench"; });
+  return options;
 }
 
-/// Unit of the force of the joint that the options name. Throws std::invalid_argument where the joints looked at have
-/// different ones.
-std::string force_unit(const EntryContext& context) {
+/// The unit that the joints looked at share. Throws std::invalid_argument where they have different ones.
+/// @param what  "forces [N] and torques [N m]"
+std::string unit_of_joints(const EntryContext& context, const std::string& what, const std::string& of_slides,
+                           const std::string& of_turns) {
   const auto& joints = context.mechanism.info().joints;
   const std::string& joint = context.options.word("joint");
   refuse_unknown_joint(context.mechanism, joint);
   const bool turns = (joint == "worst" ? joints.front() : joints[static_cast<std::size_t>(joint[0] - '1')]).turns();
   if (joint == "worst" && std::ranges::any_of(joints, [turns](const AxisInfo& j) { return j.turns() != turns; }))
-    throw std::invalid_argument("mechanism " + context.mechanism.info().name +
-                                " has joints of both kinds, whose forces [N] and torques [N m] have no greatest; name "
-                                "a joint");
-  return turns ? "N m" : "N";
+    throw std::invalid_argument("mechanism " + context.mechanism.info().name + " has joints of both kinds, whose " +
+                                what + " have no greatest; name a joint");
+  return turns ? of_turns : of_slides;
+}
+std::string force_unit(const EntryContext& context) {
+  return unit_of_joints(context, "forces [N] and torques [N m]", "N", "N m");
+}
+std::string speed_unit(const EntryContext& context) {
+  return unit_of_joints(context, "speeds [m/s] and [rad/s]", "m/s", "rad/s");
+}
+std::string acceleration_unit(const EntryContext& context) {
+  return unit_of_joints(context, "accelerations [m/s^2] and [rad/s^2]", "m/s^2", "rad/s^2");
+}
+
+Refusal refuse_without_speeds(const std::string& objective, const Mechanism& mechanism) {
+  if (mechanism.velocities() || !no_joint_forces(mechanism)) return {};
+  return "objective " + objective + " needs speeds of the joints, and mechanism " + mechanism.info().name +
+         " has neither influence coefficients nor masses";
 }
 
 Refusal refuse_without_drive_trains(const std::string& objective, const Mechanism& mechanism) {
-  if (Refusal reason = refuse_without_dynamics(objective, mechanism)) return reason;
   if (mechanism.drive_trains()) return {};
   return "objective " + objective + " needs drive trains, and mechanism " + mechanism.info().name +
          " has none; a study gives it some in [[drive_train]]";
@@ -259,8 +284,11 @@ ObjectiveEntry load_entry(Load load, const std::string& what, const std::string&
       .options = options,
       .unit = unit,
       .refusal =
-          [name, of_motor](const Mechanism& mechanism) {
-            return of_motor ? refuse_without_drive_trains(name, mechanism) : refuse_without_dynamics(name, mechanism);
+          [name, load, of_motor](const Mechanism& mechanism) {
+            Refusal reason =
+                is_kinematic(load) ? refuse_without_speeds(name, mechanism) : refuse_without_dynamics(name, mechanism);
+            if (!reason && of_motor) reason = refuse_without_drive_trains(name, mechanism);
+            return reason;
           },
       .make = [load](const EntryContext& context) { return std::make_unique<AlongMotion>(context, load); },
       .detail =
@@ -281,14 +309,19 @@ ObjectiveEntry load_entry(Load load, const std::string& what, const std::string&
 }  // namespace
 
 std::vector<ObjectiveEntry> peak_objectives() {
-  return {load_entry(Load::force, "peak force", "greatest force of the actuators along a motion",
-                     load_options({"worst"}), force_unit),
-          load_entry(Load::power, "peak power", "greatest power of the actuators along a motion, driving or braking",
-                     load_options({"worst", "total"}), [](const EntryContext&) { return std::string("W"); }),
-          load_entry(Load::motor_torque, "motor torque", "torque of the motors along a motion, with drive trains",
-                     torque_options(), [](const EntryContext&) { return std::string("N m"); }),
-          load_entry(Load::motor_speed, "motor speed", "greatest speed of the motors along a motion, with drive trains",
-                     load_options({"worst"}), [](const EntryContext&) { return std::string("rad/s"); })};
+  return {
+      load_entry(Load::force, "peak force", "greatest force of the actuators along a motion", load_options({"worst"}),
+                 force_unit),
+      load_entry(Load::power, "peak power", "greatest power of the actuators along a motion, driving or braking",
+                 load_options({"worst", "total"}), [](const EntryContext&) { return std::string("W"); }),
+      load_entry(Load::motor_torque, "motor torque", "torque of the motors along a motion, with drive trains",
+                 torque_options(), [](const EntryContext&) { return std::string("N m"); }),
+      load_entry(Load::motor_speed, "motor speed", "greatest speed of the motors along a motion, with drive trains",
+                 load_options({"worst"}), [](const EntryContext&) { return std::string("rad/s"); }),
+      load_entry(Load::joint_speed, "joint speed", "greatest speed of the joints along a motion",
+                 load_options({"worst"}, false), speed_unit),
+      load_entry(Load::joint_acceleration, "joint acceleration", "greatest acceleration of the joints along a motion",
+                 load_options({"worst"}, false), acceleration_unit)};
 }
 
 }  // namespace pkm

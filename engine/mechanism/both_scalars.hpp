@@ -20,19 +20,19 @@ class DynamicsOf : public Dynamics {
   }
 };
 
-/// Self has `template <class S> void find_margins(std::span<const S> parameters, const LimitSpec&,
-/// std::span<const Pose<double>>, std::vector<S>&) const`.
+/// Self has `template <class S> void find_margins(std::span<const S> parameters, const std::string& mode,
+/// const LimitSpec&, std::span<const Pose<double>>, std::vector<S>&) const`, and kMarginUnit.
 template <class Self>
 class PoseMarginsOf : public PoseMargins {
  public:
-  std::string margin_unit() const final { return "m"; }
-  void append(std::span<const double> p, const LimitSpec& limits, std::span<const Pose<double>> poses,
-              std::vector<double>& margins) const final {
-    static_cast<const Self&>(*this).find_margins(p, limits, poses, margins);
+  std::string margin_unit() const final { return Self::kMarginUnit; }
+  void append(std::span<const double> p, const std::string& mode, const LimitSpec& limits,
+              std::span<const Pose<double>> poses, std::vector<double>& margins) const final {
+    static_cast<const Self&>(*this).find_margins(p, mode, limits, poses, margins);
   }
-  void append(std::span<const Dual4> p, const LimitSpec& limits, std::span<const Pose<double>> poses,
-              std::vector<Dual4>& margins) const final {
-    static_cast<const Self&>(*this).find_margins(p, limits, poses, margins);
+  void append(std::span<const Dual4> p, const std::string& mode, const LimitSpec& limits,
+              std::span<const Pose<double>> poses, std::vector<Dual4>& margins) const final {
+    static_cast<const Self&>(*this).find_margins(p, mode, limits, poses, margins);
   }
 };
 

@@ -13,7 +13,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
  public:
   Driven(std::shared_ptr<const Mechanism> bare, DriveTrains trains)
       : bare_(std::move(bare)), trains_(std::move(trains)), rotors_(reflected(trains_)) {
-    PKM_EXPECTS(trains_.size() == bare_->info().joints.size() && !no_joint_forces(*bare_));
+    PKM_EXPECTS(trains_.size() == bare_->info().joints.size());
   }
 
   const MechanismInfo& info() const override { return bare_->info(); }
@@ -55,7 +55,7 @@ class Driven final : public Mechanism, Voxels, Columns, DynamicsOf<Driven> {
   const Velocities* velocities() const override { return bare_->velocities(); }
   const ForwardKinematics* forward() const override { return bare_->forward(); }
   const Links* links() const override { return bare_->links(); }
-  const Dynamics* dynamics() const override { return this; }
+  const Dynamics* dynamics() const override { return bare_->dynamics() ? this : nullptr; }
   const JointReactions* reactions() const override { return bare_->reactions(); }
   std::string why_no_reactions() const override { return bare_->why_no_reactions(); }
   const AuxiliaryChain* chain() const override { return bare_->chain(); }

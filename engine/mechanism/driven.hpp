@@ -8,7 +8,7 @@
 
 namespace pkm {
 
-/// @param trains  as many as the mechanism has joints; it has dynamics, and as many joints as coordinates
+/// @param trains  as many as the mechanism has joints
 std::shared_ptr<const Mechanism> with_drive_trains(std::shared_ptr<const Mechanism> mechanism, DriveTrains trains);
 
 }  // namespace pkm

@@ -1,6 +1,7 @@
 // The kinds of motions: one maker each. All numbers in SI.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "engine/graph/formula.hpp"
@@ -20,10 +21,17 @@ struct Move {
 std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, const std::vector<Move>& moves,
                                              double wait, TimeLaw law);
 
-/// Time [s] of a move within peak accelerations of the position and of each angle; an infinite one bounds nothing. 0
-/// where nothing bounded moves.
+/// Peaks that a move keeps to, of the position and of each angle; an infinite one bounds nothing.
+struct PeakRates {
+  double acceleration = std::numeric_limits<double>::infinity();          ///< [m/s^2]
+  double angular_acceleration = std::numeric_limits<double>::infinity();  ///< [rad/s^2]
+  double speed = std::numeric_limits<double>::infinity();                 ///< [m/s]
+  double angular_speed = std::numeric_limits<double>::infinity();         ///< [rad/s]
+};
+
+/// Time [s] of a move within these; 0 where nothing bounded moves.
 double time_within(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
-                   const AxisVector<double>& to, double acceleration, double angular_acceleration);
+                   const AxisVector<double>& to, const PeakRates& most);
 
 /// Which coordinates are x, y, z and the platform's turn, for motions that name them; none: the platform has it not.
 struct SpaceAxes {

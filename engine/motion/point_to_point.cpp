@@ -59,16 +59,19 @@ std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, co
 }
 
 double time_within(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
-                   const AxisVector<double>& to, double acceleration, double angular_acceleration) {
+                   const AxisVector<double>& to, const PeakRates& most) {
+  const auto time_of = [law](double way, double acceleration, double speed) {
+    return std::max(time_of_move(law, way, acceleration), peak_speed(law) * std::fabs(way) / speed);
+  };
   const AxisVector<double> way = to - from;
   double square = 0, time = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     if (coordinates[i].turns())
-      time = std::max(time, time_of_move(law, way[i], angular_acceleration));
+      time = std::max(time, time_of(way[i], most.angular_acceleration, most.angular_speed));
     else
       square += way[i] * way[i];
   }
-  return std::max(time_of_move(law, std::sqrt(square), acceleration), time);
+  return std::max(time_of(std::sqrt(square), most.acceleration, most.speed), time);
 }
 
 SpaceAxes space_axes(std::span<const AxisInfo> coordinates) {

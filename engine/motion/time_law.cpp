@@ -36,6 +36,8 @@ graph::Term share_of_way(TimeLaw law, TimeGraph& graph, const Interval& begin, d
 
 double peak_acceleration(TimeLaw law) { return law == TimeLaw::cycloid ? 2 * kPi : 10 / std::sqrt(3.0); }
 
+double peak_speed(TimeLaw law) { return law == TimeLaw::cycloid ? 2 : 1.875; }
+
 double time_of_move(TimeLaw law, double way, double peak) {
   return std::sqrt(peak_acceleration(law) * std::fabs(way) / peak);
 }

@@ -26,6 +26,9 @@ graph::Term share_of_way(TimeLaw law, TimeGraph& graph, const Interval& begin, d
 /// Peak acceleration of a move over 1 in the time 1.
 double peak_acceleration(TimeLaw law);
 
+/// Peak speed of a move over 1 in the time 1.
+double peak_speed(TimeLaw law);
+
 /// Time [s] in which a move over `way` reaches the peak acceleration `peak` and no more.
 double time_of_move(TimeLaw law, double way, double peak);
 

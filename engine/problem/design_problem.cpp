@@ -64,9 +64,9 @@ std::vector<double> DesignProblem::parameters(std::span<const double> design) co
   return all;
 }
 
-Survey<double> DesignProblem::workspace(std::span<const double> parameters) const {
+Survey<double> DesignProblem::workspace(std::span<const double> parameters, std::size_t k) const {
   Survey<double> survey;
-  survey_once(*surveyors_.front(), parameters, survey);
+  survey_once(*surveyors_[k], parameters, survey);
   return survey;
 }
 
@@ -83,18 +83,22 @@ void DesignProblem::survey(std::span<const S> parameters, bool all, Scratch& scr
 Status DesignProblem::compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const {
   Surveys<double>& surveys = scratch.get<Room>().surveys;
   DesignView<double> view{*parts_.mechanism, parameters, nullptr, scratch};
-  bool holds = true, usable = true;
+  bool holds = true, usable = true, is_broken = false;
   const auto put = [&](double& place, double value) {
     place = value;
     usable = usable && std::isfinite(value);
     return value;
   };
   std::size_t margin = 0;
-  for (const auto& q : parts_.design_margins)
-    holds = put(result.margins[margin++], margin_of(q, q.quantity->value(view))) >= 0 && holds;
-  if (!usable) return Status::failed;
+  for (const auto& q : parts_.design_margins) {
+    const double value = put(result.margins[margin++], margin_of(q, q.quantity->value(view)));
+    holds = value >= 0 && holds;
+    is_broken = is_broken || (std::isfinite(value) && value < 0);
+  }
+  // Margins without a value beside it, of a motion out of reach, for example, do not matter then.
+  if (is_broken && result.detail == Detail::enough) return Status::rejected;
+  if (!usable && !(is_broken && result.detail == Detail::complete)) return Status::failed;
   const bool rejected = !holds;
-  if (rejected && result.detail == Detail::enough) return Status::rejected;
 
   if (result.detail == Detail::derivatives) {
     differentiate(parameters, parts_.varies, result.slopes, scratch);
@@ -186,19 +190,49 @@ std::string DesignProblem::why_failed(const DesignReport& report) const {
   return "an objective or a margin is not a finite number";
 }
 
-DesignReport DesignProblem::report(std::span<const double> parameters) const {
+DesignReport DesignProblem::empty_report(std::span<const double> parameters) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   DesignReport report;
   report.parameters.assign(parameters.begin(), parameters.end());
   report.objectives.assign(objectives_.size(), nan);
   report.margins.assign(margins_.size(), nan);
   report.reports.assign(reports_.size(), nan);
+  return report;
+}
+
+std::string DesignProblem::why_failed(std::span<const double> design, Detail detail) const {
+  DesignReport report = empty_report(parameters(design));
+  std::vector<double> slopes(shape(detail).slopes());
+  try {
+    Scratch scratch;
+    const Status status = compute(report.parameters, scratch,
+                                  {report.objectives, report.margins, report.reports, report.status, detail, slopes});
+    if (status != Status::failed) return "of a reason that this program does not find again";
+    if (auto& surveys = scratch.get<Room>().surveys; !surveys.empty()) report.survey = surveys.front();
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    if (std::ranges::all_of(report.margins, is_finite) && std::ranges::all_of(report.objectives, is_finite))
+      return "a derivative is not a finite number";
+    return why_failed(report);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return message_of(error);
+  }
+}
+
+DesignReport DesignProblem::report(std::span<const double> parameters) const {
+  DesignReport report = empty_report(parameters);
   try {
     Scratch scratch;
     report.status = compute(parameters, scratch,
                             {report.objectives, report.margins, report.reports, report.status, Detail::complete});
     if (auto& surveys = scratch.get<Room>().surveys; !surveys.empty()) report.survey = std::move(surveys.front());
-    if (report.status == Status::failed) report.reason = why_failed(report);
+    if (report.status == Status::failed) {
+      report.reason = why_failed(report);
+      const auto design_margins = std::span(report.margins).first(parts_.design_margins.size());
+      if (std::ranges::any_of(design_margins, [](double margin) { return std::isfinite(margin) && margin < 0; }))
+        report.status = Status::rejected;
+    }
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -24,6 +24,13 @@ struct NamedQuantity {
   std::optional<double> least, greatest;
 };
 
+/// A motion along which a constraint keeps every limit of a pose.
+struct FollowedMotion {
+  std::string name;
+  std::shared_ptr<const Motion> motion;
+  std::string mode;  ///< one of MechanismInfo::modes
+};
+
 struct ProblemParts {
   std::shared_ptr<const Mechanism> mechanism;
   std::vector<double> parameters;  ///< every parameter; those that vary are overwritten
@@ -36,6 +43,7 @@ struct ProblemParts {
   std::vector<NamedQuantity> design_margins;  ///< need no survey: computed first
   std::vector<NamedQuantity> survey_margins;  ///< the others
   std::vector<NamedQuantity> reports;
+  std::vector<FollowedMotion> followed;
 };
 
 /// All that is known of one design, for the command line and /final.
@@ -43,7 +51,7 @@ struct DesignReport {
   std::vector<double> parameters;
   std::vector<double> objectives, margins, reports;  ///< NaN where not computed
   Status status = Status::failed;
-  std::string reason;  ///< why it failed; "" otherwise
+  std::string reason;  ///< why a number is missing, also of a rejected design; "" otherwise
   Survey<double> survey;
 };
 
@@ -63,11 +71,13 @@ class DesignProblem final : public Problem {
   const ProblemParts& parts() const { return parts_; }
   /// All parameters of a design given by its variables.
   std::vector<double> parameters(std::span<const double> design) const;
-  /// The survey of the workspace alone.
-  Survey<double> workspace(std::span<const double> parameters) const;
+  /// One survey alone: of the workspace, or of the k-th region.
+  Survey<double> workspace(std::span<const double> parameters, std::size_t k = 0) const;
   /// Evaluates a full parameter vector (a baseline may lie outside the variables' bounds). Computes what it can even
   /// where a design-level margin is violated.
   DesignReport report(std::span<const double> parameters) const;
+  /// Why a design failed that was evaluated in that detail: the first thing without a finite value, and its reason.
+  std::string why_failed(std::span<const double> design, Detail detail) const;
   /// Slopes of objectives and margins by any parameters, fixed ones included, laid out as in EvaluationShape::slopes.
   /// @param by  indices of parameters
   std::vector<double> slopes(std::span<const double> parameters, std::span<const std::size_t> by) const;
@@ -80,6 +90,7 @@ class DesignProblem final : public Problem {
   struct Room;  ///< what evaluations overwrite
 
   Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const;
+  DesignReport empty_report(std::span<const double> parameters) const;
   std::string why_failed(const DesignReport& report) const;
   /// Fills `slopes`; the surveys of the scratch receive the values.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> slopes,

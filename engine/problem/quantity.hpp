@@ -114,6 +114,10 @@ struct ObjectiveEntry {
   std::function<std::string(const EntryContext&)> detail = nullptr;
   std::function<Range(const EntryContext&)> range = any_number;  ///< of its values
   bool reads_survey = true;  ///< of the workspace, or of the region that a study names; false: the design alone
+  /// Whether one with these options reads the survey; none: as `reads_survey` says.
+  bool (*needs_survey)(const EntryContext&) = nullptr;
+
+  bool reads(const EntryContext& context) const { return needs_survey ? needs_survey(context) : reads_survey; }
 };
 
 /// An entry of the catalogue of constraints: pose-level ones set thresholds, the others give a margin, of the design

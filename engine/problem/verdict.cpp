@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <set>
 
 #include "engine/core/printable.hpp"
 #include "engine/problem/margin_tally.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::int64_t kPoses = 9;  // along each swept coordinate; odd, so that the middle is among them
 constexpr std::size_t kLongestLine = 1000;
+constexpr std::size_t kMostSurveys = 16;  // of designs that seem to have an empty workspace
 
 struct Row {
   const EvaluationTable* table = nullptr;
@@ -45,27 +47,43 @@ std::array<std::size_t, 4> counts(const Designs& designs) {
   return count;
 }
 
-/// Whether an objective of a feasible design is neither 0 nor what it would be of an empty workspace.
-bool says_something(const Designs& designs, const Row& at, std::size_t objective) {
+/// Whether an objective of a feasible design has the value that it has for an empty workspace. Objectives that do not
+/// depend on the workspace never do.
+bool has_empty_value(const Designs& designs, const Row& at, std::size_t objective) {
   const double value = at.table->objective_row(at.row)[objective];
-  if (value == 0) return false;
-  if (!designs.problem) return true;
+  if (!designs.problem) return value == 0;
   const ProblemParts& parts = designs.problem->parts();
   const NamedQuantity& q = parts.objectives[objective];
-  if (!q.reads_survey) return true;
+  if (!q.reads_survey) return false;
   const Survey<double> empty;
   Scratch scratch;
   const std::vector<double> parameters = designs.parameters(at);
-  return value != q.quantity->value({*parts.mechanism, parameters, &empty, scratch});
+  return value == q.quantity->value({*parts.mechanism, parameters, &empty, scratch});
 }
 
+/// Whether every workspace that the objectives of a design read is empty.
+bool has_empty_workspace(const Designs& designs, const Row& at) {
+  const std::vector<double> parameters = designs.parameters(at);
+  std::set<std::size_t> surveys;
+  for (const NamedQuantity& q : designs.problem->parts().objectives) surveys.insert(q.survey);
+  return std::ranges::all_of(
+      surveys, [&](std::size_t survey) { return designs.problem->workspace(parameters, survey).volume == 0; });
+}
+
+/// A feasible design counts unless every objective has the value of an empty workspace and the workspace is empty. Only
+/// kMostSurveys of the designs with such values are surveyed again: a value like that of a workspace that is not empty
+/// takes a formula that hides it, such as max(0, volume - 1), or a constant.
 bool something_found(const Designs& designs) {
+  std::size_t surveys_left = kMostSurveys;
   for (const EvaluationTable* table : designs.tables)
     for (std::size_t row = 0; row < table->size(); ++row) {
       if (table->status[row] != Status::feasible) continue;
       if (designs.objectives.empty()) return true;
       for (std::size_t i = 0; i < designs.objectives.size(); ++i)
-        if (says_something(designs, {table, row}, i)) return true;
+        if (!has_empty_value(designs, {table, row}, i)) return true;
+      if (!designs.problem || surveys_left == 0) continue;
+      --surveys_left;
+      if (!has_empty_workspace(designs, {table, row})) return true;
     }
   return false;
 }

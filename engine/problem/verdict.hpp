@@ -32,9 +32,10 @@ std::vector<Reason> contradictions(const ProblemParts& parts);
 /// that is out of reach. A sentence each.
 std::vector<std::string> doubts(const ProblemParts& parts);
 
-/// The verdict on evaluated designs; none where one is feasible and has an objective that says something (is neither 0
-/// nor what an empty workspace gives), and where there are no designs.
-/// @param problem  that they belong to, to evaluate the least bad one again; null: that cannot be done
+/// The verdict on evaluated designs; none where there are no designs, and where one is feasible, unless every feasible
+/// design has an empty workspace and objectives that depend on nothing else.
+/// @param problem  that they belong to, to evaluate some of them again; null: an objective of 0 counts as that of an
+///                 empty workspace
 std::optional<Verdict> verdict_on(const std::vector<const EvaluationTable*>& tables,
                                   const std::vector<ObjectiveInfo>& objectives, const std::vector<MarginInfo>& margins,
                                   const DesignProblem* problem);

@@ -25,17 +25,31 @@ std::optional<DesignRecord> best_so_far(const StudyContents& contents) {
   return record;
 }
 
-std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignProblem* problem) {
-  if (contents.state != StudyState::finished) return {};
+namespace {
+
+std::vector<const EvaluationTable*> tables_of(const StudyContents& contents) {
   std::vector<const EvaluationTable*> tables;
   for (const StageRecord& stage : contents.stages) tables.push_back(&stage.table);
-  return verdict_on(tables, contents.problem.objectives, contents.problem.margins, problem);
+  return tables;
+}
+
+}  // namespace
+
+std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignProblem* problem) {
+  if (contents.state != StudyState::finished) return {};
+  return verdict_on(tables_of(contents), contents.problem.objectives, contents.problem.margins, problem);
+}
+
+Failures failures_in(const StudyContents& contents, const DesignProblem* problem) {
+  return failures_in(tables_of(contents), problem);
 }
 
 std::string name_of_best(const StudyContents& contents) {
   if (verdict_on(contents, nullptr)) {
     const Status status = contents.best_stage().table.status[static_cast<std::size_t>(contents.best.row)];
-    return status == Status::feasible ? "as good as any" : "least bad";
+    if (status != Status::feasible) return "least bad";
+    const bool has_workspace = contents.final && contents.final->best && contents.final->best->volume > 0;
+    if (!has_workspace) return "as good as any";
   }
   if (contents.problem.objectives.size() > 1) return "compromise";
   return contents.final ? "best" : "best so far";

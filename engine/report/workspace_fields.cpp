@@ -46,7 +46,7 @@ class Rows {
         poses_(poses),
         size_(size) {
     const PoseMargins* const margins = mechanism.pose_margins();
-    const bool mixed = !margins;
+    const bool mixed = !margins || margins->margin_unit().empty();
     add("margin", mixed ? "mixed" : margins->margin_unit(),
         std::string("least margin of the pose, > 0 where it is feasible") + (mixed ? ", in m, rad or 1" : ""));
     add_quantities(false);
@@ -232,7 +232,7 @@ double PoseMargin::operator()(const Pose<double>& pose, std::vector<double>& scr
     return report.feasible || least < 0 ? least : -1;
   }
   scratch.clear();
-  ability->append(parameters_, limits_, {&pose, 1}, scratch);
+  ability->append(parameters_, mechanism_.info().modes.front(), limits_, {&pose, 1}, scratch);
   for (const double margin : scratch) least = std::fmin(least, margin);
   return least;
 }

@@ -9,6 +9,15 @@ namespace {
 
 constexpr double kLeastEfficiency = 1e-3;
 
+/// Refuses what has an effect on forces only, where there are none.
+void expect_forces(const ConfigValue& table, const Refusal& no_forces) {
+  if (!no_forces) return;
+  for (const char* const key : {"rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"})
+    if (const auto given = table.find(key))
+      throw given->refusal("inertias and losses of drive trains need dynamics, and " + *no_forces +
+                           "; gear and lead do without");
+}
+
 DriveTrain read_train(const ConfigValue& table, const AxisInfo& joint) {
   const bool turns = joint.turns();
   DriveTrain train;
@@ -34,14 +43,14 @@ void read_drive_trains(const ConfigValue& root, StudyDraft& draft) {
   const std::vector<ConfigValue> tables = tables_of(root, "drive_train");
   if (tables.empty()) return;
   const auto& joints = draft.info().joints;
-  if (const Refusal reason = no_joint_forces(*draft.parts.mechanism))
-    throw tables.front().refusal("drive trains need dynamics, and " + *reason);
+  const Refusal no_forces = no_joint_forces(*draft.parts.mechanism);
   std::vector<std::string> names = {"all"};
   for (const AxisInfo& joint : joints) names.push_back(joint.name);
   std::vector<std::optional<DriveTrain>> trains(joints.size());
   for (const ConfigValue& table : tables) {
     table.allow(
         {"joint", "gear", "lead", "rotor_inertia", "shaft_inertia", "efficiency", "coulomb", "viscous", "slow_speed"});
+    expect_forces(table, no_forces);
     const ConfigValue value = table.at("joint", "a joint, or \"all\"");
     const std::string& joint = value.word(names);
     for (std::size_t i = 0; i < joints.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "engine/setup/motion_section.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/unit.hpp"
@@ -51,20 +52,29 @@ Pose<double> pose_at(const ConfigValue& table, const Coordinates& names) {
   return pose;
 }
 
-/// What bounds the time of a move: `time`, or peak accelerations.
+/// What bounds the time of a move: `time`, or peak accelerations and speeds.
 struct Pace {
   std::optional<double> time;
-  double acceleration = kUnbounded, angular_acceleration = kUnbounded;
+  PeakRates most = {};
 };
-const Keys kPaceKeys = {"time", "acceleration", "angular_acceleration"};
+const Keys kPaceKeys = {"time", "acceleration", "angular_acceleration", "speed", "angular_speed"};
 
 /// The table's own pace, or `general` where it gives none.
 Pace pace_of(const ConfigValue& table, const Pace& general) {
-  const Pace pace{find_positive(table, "time", "s"), find_positive(table, "acceleration", "m/s^2").value_or(kUnbounded),
-                  find_positive(table, "angular_acceleration", "rad/s^2").value_or(kUnbounded)};
-  const bool bounded = pace.acceleration < kUnbounded || pace.angular_acceleration < kUnbounded;
+  const auto peak = [&table](const char* key, const char* unit) {
+    return find_positive(table, key, unit).value_or(kUnbounded);
+  };
+  const Pace pace{find_positive(table, "time", "s"),
+                  {.acceleration = peak("acceleration", "m/s^2"),
+                   .angular_acceleration = peak("angular_acceleration", "rad/s^2"),
+                   .speed = peak("speed", "m/s"),
+                   .angular_speed = peak("angular_speed", "rad/s")}};
+  const auto& [acceleration, angular_acceleration, speed, angular_speed] = pace.most;
+  const bool accelerates = std::min(acceleration, angular_acceleration) < kUnbounded,
+             bounded = accelerates || std::min(speed, angular_speed) < kUnbounded;
   if (pace.time && bounded)
-    throw table.find("time")->refusal("the time follows from the peak acceleration; give one of them");
+    throw table.find("time")->refusal(std::string("the time follows from the peak ") +
+                                      (accelerates ? "acceleration" : "speed") + "; give one of them");
   return pace.time || bounded ? pace : general;
 }
 
@@ -75,12 +85,14 @@ double time_of(const ConfigValue& point, const Coordinates& names, const Pose<do
   bool moves = false, turns = false;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (to[i] - from[i] != 0) (names[i].turns() ? turns : moves) = true;
+  const PeakRates& most = pace.most;
   if (!moves && !turns) throw point.refusal("it is the point before; give the time to stay there as its wait");
-  if (moves && pace.acceleration == kUnbounded)
-    throw point.refusal("nothing says how fast to move there; give time = .. or acceleration = ..");
-  if (turns && !moves && pace.angular_acceleration == kUnbounded)
-    throw point.refusal("nothing says how fast to turn there; give time = .. or angular_acceleration = ..");
-  return time_within(law, names, from, to, pace.acceleration, pace.angular_acceleration);
+  if (moves && std::min(most.acceleration, most.speed) == kUnbounded)
+    throw point.refusal("nothing says how fast to move there; give time = .., acceleration = .. or speed = ..");
+  if (turns && !moves && std::min(most.angular_acceleration, most.angular_speed) == kUnbounded)
+    throw point.refusal(
+        "nothing says how fast to turn there; give time = .., angular_acceleration = .. or angular_speed = ..");
+  return time_within(law, names, from, to, most);
 }
 
 std::shared_ptr<const Motion> read_points(const ConfigValue& table, const Coordinates& names, const Keys& more_keys) {
@@ -220,7 +232,10 @@ std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const Mo
 void read_motions(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& table : tables_of(root, "motion")) {
     const std::string name = new_name(table, "motion", draft.study.motions, "a name for objectives to refer to");
-    draft.study.motions.push_back({name, read_motion(table, motion_names(*draft.parts.mechanism), {"name"})});
+    auto motion = read_motion(table, motion_names(*draft.parts.mechanism), {"name", "follow"});
+    draft.study.motions.push_back({name, std::move(motion)});
+    if (const auto follow = table.find("follow"); follow && !follow->flag())
+      draft.study.unfollowed_motions.push_back(name);
   }
 }
 

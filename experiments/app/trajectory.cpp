@@ -94,6 +94,8 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
     throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
   if (!arguments.motors.empty() && !mechanism.drive_trains())
     throw ConfigError({"", 0, "--motors"}, "no drive trains", "a study with [[drive_train]]");
+  if (const Refusal reason = no_joint_forces(mechanism); reason && !arguments.motors.empty())
+    throw ConfigError({"", 0, "--motors"}, *reason + ", so no torques of its motors");
   expect_reactions(mechanism, arguments);
   if (!arguments.zeta.empty() && !mechanism.chain())
     throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");

@@ -72,6 +72,37 @@ TEST(CliVerdict, AnEmptyWorkspaceIsNothingFound) {
                         contradiction + "  no pose of the least bad design keeps beta_min, "));
 }
 
+/// A user's study of the rotary Delta, whose objective is a parameter: it was told that nothing is found.
+TEST(CliVerdict, ADesignWhoseObjectiveIsAParameterIsFound) {
+  const StudyFolder folder;
+  folder.write("s.toml", "[mechanism]\nfile = \"" PKM_EXPERIMENTS R"(/mechanisms/rotary-delta.toml"
+[variables]
+l_a = { min = 0.1, max = 0.3 }
+[workspace]
+method = "voxels"
+cells = { x = 12, y = 12, z = 12 }
+[[objective]]
+type = "expression"
+name = "size_of_crank"
+expression = "l_a"
+unit = "m"
+direction = "minimise"
+[[constraint]]
+type = "workspace-volume"
+min = 0.05
+[[stage]]
+optimiser = "ga"
+population = 8
+generations = 3
+)");
+  const auto run = pkmopt({"run", "s.toml"}, folder.path());
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, Not(HasSubstr("verdict")));
+  const auto best = pkmopt({"show", "s.h5", "--json"}, folder.path()).json().at("best");
+  EXPECT_NEAR(best["objectives"]["size_of_crank"].get<double>(), 0.17, 0.01);
+  EXPECT_GE(best["constraints"]["workspace-volume"].get<double>(), 0);
+}
+
 TEST(CliVerdict, SeedsThatAllFindNothing) {
   const StudyFolder folder;
   folder.write("s.toml", kInfeasible);

@@ -40,16 +40,18 @@ class DesignTests {
   virtual void test(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> margins) const = 0;
 };
 
-/// Margins of poses in one unit: a pose is feasible where all of its margins are >= 0.
+/// Margins of poses: a pose is feasible where all of its margins are >= 0.
 class PoseMargins {
  public:
   virtual ~PoseMargins() = default;
+  /// The unit that they share; "": each has its own, m, rad or 1.
   virtual std::string margin_unit() const = 0;
-  /// Appends the margins of poses. They exist, finite, also where a pose does not assemble.
-  virtual void append(std::span<const double> parameters, const LimitSpec& limits, std::span<const Pose<double>> poses,
-                      std::vector<double>& margins) const = 0;
-  virtual void append(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<const Pose<double>> poses,
-                      std::vector<Dual4>& margins) const = 0;
+  /// Appends the margins of poses, finite numbers. A pose that does not assemble has some, too, one of them negative.
+  /// @param mode  one of MechanismInfo::modes, or "": the first
+  virtual void append(std::span<const double> parameters, const std::string& mode, const LimitSpec& limits,
+                      std::span<const Pose<double>> poses, std::vector<double>& margins) const = 0;
+  virtual void append(std::span<const Dual4> parameters, const std::string& mode, const LimitSpec& limits,
+                      std::span<const Pose<double>> poses, std::vector<Dual4>& margins) const = 0;
 };
 
 }  // namespace pkm

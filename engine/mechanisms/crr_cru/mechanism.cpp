@@ -107,6 +107,7 @@ class CrrCru final : public MechanismWith<Voxels, Columns, PoseMarginsOf<CrrCru>
 
  private:
   friend PoseMarginsOf<CrrCru>;
+  static constexpr const char* kMarginUnit = "m";
   friend DynamicsOf<CrrCru>;
 
   std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
@@ -176,12 +177,12 @@ class CrrCru final : public MechanismWith<Voxels, Columns, PoseMarginsOf<CrrCru>
     return mode;
   }
   template <class S>
-  void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
-                    std::vector<S>& margins) const {
+  void find_margins(std::span<const S> p, const std::string& mode, const LimitSpec& spec,
+                    std::span<const pkm::Pose<double>> poses, std::vector<S>& margins) const {
     const auto g = geometry(platform_, p);
     const Limits l = limits(spec);
     add_margins(design(g, l), poses, margins);
-    if (l.clearance_min) add_clearances(g, link_radii(p), l, mode_called(""), poses, margins);
+    if (l.clearance_min) add_clearances(g, link_radii(p), l, mode_called(mode), poses, margins);
   }
   template <class S>
   void find_dynamics(std::span<const S> p, const std::string& mode, std::span<const pkm::MotionState<S>> states,

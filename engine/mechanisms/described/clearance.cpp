@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kNumbers = 7;  ///< of a link: its ends and its radius
 
 template <class ValueOf>
-Capsule<double> capsule_of(const ValueOf& value) {
+auto capsule_of(const ValueOf& value) -> Capsule<decltype(value(0))> {
   return {{{value(0), value(1), value(2)}, {value(3), value(4), value(5)}}, value(6)};
 }
 
@@ -80,36 +80,44 @@ void refuse_clearance(const Model& model, const LimitSpec& limits, const std::st
   if (clearance_of(model, limits)) throw std::invalid_argument("mechanism " + model.info.name + " " + why);
 }
 
-std::vector<Capsule<double>> capsules_at(const Evaluation& e, const std::vector<double>& inputs) {
-  const std::vector<double> values = outputs_of(e.links, inputs);
-  std::vector<Capsule<double>> links;
-  if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); })) return links;
+template <class S>
+std::vector<Capsule<S>> capsules_at(const Evaluation& e, const std::vector<S>& inputs) {
+  const std::vector<S> values = outputs_of(e.links, inputs);
+  std::vector<Capsule<S>> links;
+  if (!std::ranges::all_of(values, [](const S& x) { return std::isfinite(value_of(x)); })) return links;
   for (auto at = values.begin(); at != values.end(); at += kNumbers)
     links.push_back(capsule_of([&](std::size_t i) { return at[static_cast<std::ptrdiff_t>(i)]; }));
   return links;
 }
 
-std::optional<NearestBodies> nearest_bodies(const Evaluation& e, const std::vector<double>& inputs,
-                                            const Obstacles& obstacles) {
+template <class S>
+std::optional<NearestBodies<S>> nearest_bodies(const Evaluation& e, const std::vector<S>& inputs,
+                                               const Obstacles& obstacles) {
   const Model& model = e.model;
   if (model.link_pairs.empty() && (obstacles.empty() || model.moving_links.empty())) return {};
-  const std::vector<Capsule<double>> links = capsules_at(e, inputs);
-  if (links.empty()) return NearestBodies{std::nan(""), "", ""};
-  std::vector<Bounds<double>> box;
-  for (const Capsule<double>& link : links) box.push_back(bounds_of(link.axis));
-  Nearest<double> nearest{std::numeric_limits<double>::infinity()};
+  const std::vector<Capsule<S>> links = capsules_at(e, inputs);
+  if (links.empty()) return NearestBodies<S>{S(std::nan("")), "", ""};
+  std::vector<Bounds<S>> box;
+  for (const Capsule<S>& link : links) box.push_back(bounds_of(link.axis));
+  Nearest<S> nearest{S(std::numeric_limits<double>::infinity())};
   for (const auto& [first, second] : model.link_pairs) {
     // not nearer than their boxes are
-    const double radii = links[first].radius + links[second].radius;
-    if (distance_of_bounds(box[first], box[second]) - radii > nearest.clearance) continue;
-    const double found = capsule_distance(links[first], links[second]);
-    if (found < nearest.clearance) nearest = {found, first, second};
+    const double radii = value_of(links[first].radius) + value_of(links[second].radius);
+    if (value_of(distance_of_bounds(box[first], box[second])) - radii > value_of(nearest.clearance)) continue;
+    const S found = capsule_distance(links[first], links[second]);
+    if (value_of(found) < value_of(nearest.clearance)) nearest = {found, first, second};
   }
-  const Nearest<double> other = nearest_obstacle<double>(links, model.moving_links, obstacles);
-  if (other.clearance < nearest.clearance)
-    return NearestBodies{other.clearance, model.links[other.first].name, obstacles[other.second].name};
-  return NearestBodies{nearest.clearance, model.links[nearest.first].name, model.links[nearest.second].name};
+  const Nearest<S> other = nearest_obstacle<S>(links, model.moving_links, obstacles);
+  if (value_of(other.clearance) < value_of(nearest.clearance))
+    return NearestBodies<S>{other.clearance, model.links[other.first].name, obstacles[other.second].name};
+  return NearestBodies<S>{nearest.clearance, model.links[nearest.first].name, model.links[nearest.second].name};
 }
+
+template std::vector<Capsule<double>> capsules_at(const Evaluation&, const std::vector<double>&);
+template std::optional<NearestBodies<double>> nearest_bodies(const Evaluation&, const std::vector<double>&,
+                                                             const Obstacles&);
+template std::optional<NearestBodies<Dual4>> nearest_bodies(const Evaluation&, const std::vector<Dual4>&,
+                                                            const Obstacles&);
 
 ClearanceRows::ClearanceRows(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
                              double least, const Obstacles& obstacles)

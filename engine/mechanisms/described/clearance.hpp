@@ -22,17 +22,20 @@ void refuse_clearance(const Model& model, const LimitSpec& limits, const std::st
 
 /// All links of a pose that assembles; empty where the place of one has no value.
 /// @param inputs  of the graph, with the pose
-std::vector<Capsule<double>> capsules_at(const Evaluation& evaluation, const std::vector<double>& inputs);
+template <class S>
+std::vector<Capsule<S>> capsules_at(const Evaluation& evaluation, const std::vector<S>& inputs);
 
 /// What is nearest to each other of what has to keep clear.
+template <class S>
 struct NearestBodies {
-  double clearance;  ///< [m], negative where they overlap; not a number where the place of a link has no value
+  S clearance;  ///< [m], negative where they overlap; not a number where the place of a link has no value
   std::string first, second;
 };
 
 /// Of links, and of links and obstacles. None: nothing has to keep clear.
-std::optional<NearestBodies> nearest_bodies(const Evaluation& evaluation, const std::vector<double>& inputs,
-                                            const Obstacles& obstacles);
+template <class S>
+std::optional<NearestBodies<S>> nearest_bodies(const Evaluation& evaluation, const std::vector<S>& inputs,
+                                               const Obstacles& obstacles);
 
 /// A clearance limit in a survey, 64 poses at a time.
 class ClearanceRows {

@@ -53,7 +53,8 @@ std::string first_broken(const NamedValues& conditions, const std::string& words
   return "";
 }
 
-void add_clearance(const Model& model, const NearestBodies& nearest, const LimitSpec& limits, PoseReport& report) {
+void add_clearance(const Model& model, const NearestBodies<double>& nearest, const LimitSpec& limits,
+                   PoseReport& report) {
   report.angles.emplace_back("clearance", nearest.clearance);
   const auto least = clearance_of(model, limits);
   if (!least) return;

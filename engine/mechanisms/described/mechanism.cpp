@@ -11,6 +11,7 @@
 #include "engine/mechanisms/described/forward.hpp"
 #include "engine/mechanisms/described/joints.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/mechanisms/described/pose_margins.hpp"
 #include "engine/mechanisms/described/voxels.hpp"
 
 namespace pkm::described {
@@ -28,6 +29,7 @@ class DescribedMechanism final : public Mechanism,
                                  DesignTests,
                                  Size,
                                  JointReactions,
+                                 PoseMarginsOf<DescribedMechanism>,
                                  DynamicsOf<DescribedMechanism> {
  public:
   explicit DescribedMechanism(Model model)
@@ -70,6 +72,7 @@ class DescribedMechanism final : public Mechanism,
   }
   const Links* links() const override { return e_.model.links.empty() ? nullptr : this; }
   const DesignTests* design_tests() const override { return e_.model.tests.empty() ? nullptr : this; }
+  const PoseMargins* pose_margins() const override { return this; }
   const Size* size() const override { return e_.model.size ? this : nullptr; }
   const Dynamics* dynamics() const override { return e_.model.equations ? this : nullptr; }
   const JointReactions* reactions() const override { return e_.model.jointed ? this : nullptr; }
@@ -77,7 +80,14 @@ class DescribedMechanism final : public Mechanism,
 
  private:
   friend DynamicsOf<DescribedMechanism>;
+  friend PoseMarginsOf<DescribedMechanism>;
+  static constexpr const char* kMarginUnit = "";
 
+  template <class S>
+  void find_margins(std::span<const S> parameters, const std::string& mode, const LimitSpec& limits,
+                    std::span<const Pose<double>> poses, std::vector<S>& margins) const {
+    append_margins(e_, parameters, number_of_mode(info(), mode), limits, poses, margins);
+  }
   template <class S>
   void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
                      std::span<PoseDynamics<S>> found) const {

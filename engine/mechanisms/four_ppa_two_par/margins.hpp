@@ -20,31 +20,40 @@ inline constexpr std::array<const char*, kMargins> kMarginNames = {
     "alpha_min", "beta_min",  "beta_max",  "h_min",     "sin_par_min",  "cos_theta_min", "clearance_min"};
 
 /// alpha_j [rad]
-inline double alpha(const Limbs<double>& limb, std::size_t j) { return atan2(-limb.z_c[j], limb.h[j]); }
+template <class S>
+S alpha(const Limbs<S>& limb, std::size_t j) {
+  return atan2(S(-limb.z_c[j]), limb.h[j]);
+}
 /// Of the lower bars, from the nearer vertical: beta_j, or pi - beta_j in the upper branch [rad].
-inline double lean(const Limbs<double>& limb, std::size_t j) { return atan2(limb.x[j], limb.sigma[j]); }
-inline double beta(const Limbs<double>& limb, std::size_t j, Branch branch) {
-  return branch == Branch::lower ? lean(limb, j) : kPi - lean(limb, j);
+template <class S>
+S lean(const Limbs<S>& limb, std::size_t j) {
+  return atan2(limb.x[j], limb.sigma[j]);
+}
+template <class S>
+S beta(const Limbs<S>& limb, std::size_t j, Branch branch) {
+  return branch == Branch::lower ? lean(limb, j) : S(kPi - lean(limb, j));
 }
 
 /// All but the clearance, which joints do not tell: it is infinite.
-inline std::array<double, kMargins> margins(const Geometry<double>& g, const Limits<double>& l,
-                                            const Limbs<double>& limb, double cos_theta, WorkingMode mode) {
-  std::array<double, kMargins> m;
+template <class S>
+std::array<S, kMargins> margins(const Geometry<S>& g, const Limits<S>& l, const Limbs<S>& limb, double cos_theta,
+                                WorkingMode mode) {
+  std::array<S, kMargins> m;
   for (std::size_t j = 0; j < 2; ++j) {  // eq 12
-    m[kReachX + j] = std::fmin(limb.x[j], g.l_d - limb.x[j]);
-    m[kReachZ + j] = std::fmin(g.l_u + limb.z_c[j], g.l_u - limb.z_c[j]);
+    m[kReachX + j] = min(limb.x[j], S(g.l_d - limb.x[j]));
+    m[kReachZ + j] = min(S(g.l_u + limb.z_c[j]), S(g.l_u - limb.z_c[j]));
     m[kBelowRail + j] = -limb.z_c[j];
   }
-  m[kStroke] = std::fmin(std::fmin(limb.q[0], limb.q[2]), g.L0 - std::fmax(limb.q[1], limb.q[3]));
-  double* const limit = &m[kFirstLimit];
-  limit[kAlphaMin] = std::fmin(alpha(limb, 0), alpha(limb, 1)) - asin(l.sin_alpha_min);                        // eq 17
-  limit[kBetaMin] = std::fmin(lean(limb, 0), lean(limb, 1)) - asin(l.sin_beta_min);                            // eq 17
-  limit[kBetaMax] = atan2(l.sin_beta_max, l.cos_beta_max) - std::fmax(lean(limb, 0), lean(limb, 1));           // eq 20
-  limit[kHMin] = std::fmin(limb.h[0], limb.h[1]) - l.h_min;                                                    // eq 19
-  limit[kSinParMin] = std::fabs(sincos(beta(limb, 0, mode[0]) + beta(limb, 1, mode[1])).sin) - l.sin_par_min;  // eq 15
+  m[kStroke] = min(min(limb.q[0], limb.q[2]), S(g.L0 - max(limb.q[1], limb.q[3])));
+  S* const limit = &m[kFirstLimit];
+  limit[kAlphaMin] = min(alpha(limb, 0), alpha(limb, 1)) - asin(l.sin_alpha_min);               // eq 17
+  limit[kBetaMin] = min(lean(limb, 0), lean(limb, 1)) - asin(l.sin_beta_min);                   // eq 17
+  limit[kBetaMax] = atan2(l.sin_beta_max, l.cos_beta_max) - max(lean(limb, 0), lean(limb, 1));  // eq 20
+  limit[kHMin] = min(limb.h[0], limb.h[1]) - l.h_min;                                           // eq 19
+  const S sum = beta(limb, 0, mode[0]) + beta(limb, 1, mode[1]);
+  limit[kSinParMin] = magnitude(sincos(sum).sin) - l.sin_par_min;  // eq 15
   limit[kCosThetaMin] = cos_theta - l.cos_theta_min;
-  limit[kClearanceMin] = std::numeric_limits<double>::infinity();
+  limit[kClearanceMin] = S(std::numeric_limits<double>::infinity());
   return m;
 }
 

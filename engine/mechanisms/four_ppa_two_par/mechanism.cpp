@@ -6,6 +6,7 @@
 #include "engine/mechanism/with_abilities.hpp"
 #include "engine/mechanisms/four_ppa_two_par/dynamics.hpp"
 #include "engine/mechanisms/four_ppa_two_par/links.hpp"
+#include "engine/mechanisms/four_ppa_two_par/margins.hpp"
 #include "engine/mechanisms/four_ppa_two_par/survey.hpp"
 #include "engine/mechanisms/list.hpp"
 
@@ -65,6 +66,34 @@ MechanismInfo make_info() {
   return i;
 }
 
+/// Distance of the nearest two links, or of a link and an obstacle.
+template <class S>
+S clearance_of(const Geometry<S>& g, const Limbs<S>& limb, double sin_theta, double y, const Obstacles& obstacles,
+               WorkingMode mode) {
+  four_ppa_two_par::Links<S> all = links(g, placement(limb, S(sin_theta), mode));
+  const S between = nearest_links(all).clearance;
+  std::vector<std::size_t> moving;
+  for (Capsule<S>& link : all) {  // they are in a frame at the platform's y
+    link.axis.from[1] = link.axis.from[1] + y;
+    link.axis.to[1] = link.axis.to[1] + y;
+    moving.push_back(moving.size());
+  }
+  return min(between, pkm::nearest_obstacle<S>(all, moving, obstacles).clearance);
+}
+
+/// Appends the margins of a pose, each in its own unit; of one that does not assemble, how far its limbs reach.
+template <class S>
+void add_margins(const Geometry<S>& g, const Limits<S>& l, const Obstacles& obstacles, const pkm::Pose<double>& at,
+                 WorkingMode mode, std::vector<S>& all) {
+  const auto [sin_theta, cos_theta] = sincos(at[3]);
+  const Limbs<S> limb = inverse(g, SchoenfliesPose<S>{S(at[0]), S(at[1]), S(at[2]), S(at[3])}, mode);
+  const std::array<S, kMargins> margin = margins(g, l, limb, cos_theta, mode);
+  const std::size_t count = limb.assembles ? kFirstLimit + kClearanceMin : kBelowRail;
+  all.insert(all.end(), margin.begin(), margin.begin() + count);
+  if (limb.assembles && l.clearance_min)
+    all.push_back(clearance_of(g, limb, sin_theta, at[1], obstacles, mode) - *l.clearance_min);
+}
+
 /// Eq 21, upper and lower part separate at the least cos(theta) allowed; eq 18.
 template <class S>
 void margins_of(std::span<const S> p, const LimitSpec& spec, std::span<S> margins) {
@@ -94,8 +123,8 @@ void thresholds_of(std::span<const S> p, const LimitSpec& spec, std::span<S> val
   values[kClearanceMin] = S(l.clearance_min.value_or(kNoClearance));
 }
 
-class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTests, Velocities, ForwardKinematics,
-                                                 pkm::Links, DynamicsOf<FourPpaTwoPar>> {
+class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTests, PoseMarginsOf<FourPpaTwoPar>,
+                                                 Velocities, ForwardKinematics, pkm::Links, DynamicsOf<FourPpaTwoPar>> {
  public:
   const MechanismInfo& info() const override { return info_; }
 
@@ -122,7 +151,16 @@ class FourPpaTwoPar final : public MechanismWith<Voxels, Columns, Size, DesignTe
 
  private:
   friend DynamicsOf<FourPpaTwoPar>;
+  friend PoseMarginsOf<FourPpaTwoPar>;
+  static constexpr const char* kMarginUnit = "";
 
+  template <class S>
+  void find_margins(std::span<const S> p, const std::string& mode, const LimitSpec& spec,
+                    std::span<const pkm::Pose<double>> poses, std::vector<S>& margins) const {
+    const auto g = geometry(p);
+    const Limits<S> l = limits(g, spec);
+    for (const pkm::Pose<double>& pose : poses) add_margins(g, l, spec.obstacles, pose, mode_called(mode), margins);
+  }
   bool take_rotors() const override { return true; }
   std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                const Demand& demand) const override {

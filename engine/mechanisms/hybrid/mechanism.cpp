@@ -107,6 +107,7 @@ class Hybrid final : public MechanismWith<Voxels, Columns, Size, PoseMarginsOf<H
 
  private:
   friend PoseMarginsOf<Hybrid>;
+  static constexpr const char* kMarginUnit = "m";
 
   std::unique_ptr<const VoxelSurveyor> prepare(const SurveyPlan& plan, const VoxelOptions& voxels,
                                                const Demand& demand) const override {
@@ -181,11 +182,11 @@ class Hybrid final : public MechanismWith<Voxels, Columns, Size, PoseMarginsOf<H
     values[kClearanceMin] = l.clearance_min;
   }
   template <class S>
-  void find_margins(std::span<const S> p, const LimitSpec& spec, std::span<const pkm::Pose<double>> poses,
-                    std::vector<S>& margins) const {
+  void find_margins(std::span<const S> p, const std::string& mode_name, const LimitSpec& spec,
+                    std::span<const pkm::Pose<double>> poses, std::vector<S>& margins) const {
     const auto g = geometry(p);
     const Limits<S> l = limits(p, spec);
-    const Mode& mode = modes_.front();
+    const Mode& mode = mode_called(mode_name);
     for (const pkm::Pose<double>& at : poses) {
       const SchoenfliesPose<S> pose{S(at[0]), S(at[1]), S(at[2]), S(at[3])};
       const Margins<S> found = hybrid::margins(g, l, pose, mode.signs, mode.branch);

@@ -121,7 +121,7 @@ TEST(Motions, MovesRestAtTheirPointsAndPause) {
 TEST(Motions, TimesFollowFromPeakAccelerations) {
   for (const TimeLaw law : {TimeLaw::quintic, TimeLaw::cycloid}) {
     const X to = kStart + X{0.03, -0.04, 0, 0.2};
-    const double T = time_within(law, kCoordinates, kStart, to, 3, INFINITY);
+    const double T = time_within(law, kCoordinates, kStart, to, {.acceleration = 3});
     const auto motion = point_to_point(kStart, {{0, to, T}}, 0, law);
     double peak = 0, speed = 0;
     for (const MotionSample& at : sample(*motion, 100'001)) {
@@ -130,9 +130,11 @@ TEST(Motions, TimesFollowFromPeakAccelerations) {
     }
     EXPECT_NEAR(peak, 3, 1e-8);
     EXPECT_NEAR(speed, (law == TimeLaw::quintic ? 1.875 : 2.0) * 0.05 / T, 1e-12);
+    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, {.acceleration = 3, .speed = speed / 2}), 2 * T, 1e-12);
+    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, {.angular_speed = 0.1}), peak_speed(law) * 2, 1e-12);
     // The turn asks for more time than the way.
-    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, 3, 0.1), std::sqrt(peak_acceleration(law) * 0.2 / 0.1),
-                1e-12);
+    EXPECT_NEAR(time_within(law, kCoordinates, kStart, to, {.acceleration = 3, .angular_acceleration = 0.1}),
+                std::sqrt(peak_acceleration(law) * 0.2 / 0.1), 1e-12);
   }
   // Section 11 of the model's document: T = sqrt(10 S/(sqrt(3) a)).
   EXPECT_NEAR(time_of_move(TimeLaw::quintic, 0.0906, 3), std::sqrt(10 * 0.0906 / (std::sqrt(3.0) * 3)), 1e-15);
@@ -182,7 +184,7 @@ TEST(Motions, OfOtherCoordinates) {
   EXPECT_NEAR(end.pose[2], 0.3 + 0.305 * c, 1e-15);
   // Two angles: each keeps its own peak.
   const std::vector<AxisInfo> angles = {{"alpha", "rad"}, {"beta", "rad"}};
-  EXPECT_EQ(time_within(TimeLaw::quintic, angles, {0, 0}, {0.1, -0.3}, 1, 2),
+  EXPECT_EQ(time_within(TimeLaw::quintic, angles, {0, 0}, {0.1, -0.3}, {.acceleration = 1, .angular_acceleration = 2}),
             std::fmax(time_of_move(TimeLaw::quintic, 0.1, 2), time_of_move(TimeLaw::quintic, -0.3, 2)));
 }
 

@@ -160,6 +160,45 @@ TEST(Verdict, AnEmptyWorkspacesCouplingSaysNothing) {
   EXPECT_FALSE(verdict(empty, false)) << "nobody knows without the problem";
 }
 
+/// An objective that is a formula, as `study` takes objectives.
+std::string formula(const std::string& text) { return "expression\"\nexpression = \"" + text; }
+
+TEST(Verdict, ObjectivesThatDoNotDependOnTheWorkspaceAreFound) {
+  const std::string voxels = "[workspace]\nmethod = \"voxels\"\ncells = { x = 4, z = 4, theta = 4 }\n";
+  for (const std::string& method : {std::string(), voxels})
+    for (const std::string text : {"a", "a + b", "3", "0", "a - a"}) {
+      EXPECT_FALSE(verdict(study(method, formula(text)))) << method << text;
+      EXPECT_FALSE(verdict(study(method + "limits = { h_min = 3 }\n", formula(text)))) << method << text;
+    }
+}
+
+TEST(Verdict, OnlyAnEmptyWorkspaceIsEmpty) {
+  for (const std::string text : {"0 * volume", "max(0, volume - 1000)", "min(1, 1 + volume)"}) {
+    EXPECT_FALSE(verdict(study("", formula(text)))) << text << ": the workspace is not empty";
+    const auto v = verdict(study("[workspace]\nlimits = { h_min = 3 }\n", formula(text)));
+    ASSERT_TRUE(v) << text;
+    EXPECT_EQ(v->finding, "nothing found");
+  }
+}
+
+TEST(Verdict, TheWorkspaceIsThatOfTheRegionThatAnObjectiveReads) {
+  const auto with_region = [](const std::string& x) {
+    return "region = \"r\"\n[[region]]\nname = \"r\"\nmethod = \"voxels\"\ncells = { x = 4, z = 4, theta = 4 }\n"
+           "box = { x = " +
+           x + ", z = [-0.9, -0.7], theta = [-0.1, 0.1] }\n";
+  };
+  const auto of = [&](const std::string& x) {
+    return verdict(read_study_toml(
+        "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.3 }\nb = { min = 0.8, max = 1.0 }\n"
+        "[[stage]]\noptimiser = \"ga\"\n[[objective]]\ntype = \"expression\"\nexpression = \"0 * volume\"\n" +
+            with_region(x),
+        "s.toml", {all_mechanisms(), all_objectives(), all_constraints(), all_optimisers()}));
+  };
+  EXPECT_FALSE(of("[0.3, 0.5]"));
+  ASSERT_TRUE(of("[20, 21]"));
+  EXPECT_EQ(of("[20, 21]")->finding, "nothing found");
+}
+
 TEST(Verdict, TellsWhyDesignsCouldNotBeEvaluated) {
   const auto v = verdict(study("[[constraint]]\ntype = \"expression\"\nname = \"root\"\nexpression = \"sqrt(-a)\"\n"));
   ASSERT_TRUE(v);

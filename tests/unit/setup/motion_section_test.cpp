@@ -111,9 +111,10 @@ TEST(MotionSection, Messages) {
        "m.toml:2: points[1].phi: found nothing; expected a number in rad, or text with a unit made of mrad, rad, deg, "
        "°"},
       {points + "{ x = 1 }]",
-       "m.toml:2: points[2]: nothing says how fast to move there; give time = .. or acceleration = .."},
+       "m.toml:2: points[2]: nothing says how fast to move there; give time = .., acceleration = .. or speed = .."},
       {points + "{ phi = 1 }]\nacceleration = 3",
-       "m.toml:2: points[2]: nothing says how fast to turn there; give time = .. or angular_acceleration = .."},
+       "m.toml:2: points[2]: nothing says how fast to turn there; give time = .., angular_acceleration = .. or "
+       "angular_speed = .."},
       {points + "{ x = 0 }]\nacceleration = 3",
        "m.toml:2: points[2]: it is the point before; give the time to stay there as its wait"},
       {points + "{ x = 1, time = 1, acceleration = 3 }]",

@@ -111,12 +111,12 @@ TEST(Obstacles, MarginsHaveDerivatives) {
       const auto at = [&](double by) {
         std::vector<double> moved = design, found;
         moved[p] += by;
-        margins->append(std::span<const double>(moved), limits, {&pose, 1}, found);
+        margins->append(std::span<const double>(moved), "", limits, {&pose, 1}, found);
         return found.back();
       };
       std::vector<Dual4> moving(design.begin(), design.end()), found;
       moving[p].v[0] = 1;
-      margins->append(std::span<const Dual4>(moving), limits, {&pose, 1}, found);
+      margins->append(std::span<const Dual4>(moving), "", limits, {&pose, 1}, found);
       EXPECT_EQ(found.back().a, at(0));
       const double before = at(-kStep), after = at(kStep);
       if (std::fabs(before + after - 2 * at(0)) > 1e-10) continue;  // another link or obstacle takes over

@@ -33,7 +33,7 @@ TEST(CrrCruMotion, GoldenQuinticMoves) {
   for (const Json& entry : golden()["quintic"]) {
     SCOPED_TRACE(entry.dump());
     const AxisVector<double> from = vector_of(entry["X0"]), to = from + vector_of(entry["dX"]);
-    const double T = time_within(TimeLaw::quintic, coordinates(), from, to, entry["a"], INFINITY);
+    const double T = time_within(TimeLaw::quintic, coordinates(), from, to, {.acceleration = entry["a"]});
     expect_close(along(entry, *point_to_point(from, {{0, to, T}}, 0, TimeLaw::quintic)).summary.peak_force,
                  entry["tau_abs_max"], "peak force");
   }

@@ -177,12 +177,12 @@ TEST(HybridKinematics, MarginsWithDerivativesHaveTheSameBitsAndTheSlopesOfDiffer
     const std::size_t varied = static_cast<std::size_t>(uniform(0, kParameters));
     const auto margins_at = [&](const std::vector<double>& design) {
       std::vector<double> found;
-      mechanism().pose_margins()->append(design, none, {&at, 1}, found);
+      mechanism().pose_margins()->append(design, "", none, {&at, 1}, found);
       return found;
     };
     std::vector<Dual4> q(p.begin(), p.end()), found;
     q[varied] = Dual4::variable(p[varied], 0);
-    mechanism().pose_margins()->append(q, none, {&at, 1}, found);
+    mechanism().pose_margins()->append(q, "", none, {&at, 1}, found);
     const auto plain = margins_at(p);
     ASSERT_EQ(found.size(), plain.size());
     auto lower = p, upper = p;
