@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/core/stop.hpp"
 
 namespace pkm {
 namespace {
@@ -54,6 +55,7 @@ class Offer {
   void open(std::uint32_t pieces, const WorkRef& work) {
     const std::uint64_t job = (next_.load(std::memory_order_relaxed) >> 32) + 1;
     work_.store(&work, std::memory_order_release);
+    scope_.store(StopScope::current(), std::memory_order_release);
     pieces_.store(pieces, std::memory_order_release);
     done_.store(0, std::memory_order_release);
     next_.store(job << 32, std::memory_order_release);
@@ -65,6 +67,7 @@ class Offer {
     const auto number = static_cast<std::size_t>(omp_get_thread_num());
     for (std::uint64_t next = next_.load(std::memory_order_acquire);;) {
       const WorkRef* const work = work_.load(std::memory_order_acquire);
+      const StopScope* const scope = scope_.load(std::memory_order_acquire);
       const std::uint32_t pieces = pieces_.load(std::memory_order_acquire), begin = static_cast<std::uint32_t>(next);
       if (begin >= pieces) return;
       const std::uint32_t count = std::max<std::uint32_t>(1, (pieces - begin) / (2 * threads));
@@ -72,6 +75,8 @@ class Offer {
       if (!next_.compare_exchange_weak(next, next + count, std::memory_order_acquire, std::memory_order_acquire))
         continue;
       try {
+        const StopScope::Adopted adopted(scope);
+        check_stop();
         (*work)(begin, begin + count, number);
       } catch (...) {
 #pragma omp critical(pkm_failure)
@@ -97,6 +102,7 @@ class Offer {
  private:
   std::atomic<std::uint64_t> next_ = kNoPiece;  ///< the job's number, and its first piece that nobody has claimed
   std::atomic<const WorkRef*> work_ = nullptr;
+  std::atomic<const StopScope*> scope_ = nullptr;  ///< of the thread that shares it out
   std::atomic<std::uint32_t> pieces_ = 0, done_ = 0;
   std::exception_ptr failure_ = nullptr;
 };

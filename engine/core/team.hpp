@@ -65,7 +65,7 @@ std::size_t worker();
 /// Has work(begin, end), or work(begin, end, worker) with worker < workers(), done for all of [0, pieces), each piece
 /// once, in any order and on any thread; returns when all are done. Whoever is free takes a share of what is left, so
 /// shares get smaller towards the end. What a piece computes must not depend on which thread does it. Within one of
-/// several pieces there is no team. What the work throws is thrown here, once all are done or have failed; of several
+/// several pieces there is no team, and the StopScope is the caller's. What the work throws is thrown here; of several
 /// exceptions one. Without a team: work(0, pieces, 0) on this thread.
 void share_pieces(std::size_t pieces, WorkRef work);
 

@@ -46,6 +46,8 @@ struct Generation {
   const std::vector<StartOutcome>* starts = nullptr;  ///< solvers: the starts that have ended
   /// Solvers: what is known of starts beyond the table, for a checkpoint.
   std::function<std::vector<StartAhead>()> ahead = {};
+  /// Evaluations that the stage will still make, at most; none: its limit less those that it has made.
+  std::optional<std::int64_t> left = {};
   bool alone = false;  ///< reported by a rank as its own work comes along: the ranks compare at the stage's end
   const Front* front = nullptr;  ///< several objectives
 };

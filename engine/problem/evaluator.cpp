@@ -12,6 +12,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/ranks.hpp"
+#include "engine/core/stop.hpp"
 #include "engine/problem/row_exchange.hpp"
 
 namespace pkm {
@@ -28,6 +29,8 @@ bool contradicts(const EvaluationSlot& slot) {
          std::ranges::any_of(slot.margins, [](double m) { return !(m >= 0); });
 }
 
+constexpr float kNotEvaluated = -1;  // seconds of a row
+
 // Rows [first, last), each with its time. One reading of the clock ends a row and begins the next.
 void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t first, std::size_t last,
                    Scratch& scratch) {
@@ -38,6 +41,8 @@ void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t f
       problem.evaluate(static_cast<const EvaluationTable&>(table).design(row), scratch, slot);
       if (contradicts(slot)) slot.status = Status::failed;
     } catch (const std::bad_alloc&) {  // of the machine, not of this design
+      throw;
+    } catch (const Stopped&) {
       throw;
     } catch (...) {  // whatever else went wrong belongs to this design alone
       constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -81,8 +86,18 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
   const std::size_t count = table.size() - first;
   Experience& known = experience_.at(static_cast<std::size_t>(table.shape().detail));
   const bool quick = known.each > 0 && known.each * static_cast<double>(count) < kWorthMessages;
-  if (ranks::size() == 1 || count < 2 || (quick && ++known.alone < kOutdated))
-    return evaluate_here(problem, table, {first, table.size()}, seconds_each(table, first));
+  if (ranks::size() == 1 || count < 2 || (quick && ++known.alone < kOutdated)) {
+    std::fill(table.seconds.begin() + static_cast<std::ptrdiff_t>(first), table.seconds.end(), kNotEvaluated);
+    try {
+      evaluate_here(problem, table, {first, table.size()}, seconds_each(table, first));
+    } catch (const Stopped&) {  // what is complete up to the first row that is not can be resumed from
+      const auto begin = table.seconds.begin();
+      const auto left = std::find(begin + static_cast<std::ptrdiff_t>(first), table.seconds.end(), kNotEvaluated);
+      table.truncate(static_cast<std::size_t>(left - begin));
+      throw;
+    }
+    return;
+  }
   evaluate_with_ranks(problem, table, first, known);
 }
 

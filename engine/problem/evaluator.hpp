@@ -15,7 +15,7 @@ class Evaluator {
   virtual ~Evaluator() = default;
 
   /// Evaluates rows [first, table.size()), whose designs are set; how they are shared out does not show in the result.
-  /// An exception in one design marks its row failed; std::bad_alloc, which says nothing of a design, passes through.
+  /// An exception in one design marks its row failed; std::bad_alloc passes through, Stopped too: complete rows stay.
   virtual void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) = 0;
 };
 

@@ -219,11 +219,18 @@ std::string describe(const Study& study) {
   }
   std::string round = "best design as it is";
   if (study.round) round = "best design rounded to " + with_unit(*study.round, study.round_unit) + ", evaluated again";
-  out << titled("run", {{"checkpoint",
-                         study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
-                                                : "adapts: at most 2 % of the run time",
-                         mark(!study.checkpoint_every)},
-                        {"final", round, mark(!study.round)}});
+  std::vector<Row> run = {{"checkpoint",
+                           study.checkpoint_every ? "every " + with_unit(*study.checkpoint_every, "s")
+                                                  : "adapts: at most 2 % of the run time",
+                           mark(!study.checkpoint_every)},
+                          {"final", round, mark(!study.round)}};
+  if (parts.plan.voxels() && parts.mechanism->columns())
+    run.push_back({"exact",
+                   study.exact_seconds > 0
+                       ? "exact values of final designs, at most " + with_unit(study.exact_seconds, "s")
+                       : "no exact values of final designs",
+                   mark(study.exact_seconds == Study().exact_seconds)});
+  out << titled("run", run);
   for (const auto& warning : study.warnings) out << "\nwarning: " << warning << '\n';
   return out.str();
 }

@@ -66,8 +66,9 @@ struct Study {
   std::shared_ptr<const DesignProblem> problem;
   std::optional<std::vector<double>> baseline;  ///< every parameter of the mechanism
   std::vector<Stage> stages;
-  std::optional<double> round;             ///< [final]: step [SI] to which the best design is rounded
-  std::string round_unit = "1";            ///< the unit that all variables share, else "1"
+  std::optional<double> round;   ///< [final]: step [SI] to which the best design is rounded
+  std::string round_unit = "1";  ///< the unit that all variables share, else "1"
+  double exact_seconds = 10;     ///< [workspace] exact: what exact values may take in the end; 0: there are none
   std::optional<double> checkpoint_every;  ///< [s]; none: adapts itself
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
 

@@ -113,6 +113,19 @@ std::optional<double> read_certain(const ConfigValue& value, const Mechanism& me
   return gap;
 }
 
+/// exact = false, true or a time [s]; 0: false.
+double read_exact(const ConfigValue& value, const Mechanism& mechanism, double usual) {
+  if (value.is_flag() && !value.flag()) return 0;
+  const std::string expected = "true, false, or the time that exact values may take: a time > 0 s, such as \"10 s\"";
+  if (value.is_list() || value.is_table()) throw value.error(expected);
+  const double seconds = value.is_flag() ? usual : value.number("s");
+  if (!(seconds > 0)) throw value.error(expected);
+  if (!mechanism.columns())
+    throw value.refusal("mechanism " + mechanism.info().name + " has no exact columns" +
+                        (mechanism.why_no_columns().empty() ? "" : ": " + mechanism.why_no_columns()));
+  return seconds;
+}
+
 void read_limits(const ConfigValue& table, StudyDraft& draft) {
   const auto& known = draft.info().limits;
   table.expect_table("a table of limits, { name = threshold, ... }").allow(pkm::names_of(known), "limit");
@@ -185,12 +198,16 @@ void read_workspace(const ConfigValue& root, StudyDraft& draft) {
   plan.limits = no_limits(info);
   draft.study.limit_origins.resize(info.limits.size());
   if (const auto table = root.find("workspace")) {
-    allow_survey(table->expect_table("a table [workspace]"), info, {"limits", "certain"});
+    allow_survey(table->expect_table("a table [workspace]"), info, {"limits", "certain", "exact"});
     read_survey(*table, *draft.parts.mechanism, false, plan);
     if (const auto certain = table->find("certain")) {
       auto* const columns = std::get_if<ColumnOptions>(&plan.method);
       if (!columns) throw of_other_method(*certain, plan);
       columns->certain = read_certain(*certain, *draft.parts.mechanism);
+    }
+    if (const auto exact = table->find("exact")) {
+      if (!plan.voxels()) throw of_other_method(*exact, plan);
+      draft.study.exact_seconds = read_exact(*exact, *draft.parts.mechanism, draft.study.exact_seconds);
     }
     if (const auto limits = table->find("limits")) read_limits(*limits, draft);
   }

@@ -4,22 +4,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/certain_volume.hpp"
-#include "engine/study/stop_request.hpp"
 
 namespace pkm {
 
-DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters,
-                       std::optional<double> certain) {
-  DesignReport r = problem.report(parameters);
-  std::optional<VolumeBounds> bounds;
-  if (certain && r.status != Status::failed) try {
-      bounds = check_volume(problem, r, *certain, [] { return StopRequest::signal() != 0; });
-    } catch (const std::invalid_argument& reason) {
-      r.status = Status::failed;
-      r.reason = reason.what();
-    }
+DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters) {
+  const DesignReport r = problem.report(parameters);
   const bool box_matters = problem.parts().plan.box().has_value();  // the default box ends where the mechanism does
   return {.parameters = r.parameters,
           .objectives = r.objectives,
@@ -31,12 +23,28 @@ DesignRecord evaluated(const DesignProblem& problem, std::span<const double> par
           .cells = r.survey.cells,
           .feasible_cells = r.survey.feasible_cells,
           .cell_volume = r.survey.cell_volume,
-          .touches_box = box_matters && r.survey.touches_box,
-          .certain = bounds};
+          .touches_box = box_matters && r.survey.touches_box};
 }
 
-DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters,
-                               std::optional<double> certain) {
+void add_certain(const DesignProblem& problem, double gap, DesignRecord& record) {
+  if (record.status == Status::failed) return;
+  DesignReport r = problem.report(record.parameters);
+  try {
+    record.certain = check_volume(problem, r, gap, stop_requested);
+    check_stop();  // bounds of less than was asked for are of no use
+  } catch (const std::invalid_argument& reason) {
+    r.status = Status::failed;
+    r.reason = reason.what();
+  } catch (const Stopped&) {
+    record.certain.reset();
+    throw;
+  }
+  if (r.status != Status::failed) return;
+  record.status = r.status;
+  record.reason = r.reason + (record.reason.empty() ? "" : "; ") + record.reason;
+}
+
+DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters) {
   const ProblemParts& parts = problem.parts();
   if (const Refusal refusal = parts.mechanism->refuse(parameters)) {
     const auto nothing = [](std::size_t size) {
@@ -49,7 +57,7 @@ DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<d
             .status = Status::failed,
             .reason = *refusal};
   }
-  DesignRecord record = evaluated(problem, parameters, certain);
+  DesignRecord record = evaluated(problem, parameters);
   for (std::size_t i = 0; i < parts.varies.size(); ++i) {
     const Variable& v = parts.space[i];
     const double value = parameters[parts.varies[i]], roundoff = 1e-12 * std::fabs(value);

@@ -10,13 +10,14 @@
 
 namespace pkm {
 
-/// @param certain  gap of bounds that its exact volume has to be within; none: nobody asks
-DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters,
-                       std::optional<double> certain = {});
+DesignRecord evaluated(const DesignProblem& problem, std::span<const double> parameters);
 
 /// Rounding may leave the bounds, or what the mechanism is defined for: said in `reason`, and in the latter case
 /// nothing is evaluated.
-DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters,
-                               std::optional<double> certain);
+DesignRecord evaluated_rounded(const DesignProblem& problem, const std::vector<double>& parameters);
+
+/// Adds bounds of this gap to the record of a design that could be evaluated. It fails where its exact volume lies
+/// outside of them. Throws Stopped.
+void add_certain(const DesignProblem& problem, double gap, DesignRecord& record);
 
 }  // namespace pkm

@@ -5,10 +5,11 @@
 #include <cstdio>
 #include <span>
 
+#include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/study/design_record.hpp"
 #include "engine/study/exact_values.hpp"
-#include "engine/study/stop_request.hpp"
+#include "engine/study/progress.hpp"
 #include "engine/survey/picture_plan.hpp"
 #include "engine/survey/survey_set.hpp"
 
@@ -68,7 +69,8 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
     try {
       const PosesCertificate found = parts.mechanism->bounds()->motion(
           design.parameters, parts.plan.limits, along.mode, *along.motion,
-          {.most_boxes = kMotionBoxes, .stop = [] { return StopRequest::signal() != 0; }});
+          {.most_boxes = kMotionBoxes, .stop = [] { return stop_requested(); }});
+      check_stop();
       const PosesVerdict& verdict = found.feasible;
       const std::string when = verdict.time ? "t = " + with_unit(*verdict.time, "s") : "";
       if (verdict.kind == Kind::holds)
@@ -86,6 +88,32 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
   }
 }
 
+/// Of the best design first; notes on the baseline stand before those on it.
+void add_exact(const Study& study, StudyContents& contents, const std::function<void(const std::string&)>& begin) {
+  FinalRecord& f = *contents.final;
+  const std::string bound = duration_text(study.exact_seconds);
+  begin("exact values of the best design" + std::string(f.baseline ? " and the baseline" : "") + ", at most " + bound);
+  std::vector<std::string> of_best, of_baseline;
+  bool has_best = !f.best, has_baseline = !f.baseline;
+  const StopScope limit(study.exact_seconds);
+  try {
+    const ExactValues exact(study.problem->parts());
+    if (f.best) f.best_exact = exact.of("best design", f.best->parameters, of_best);
+    has_best = true;
+    if (f.baseline) f.baseline_exact = exact.of("baseline", f.baseline->parameters, of_baseline);
+    has_baseline = true;
+  } catch (const Stopped&) {
+    if (limit.is_requested_outside()) throw;
+    const auto missing = [&](const char* name) {
+      return std::string(ExactValues::kNone) + name + ": they take longer than " + bound + " ([workspace] exact)";
+    };
+    if (!has_best) of_best = {missing("best design")};
+    if (!has_baseline) of_baseline = {missing("baseline")};
+  }
+  for (const auto* notes : {&of_baseline, &of_best})
+    contents.notes.insert(contents.notes.end(), notes->begin(), notes->end());
+}
+
 }  // namespace
 
 double rounded_to(double value, double step) {
@@ -96,43 +124,57 @@ double rounded_to(double value, double step) {
   return std::nearbyint(value / step) * step;
 }
 
-FinalRecord final_record(const Study& study, StudyContents& contents) {
+FinalRecord final_record(const Study& study, const StudyContents& contents) {
   const DesignProblem& problem = *study.problem;
   const ProblemParts& parts = problem.parts();
-  std::erase_if(contents.notes, [](const std::string& note) {
-    return note.starts_with(ExactValues::kNone) || note.starts_with(kWideBounds) || note.starts_with(kAlong);
-  });
-  const ExactValues exact(parts);
-  const std::optional<double> certain = parts.plan.columns() ? parts.plan.columns()->certain : std::nullopt;
-  const auto note_gap = [&](const char* name, const std::optional<VolumeBounds>& bounds) {
-    if (bounds && !bounds->stopped && bounds->gap() > *certain)
-      contents.notes.push_back(kWideBounds + std::string(name) + " have the gap " + shortest(bounds->gap()) +
-                               ", asked for " + shortest(*certain) + ": " + std::to_string(bounds->boxes) + " boxes");
-  };
   FinalRecord f;
   f.volume_unit = volume_unit(parts.mechanism->info(), parts.plan);
-  if (study.baseline) {
-    f.baseline = evaluated(problem, *study.baseline, certain);
-    note_gap("baseline", f.baseline->certain);
-    if (certain) certify_motions(parts, "baseline", *f.baseline, contents.notes);
-    f.baseline_exact = exact.of("baseline", *study.baseline, contents.notes);
-  }
+  if (study.baseline) f.baseline = evaluated(problem, *study.baseline);
   if (contents.best.row < 0) return f;
   const auto best = problem.parameters(contents.best_design());
-  f.best = evaluated(problem, best, certain);
-  note_gap("best design", f.best->certain);
-  if (certain) certify_motions(parts, "best design", *f.best, contents.notes);
-  f.best_exact = exact.of("best design", best, contents.notes);
+  f.best = evaluated(problem, best);
   f.active = active_sentences(problem, *f.best);
   if (study.round) {
     auto rounded = best;
     for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
-    f.rounded = evaluated_rounded(problem, rounded, certain);
-    note_gap("rounded design", f.rounded->certain);
-    if (certain) certify_motions(parts, "rounded design", *f.rounded, contents.notes);
+    f.rounded = evaluated_rounded(problem, rounded);
   }
-  f.map = map_of(parts, best);
   return f;
+}
+
+bool has_exact_step(const Study& study) {
+  const ProblemParts& parts = study.problem->parts();
+  return parts.plan.voxels() && parts.mechanism->columns() && study.exact_seconds > 0;
+}
+
+void complete_final_record(const Study& study, StudyContents& contents,
+                           const std::function<void(const std::string&)>& begin) {
+  const DesignProblem& problem = *study.problem;
+  const ProblemParts& parts = problem.parts();
+  FinalRecord& f = *contents.final;
+  std::erase_if(contents.notes, [](const std::string& note) {
+    return note.starts_with(ExactValues::kNone) || note.starts_with(kWideBounds) || note.starts_with(kAlong);
+  });
+  if (f.best) {
+    begin("map of the best design's workspace");
+    f.map = map_of(parts, f.best->parameters);
+  }
+  if (const ColumnOptions* const columns = parts.plan.columns(); columns && columns->certain) {
+    const double wanted = *columns->certain;
+    for (const auto& [name, design] :
+         {std::pair("baseline", &f.baseline), {"best design", &f.best}, {"rounded design", &f.rounded}}) {
+      if (!*design) continue;
+      begin("certain bounds of the " + std::string(name));
+      add_certain(problem, wanted, **design);
+      if (const auto& bounds = (*design)->certain; bounds && bounds->gap() > wanted)
+        contents.notes.push_back(kWideBounds + std::string(name) + " have the gap " + shortest(bounds->gap()) +
+                                 ", asked for " + shortest(wanted) + ": " + std::to_string(bounds->boxes) + " boxes");
+      if (parts.followed.empty()) continue;
+      begin("motions of the " + std::string(name));
+      certify_motions(parts, name, **design, contents.notes);
+    }
+  }
+  if (has_exact_step(study)) add_exact(study, contents, begin);
 }
 
 }  // namespace pkm

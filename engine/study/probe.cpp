@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/stop.hpp"
 #include "engine/optimisers/start.hpp"
 #include "engine/problem/evaluator.hpp"
 #include "engine/survey/survey_set.hpp"
@@ -54,7 +55,7 @@ std::size_t probe_size(const DesignProblem& problem) {
 Probe probe(const Study& study) {
   const DesignProblem& problem = *study.problem;
   const DesignSpace& space = problem.space();
-  Probe probe{EvaluationTable(problem.shape()), {}};
+  Probe probe{EvaluationTable(problem.shape()), {}, false};
   const std::size_t count = space.dimension() > 0 ? probe_size(problem) : 0;
   if (count == 0) return probe;
   const std::vector<double> points = start_points(Start::sobol, count, space.dimension(), study.seed);
@@ -62,7 +63,16 @@ Probe probe(const Study& study) {
   for (std::size_t row = 0; row < count; ++row)
     for (std::size_t v = 0; v < space.dimension(); ++v)
       probe.table.design(row)[v] = space.from_unit(v, points[row * space.dimension() + v]);
-  ParallelEvaluator().evaluate(problem, probe.table, 0);
+  {
+    const StopScope limit(Probe::kLongest);
+    try {
+      ParallelEvaluator().evaluate(problem, probe.table, 0);
+    } catch (const Stopped&) {  // the first ones are in the table
+      if (limit.is_requested_outside()) throw;
+      probe.is_cut_off = true;
+    }
+  }
+  if (probe.table.size() == 0) return probe;
   probe.verdict = verdict_on({&probe.table}, problem.objectives(), problem.margins(), &problem);
   return probe;
 }
@@ -70,7 +80,8 @@ Probe probe(const Study& study) {
 std::string words(const Probe& probe) {
   if (probe.table.size() == 0) return "no designs were tried, because one takes too long";
   return std::to_string(probe.feasible()) + " of " + std::to_string(probe.table.size()) +
-         " designs spread over the bounds are feasible";
+         " designs spread over the bounds are feasible" +
+         (probe.is_cut_off ? "; more would take longer than 10 s" : "");
 }
 
 }  // namespace pkm

@@ -9,8 +9,12 @@
 namespace pkm {
 
 struct Probe {
+  static constexpr double kLongest = 10;  ///< s, of all designs
+
   EvaluationTable table;           ///< the designs; none where one would cost too much
   std::optional<Verdict> verdict;  ///< where none is feasible, or none has an objective that says something
+
+  bool is_cut_off = false;  ///< there would be more, but they take too long
 
   std::size_t feasible() const;
 };
@@ -19,7 +23,7 @@ struct Probe {
 /// where they are very costly. No clock is asked, so it is the same everywhere.
 std::size_t probe_size(const DesignProblem& problem);
 
-/// Evaluates as many Sobol points of the design space, by the study's seed.
+/// Evaluates as many Sobol points of the design space, by the study's seed, but for those that take too long.
 Probe probe(const Study& study);
 
 /// "23 of 64 designs spread over the bounds are feasible"

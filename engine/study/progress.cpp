@@ -48,11 +48,7 @@ std::string line(const ProgressReport& r, bool with_bar, int cuts) {
   else if (!r.objective.empty())
     text += format(", nothing feasible yet (violation %.3g)", r.violation);
   if (shows(kShare)) text += format(", %.0f %% feasible", 100 * r.feasible_share);
-  // The rate of the first moments is that of starting up and says nothing about the rest.
-  constexpr double kSettled = 1;  // s
-  if (shows(kLeft) && r.seconds >= kSettled && share_done(r) > 0 && share_done(r) < 1 && r.evaluations_per_second > 0)
-    text += std::string(full_words ? ", at most " : ", ") +
-            duration_text(double(r.evaluation_limit - r.evaluations) / r.evaluations_per_second) + " left";
+  if (shows(kLeft) && r.left) text += std::string(full_words ? ", at most " : ", ") + duration_text(*r.left) + " left";
   return text;
 }
 
@@ -99,6 +95,16 @@ void ScreenProgress::generation(const ProgressReport& r) {
   } else {
     std::fprintf(out_, "%s\n", progress_line(r).c_str());
   }
+  std::fflush(out_);
+}
+
+void ScreenProgress::step(const std::string& what) {
+  const std::string text = "final step: " + what;
+  if (terminal_)
+    std::fprintf(out_, "\r\033[K%s", text.substr(0, terminal_width(out_) - 1).c_str());
+  else
+    std::fprintf(out_, "%s\n", text.c_str());
+  open_ = terminal_;
   std::fflush(out_);
 }
 

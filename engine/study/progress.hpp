@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 namespace pkm {
@@ -15,6 +16,7 @@ struct ProgressReport {
   std::int64_t evaluations = 0;       ///< of the stage
   std::int64_t evaluation_limit = 0;  ///< of the stage
   double evaluations_per_second = 0;  ///< of this run
+  std::optional<double> left = {};    ///< s: what the run will still take, at most
   double seconds = 0;                 ///< of this run
   bool has_best = false;              ///< the best design so far is feasible
   double best = 0;                    ///< its (first) objective
@@ -29,6 +31,8 @@ class Progress {
  public:
   virtual ~Progress() = default;
   virtual void generation(const ProgressReport&) {}
+  /// After the last generation: a step that has taken a second. On any thread.
+  virtual void step(const std::string& /*what*/) {}
   /// The line is about to be used by something else.
   virtual void finish() {}
 };
@@ -42,6 +46,7 @@ class ScreenProgress final : public Progress {
   ScreenProgress(const ScreenProgress&) = delete;
   ScreenProgress& operator=(const ScreenProgress&) = delete;
   void generation(const ProgressReport& report) override;
+  void step(const std::string& what) override;
   void finish() override;
 
  private:

@@ -4,6 +4,7 @@
 #include <new>
 #include <utility>
 
+#include "engine/core/stop.hpp"
 #include "engine/problem/order.hpp"
 #include "engine/problem/replay.hpp"
 #include "engine/problem/row_exchange.hpp"
@@ -50,6 +51,9 @@ void Run::begin() {
 RunOutcome Run::operator()() {
   for (const std::string& each : ranks::all_gather(std::to_string(evaluator_.threads()))) threads_ += std::stoi(each);
   RunOutcome result;
+  // Ranks wait for one another's evaluations, so several stop between them.
+  std::optional<StopScope> stop;
+  if (ranks::size() == 1) stop.emplace([this] { return is_overdue(); });
   try {
     with_team(evaluator_.threads(), [&] {
       run_stages();
@@ -67,6 +71,10 @@ void Run::run_stages() {
   try {
     for (std::size_t i = 0; i < study_.stages.size(); ++i)
       if (!run_stage(i)) break;
+  } catch (const Stopped&) {  // what is complete of the generation stays in the table
+    ahead_ = {};
+    if (contents_.stages.back().table.size() == 0) contents_.stages.pop_back();
+    goes_on();
   } catch (const ReplayMismatch&) {  // on every rank
     throw;
   } catch (const std::exception& error) {  // the others would wait for this one
@@ -88,18 +96,22 @@ bool Run::run_stage(std::size_t index) {
   record.starts = result.starts;
   record.ahead = result.ahead;
   ahead_ = {};
-  if (failed_ || result.reason == StopReason::interrupted) return false;
+  if (failed_) return false;
+  if (result.reason == StopReason::interrupted) {
+    goes_on();  // or a start was left within an evaluation
+    return false;
+  }
   take_best(record.table, result.best_row);
   const bool restarted = !warnings_.empty();  // a start that left its recorded path may have become shorter
   if (input.recorded && !restarted && record.table.size() < input.recorded->size())
     throw ReplayMismatch("stage " + std::to_string(index + 1) + " ended after " + std::to_string(record.table.size()) +
                          " of " + std::to_string(input.recorded->size()) + " recorded evaluations");
-  stopped_.clear();  // the stage came to its own end in the same generation
-  record.finished = true;
-  record.stop = words(result.reason);
   record.best_row = result.best_row;
   if (result.front && !record.front) record.front = {.rows = result.front->rows, .reference = result.front->reference};
   if (record.table.shape().detail == Detail::derivatives) record.optimality = optimality_record(study_, record);
+  stopped_.clear();  // the stage came to its own end in the same generation
+  record.finished = true;
+  record.stop = words(result.reason);
   return true;
 }
 
@@ -146,11 +158,24 @@ bool Run::generation(const Generation& g) {
 
 bool Run::goes_on() {
   if (ranks::rank() != 0) return true;
-  if (const int signal = StopRequest::signal())
-    stopped_ = StopRequest::name(signal);
-  else if (options_.time_limit && seconds() >= *options_.time_limit)
-    stopped_ = "time limit";
+  if (is_asked_to_stop()) {
+    const int signal = StopRequest::signal();
+    stopped_ = signal != 0 ? StopRequest::name(signal) : "time limit";
+  }
   return stopped_.empty();
+}
+
+bool Run::is_asked_to_stop() const {
+  return StopRequest::signal() != 0 || (options_.time_limit && seconds() >= *options_.time_limit);
+}
+
+bool Run::is_overdue() {
+  constexpr double kPatience = 0.1;  // s, in which most generations end
+  if (!is_asked_to_stop()) return false;
+  const double now = seconds();
+  double asked = std::numeric_limits<double>::infinity();
+  if (asked_.compare_exchange_strong(asked, now)) asked = now;
+  return now >= asked + kPatience;
 }
 
 void Run::warn(const std::string& sentence) {
@@ -195,7 +220,7 @@ void Run::agree(const Generation& g) {
   failed_ = stopped_.starts_with(kFailed);
 }
 
-ProgressReport Run::report_of(const Generation& g) const {
+ProgressReport Run::report_of(const Generation& g) {
   const StageRecord& stage = contents_.stages.back();
   ProgressReport r{.stage = stage_,
                    .stages = study_.stages.size(),
@@ -204,6 +229,8 @@ ProgressReport Run::report_of(const Generation& g) const {
                    .evaluations = static_cast<std::int64_t>(g.table->size()),
                    .evaluation_limit = limit_,
                    .seconds = seconds()};
+  if (!left_) left_.emplace(study_, options_.cost, threads_);
+  r.left = left_->after(stage_, std::max<std::int64_t>(g.left.value_or(limit_ - r.evaluations), 0), made_, r.seconds);
   r.evaluations_per_second = r.seconds > 0 ? static_cast<double>(made_) / r.seconds : 0;
   r.feasible_share = stage.generations.feasible_share.back();
   if (!study_.problem->objectives().empty() && g.best_row >= 0) {

@@ -2,8 +2,10 @@
 // stage always starts from nothing, and recorded evaluations are served before new ones are made.
 #pragma once
 
+#include <atomic>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,11 +46,16 @@ class Run final : public Monitor {
   void decide(const Generation& generation);
   /// What rank 0 has decided becomes everyone's, and everyone has what rank 0 has.
   void agree(const Generation& generation);
-  ProgressReport report_of(const Generation& generation) const;
+  ProgressReport report_of(const Generation& generation);
 
   /// What the run comes to, on rank 0.
   RunOutcome outcome();
   RunOutcome measures() const;
+  void finish();
+  /// By a signal or the time limit. On any thread.
+  bool is_asked_to_stop() const;
+  /// So long ago that evaluations under way are left: they are made again when the run is resumed.
+  bool is_overdue();
   void write(StudyState state);
   /// Out of memory: the generations that are complete become a checkpoint, in the memory that the run gives back.
   [[noreturn]] void keep_what_is_whole();
@@ -72,9 +79,11 @@ class Run final : public Monitor {
   bool replaying_;                                  ///< nothing that the file does not hold is there yet
   std::optional<std::size_t> whole_rows_;  ///< of the stage at work, up to its last generation; none while it is taken
   std::string stopped_;
-  std::exception_ptr failure_;  ///< of rank 0, which ends the run on all
-  bool failed_ = false;         ///< rank 0 has one
-  int threads_ = 0;             ///< of all ranks
+  std::exception_ptr failure_;                                           ///< of rank 0, which ends the run on all
+  bool failed_ = false;                                                  ///< rank 0 has one
+  std::atomic<double> asked_ = std::numeric_limits<double>::infinity();  ///< when a signal was first seen [s]
+  std::optional<TimeLeft> left_;                                         ///< on rank 0
+  int threads_ = 0;                                                      ///< of all ranks
   double exchanged_ = ranks::seconds_in_exchange();
   std::vector<std::string> warnings_;
 };

@@ -3,20 +3,13 @@
 #include <new>
 #include <utility>
 
+#include "engine/core/stop.hpp"
 #include "engine/study/final_record.hpp"
 #include "engine/study/machine.hpp"
 #include "engine/study/run.hpp"
 
 namespace pkm {
 namespace {
-
-/// Whether certain bounds of a design were left before they came to their gap.
-bool is_cut_short(const FinalRecord& final) {
-  const auto cut = [](const std::optional<DesignRecord>& design) {
-    return design && design->certain && design->certain->stopped;
-  };
-  return cut(final.best) || cut(final.rounded) || cut(final.baseline);
-}
 
 std::string note_of_ranks(const RunOutcome& outcome) {
   const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
@@ -30,15 +23,12 @@ std::string note_of_ranks(const RunOutcome& outcome) {
 RunOutcome Run::outcome() {
   RunOutcome outcome = measures();
   std::optional<std::string> unwritten;
-  if (!stopped_.empty() && replaying_) {
+  if (!stopped_.empty() && replaying_ && evaluator_.made() == 0) {
     contents_ =
         read_study(output_->path());  // stopped before it came to anything new: the file holds more than this run
   } else {
     if (ranks::size() > 1 && outcome.evaluations > 0) contents_.notes.push_back(note_of_ranks(outcome));
-    if (stopped_.empty()) {
-      contents_.final = final_record(study_, contents_);
-      if (is_cut_short(*contents_.final) && !goes_on()) contents_.final.reset();
-    }
+    if (stopped_.empty()) finish();
     try {
       write(stopped_.empty() ? StudyState::finished : StudyState::interrupted);
     } catch (const StorageError& failure) {
@@ -51,6 +41,25 @@ RunOutcome Run::outcome() {
   outcome.checkpoint_share = clock_.share();
   if (unwritten) throw UnwrittenOutcome(*unwritten, std::move(outcome));
   return outcome;
+}
+
+/// What was found is stored before what may take long.
+void Run::finish() {
+  const StopScope stop([this] { return is_asked_to_stop(); });
+  try {
+    contents_.final = final_record(study_, contents_);
+    try {
+      write(StudyState::running);
+    } catch (const StorageError&) {  // the last write tells, or succeeds
+    }
+    std::optional<SlowStep> slow;
+    complete_final_record(study_, contents_, [&](const std::string& what) {
+      slow.reset();
+      slow.emplace([this, what] { progress_.step(what); });
+    });
+  } catch (const Stopped&) {  // goes on here when it is resumed
+    goes_on();
+  }
 }
 
 RunOutcome Run::measures() const {

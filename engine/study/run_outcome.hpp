@@ -9,6 +9,7 @@
 
 #include "engine/core/error.hpp"
 #include "engine/storage/study_contents.hpp"
+#include "engine/study/time_left.hpp"
 
 namespace pkm {
 
@@ -24,6 +25,7 @@ struct RunOptions {
   int threads = 0;                   ///< of each rank, as for team_size(); 0: as ranks::threads() says
   std::optional<double> time_limit;  ///< [s] of this run; the study then stops early with a checkpoint
   ProgramVersion program;
+  RunCost cost = {};  ///< for what progress reports say of the time left
 };
 
 struct RunOutcome {

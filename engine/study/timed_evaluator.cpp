@@ -1,13 +1,23 @@
 #include "engine/study/timed_evaluator.hpp"
 
 #include "engine/core/ranks.hpp"
+#include "engine/core/stop.hpp"
 #include "engine/storage/checkpoint_clock.hpp"
 
 namespace pkm {
 
 void TimedEvaluator::evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) {
   count(1);
-  inner_.evaluate(problem, table, first);
+  try {
+    inner_.evaluate(problem, table, first);
+  } catch (const Stopped&) {
+    add(table, first);
+    throw;
+  }
+  add(table, first);
+}
+
+void TimedEvaluator::add(const EvaluationTable& table, std::size_t first) {
   count(-1);
   const std::lock_guard guard(mutex_);
   made_ += static_cast<std::int64_t>(table.size() - first);

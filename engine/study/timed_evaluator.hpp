@@ -23,6 +23,8 @@ class TimedEvaluator final : public Evaluator {
   void forget() { inner_ = ParallelEvaluator(inner_.threads()); }
 
  private:
+  /// Rows [first, table.size()), which a call has evaluated.
+  void add(const EvaluationTable& table, std::size_t first);
   /// Of the calls at work.
   void count(int more);
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/stop.hpp"
 #include "engine/core/team.hpp"
 #include "engine/mechanism/surveyor.hpp"
 #include "engine/survey/cell_samples.hpp"
@@ -61,8 +62,10 @@ class GridSurveyor : public VoxelSurveyor {
       share_out(design, rooms.of, survey);
     else
       for (std::size_t number = 0; number < design.grids; ++number)
-        for (std::size_t piece = 0; piece < design.pieces; ++piece)
+        for (std::size_t piece = 0; piece < design.pieces; ++piece) {
+          check_stop();
           self().find(design, number, piece, rooms.of[0], survey);
+        }
     survey.volume = static_cast<double>(survey.feasible_cells) * survey.cell_volume;
   }
   VoxelMap map(std::span<const double> parameters) const final {
@@ -83,6 +86,7 @@ class GridSurveyor : public VoxelSurveyor {
     std::vector<Survey<double>> parts(design.pieces * design.grids);
     share_pieces(parts.size(), [&](std::size_t i, std::size_t end, std::size_t worker) {
       for (; i < end; ++i) {
+        check_stop();
         parts[i].clear(fields_);
         self().find(design, i / design.pieces, i % design.pieces, rooms[worker], parts[i]);
       }

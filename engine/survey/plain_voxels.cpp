@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "engine/core/stop.hpp"
 #include "engine/survey/grid_surveyor.hpp"
 #include "engine/survey/pose_quantities.hpp"
 
@@ -33,7 +34,10 @@ struct GriddedPoses : Gridded {
   void for_each_cell(std::size_t piece, const Visit& visit) const {
     const auto i = static_cast<std::int64_t>(piece);
     for (std::int64_t j = 0; j < grid.cells[1]; ++j)
-      for (std::int64_t k = 0; k < grid.cells[2]; ++k) visit(Cell{i, j, k});
+      for (std::int64_t k = 0; k < grid.cells[2]; ++k) {
+        check_stop();
+        visit(Cell{i, j, k});
+      }
   }
 };
 

@@ -7,6 +7,7 @@
 #include "engine/problem/verdict.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/setup/mechanism_file.hpp"
+#include "engine/study/final_record.hpp"
 #include "engine/study/probe.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
@@ -112,6 +113,7 @@ Json study_json(const Study& study) {
   });
   json["baseline"] = study.baseline ? values_by_name(info.parameters, *study.baseline) : Json();
   json["workspace"] = workspace_json(info, parts.plan);
+  if (parts.plan.voxels()) json["workspace"]["exact"] = has_exact_step(study) ? Json(study.exact_seconds) : Json(false);
   json["regions"] = Json::object();
   for (const Region& region : parts.regions) json["regions"][region.name] = workspace_json(info, region.plan);
   json["obstacles"] = obstacles_json(parts.plan.limits.obstacles);
@@ -160,6 +162,7 @@ void check_study(const Study& study, const CheckArguments& arguments, Session& s
 void check(const CheckArguments& arguments, Session& session) {
   expect_toml(arguments.file, "show", session);
   expect_file(arguments.file, "a study or a mechanism in TOML", "list mechanisms", session);
+  const SlowStep slow = announced(session, "check is computing, Ctrl-C ends it");
   const MechanismOrStudy found = load_mechanism_or_study(arguments.file, session.catalogues, arguments.changes);
   if (const Study* const study = std::get_if<Study>(&found)) return check_study(*study, arguments, session);
   if (!arguments.changes.empty())

@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/core/error.hpp"
+#include "engine/core/stop.hpp"
 #include "engine/setup/study.hpp"
 
 namespace pkm {
@@ -33,6 +34,9 @@ struct Session {
   std::string program;  ///< as it was called: "pkmopt", or the name of a user's own
   int exit_code = kDone;
 };
+
+/// While it lives: a line on stderr says that a step takes long, after a second on a terminal, elsewhere after ten.
+SlowStep announced(const Session& session, const std::string& step);
 
 /// Declares an option with a word for its value, "--csv FILE", or an argument by what stands for it: "STUDY.toml".
 template <class Value>

@@ -20,6 +20,7 @@
 #include "engine/core/ranks.hpp"
 #include "engine/mechanisms/all.hpp"
 #include "engine/storage/contained_reading.hpp"
+#include "engine/study/stop_request.hpp"
 #include "engine/study/take_part.hpp"
 #include "experiments/app/colours.hpp"
 #include "experiments/app/command_line.hpp"
@@ -160,6 +161,8 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
       return complain(error.what(), kBadInput);
     } catch (const std::exception& error) {
       return complain(message_of(error), kFailure);
+    } catch (const Stopped&) {
+      return complain(std::string("stopped by ") + StopRequest::name(StopRequest::signal()), kStoppedEarly);
     }
   };
   std::signal(SIGXFSZ, SIG_IGN);  // so that a limit of file sizes is an error that can be told

@@ -47,6 +47,7 @@ void report(const ReportArguments& arguments, const Session& session) {
   page_parts();  // or say at once that there are none
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
+  const SlowStep slow = announced(session, "evaluating what the page shows");
   std::string page;
   with_team(arguments.threads, [&] { page = html_page(page_data(studies, program_words())); });
   write_file(output, page, if_forced(arguments.force));

@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "engine/core/stop.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/study/records.hpp"
 #include "experiments/app/next_step.hpp"
@@ -19,7 +20,7 @@ struct ResumeArguments {
 
 void resume(const ResumeArguments& arguments, Session& session) {
   expect_study_file(arguments.file, "run", session);
-  const RunOptions options = run_options(arguments.common, session);
+  RunOptions options = run_options(arguments.common, session);
   const auto& extension = arguments.extension;
   HeldStudy held(arguments.file);
   if (!extension.generations && !extension.evaluations && held.contents.state == StudyState::finished) {
@@ -30,6 +31,10 @@ void resume(const ResumeArguments& arguments, Session& session) {
                 << "nothing is left to do; --generations or --evaluations extend the last stage\n";
     conclude(verdict, arguments.common, session);
     return;
+  }
+  if (!arguments.common.quiet) {
+    const StopScope stop([] { return StopRequest::signal() != 0; });
+    options.cost = measured_cost(study_of(held.contents, session.catalogues), session);
   }
   const auto progress = make_progress(arguments.common);
   const RunEnd end = end_of_run([&] { return resume_study(held, session.catalogues, extension, options, *progress); });

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <limits>
 
+#include "engine/core/stop.hpp"
 #include "engine/report/standing.hpp"
 #include "engine/study/records.hpp"
 #include "experiments/app/next_step.hpp"
@@ -15,13 +16,23 @@ namespace pkm {
 namespace {
 
 /// A given voxel box that cuts the workspace makes it look smaller than it is.
-void warn_of_box(const Study& study, const std::string& program) {
+void warn_of_box(const Study& study, const Session& session) {
   const auto& parts = study.problem->parts();
   if (!parts.plan.voxels() || !parts.plan.box()) return;
-  const auto report = study.problem->report(study.baseline ? *study.baseline : parts.parameters);
-  if (report.survey.touches_box)
-    std::cerr << program << ": warning: feasible cells of the " << (study.baseline ? "baseline" : "nominal design")
-              << " touch the box of [workspace]; the workspace may be larger than what is counted\n";
+  const std::string name = study.baseline ? "baseline" : "nominal design";
+  const std::string& program = session.program;
+  const SlowStep slow = announced(session, "evaluating the " + name);
+  const StopScope limit(RunCost::kLongest);
+  try {
+    const auto report = study.problem->report(study.baseline ? *study.baseline : parts.parameters);
+    if (report.survey.touches_box)
+      std::cerr << program << ": warning: feasible cells of the " << name
+                << " touch the box of [workspace]; the workspace may be larger than what is counted\n";
+  } catch (const Stopped&) {
+    std::cerr << program << ": warning: whether the workspace of the " << name
+              << " touches the box of [workspace] is unknown: its evaluation takes more than "
+              << duration_text(RunCost::kLongest) << '\n';
+  }
 }
 
 /// What the command line changed in a study.
@@ -49,9 +60,12 @@ void run(const RunArguments& arguments, Session& session) {
   for (const auto& warning : study.warnings) std::cerr << session.program << ": warning: " << warning << '\n';
   for (const Reason& reason : contradictions(study.problem->parts()))
     std::cerr << session.program << ": warning: " << reason.sentence << '\n';
-  warn_of_box(study, session.program);
-  const RunOptions options = run_options(arguments.common, session);
-  if (!arguments.common.quiet) print_estimate(study, arguments.seeds, threads_of(arguments.common));
+  warn_of_box(study, session);
+  RunOptions options = run_options(arguments.common, session);
+  if (!arguments.common.quiet) {
+    options.cost = measured_cost(study, session);
+    print_estimate(study, options.cost, arguments.seeds, threads_of(arguments.common));
+  }
   if (arguments.seeds > 1) {
     run_seeds(study, output, arguments, options, session);
     return;

@@ -32,7 +32,7 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
 void run_seeds(Study& study, const std::string& output, const RunArguments& arguments, RunOptions options,
                Session& session);
 
-/// Says what the evaluations will cost at most, from timed ones.
-void print_estimate(const Study& study, int seeds, int threads_of_rank);
+/// Says what the evaluations and the final steps will cost at most.
+void print_estimate(const Study& study, const RunCost& cost, int seeds, int threads_of_rank);
 
 }  // namespace pkm

@@ -1,5 +1,7 @@
 #include "experiments/app/running.hpp"
 
+#include <unistd.h>
+
 #include <iostream>
 
 #include "engine/core/ranks.hpp"
@@ -12,6 +14,11 @@
 #include "experiments/app/version.hpp"
 
 namespace pkm {
+
+SlowStep announced(const Session& session, const std::string& step) {
+  const double after = isatty(STDERR_FILENO) == 1 ? 1 : 10;  // s
+  return SlowStep([&session, step] { std::cerr << session.program << ": " << step << std::endl; }, after);
+}
 
 void add_threads(CLI::App& command, int& threads) {
   add_integer(command, "--threads N", threads, 1, 1024,

@@ -25,6 +25,9 @@ void add_running_options(CLI::App& command, RunningArguments& arguments);
 
 /// Threads of this rank.
 int threads_of(const RunningArguments& arguments);
+/// For the estimate before a run, and for what progress says of the time left.
+RunCost measured_cost(const Study& study, const Session& session);
+
 /// Warns of more threads than cores.
 RunOptions run_options(const RunningArguments& arguments, const Session& session);
 /// A bar or lines on stderr; nothing when quiet.

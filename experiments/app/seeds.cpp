@@ -36,6 +36,7 @@ class SeedProgress final : public Progress {
     named.optimiser = "seed " + std::to_string(seed_) + " of " + std::to_string(seeds_) + ", " + report.optimiser;
     screen_.generation(named);
   }
+  void step(const std::string& what) override { screen_.step("seed " + std::to_string(seed_) + ", " + what); }
 
  private:
   Progress& screen_;

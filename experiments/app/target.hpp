@@ -112,6 +112,7 @@ std::pair<CLI::App&, Arguments&> add_design_command(CLI::App& app, Session& sess
       add_command<Arguments>(app, name, meaning, footer, [&session, look, name](const Arguments& arguments) {
         expect_toml(arguments.target, name + " --from", session);
         Printout out{.for_programs = arguments.json};
+        const SlowStep slow = announced(session, name + " is computing, Ctrl-C ends it");
         const std::string wrong = look(find_target(session.catalogues, arguments), arguments, out);
         out.print();
         if (!wrong.empty()) throw std::runtime_error(wrong);

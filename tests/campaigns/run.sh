@@ -14,6 +14,7 @@ step() {
   "$@" || found=1
 }
 step ./kills.py "$program" "$disk" --kills 1000
+step ./interrupts.py "$program" --interrupts 200 --bound 0.2
 step env PKM_RANK_KILLS=10 "$root/build/ci/tests/ranks/pkm_ranks_tests" --gtest_filter='*Killed*'
 step env PKM_INTERVAL_OPERATIONS=1000000 "$root/build/ci/tests/mpfi/pkm_mpfi_tests"
 step env PKM_BOUNDED_DESIGNS=1000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*BoundedColumns*'

@@ -29,7 +29,8 @@ OWN_TO_EACH_RUN = [
     (r"\s+", " "),
 ]
 # What a run says now and then, where it takes long: on a busy machine.
-PROGRESS = re.compile(r"(stage \d+ of \d+: )?\S+ generation \d+, \d+ evaluations, .* left")
+PROGRESS = re.compile(r"(stage \d+ of \d+: )?\S+ generation \d+, \d+ evaluations, .* left|final step: .*"
+                      r"|pkmopt: (measuring what an evaluation takes|evaluating .*|\S+ is computing, Ctrl-C ends it)")
 
 
 def comparable(line):

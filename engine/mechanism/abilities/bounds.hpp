@@ -18,7 +18,7 @@ struct BoundsOptions {
   double gap = 1e-2;                 ///< wanted: greatest less least volume, relative to their mean
   std::size_t most_boxes = 4000000;  ///< where bounds end in any case
   std::ostream* proof = nullptr;     ///< where the proof is written; null: nowhere
-  std::function<bool()> stop = {};   ///< asked now and then: whether what is known so far will do
+  std::function<bool()> stop = {};   ///< called often, by any thread of the team: whether to stop
 };
 
 struct VolumeBounds {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/core/stop.hpp"
 #include "engine/math/lanes.hpp"
 
 namespace pkm::described {
@@ -69,6 +70,7 @@ CellTally CellTest::test(const VoxelGrid& grid, std::size_t outer, bool want_bit
   CellTally tally;
   if (!std::ranges::all_of(plan_.early, [&](std::uint32_t at) { return room.registers[at] >= 0; })) return tally;
   for (std::size_t first = 0; first < columns; first += kRow) {
+    check_stop();
     const CellTally part = test_columns(grid, outer, first, std::min(kRow, columns - first), want_bits, room);
     tally.cells += part.cells;
     tally.touches_box = tally.touches_box || part.touches_box;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/core/stop.hpp"
 #include "engine/mechanisms/described/cells.hpp"
 #include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/dynamics.hpp"
@@ -135,6 +136,7 @@ class DescribedVoxels final : public GridSurveyor<DescribedVoxels> {
     const std::size_t columns = shape[1], cells = shape[2], length = CellTest::words(cells) * 64;
     std::vector<std::uint64_t>& bits = room.cells.bits;
     const auto look = [&] {
+      check_stop();
       clearance_->finish(room.clearance, [&](std::size_t k) {
         bits[room.waiting[k] / 64] &= ~(std::uint64_t{1} << room.waiting[k] % 64);
       });
@@ -164,6 +166,7 @@ class DescribedVoxels final : public GridSurveyor<DescribedVoxels> {
   /// @param room  of the slice; the pose's coordinates among its inputs are overwritten
   void add_sample(std::span<const double> parameters, const Pose<double>& pose, double weight, Room& room,
                   Survey<double>& to) const {
+    check_stop();
     to.weight.push_back(weight);
     if (demand_.poses) to.pose.push_back(pose);
     if (inertia_) inertia_->add(pose, room.inertia, to);

@@ -1,5 +1,7 @@
 #include "engine/mechanisms/four_ppa_two_par/clear_volume.hpp"
 
+#include "engine/core/stop.hpp"
+
 namespace pkm::four_ppa_two_par {
 namespace {
 
@@ -112,6 +114,7 @@ Integral<double> clear_volume(const Frame<double>& f, const ClearanceTest& test,
     double area = 0, error = 0;
     visit_halves(f, t, test, scratch, [&](const Half<double>& h, std::size_t leaning, double weight) {
       const auto strip = [&](double delta) {
+        check_stop();
         const Column<double> c = column(f, t, h, leaning, delta);
         return c.slope * measure(f, t, c, test, over_y, scratch.clearance);
       };

@@ -9,7 +9,11 @@
 namespace pkm {
 
 JoinedStarts::JoinedStarts(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
-    : input_(input), table_(table), how_(plan.scalarisation), starts_(starts_of_stage(plan, input)) {
+    : input_(input),
+      limit_(plan.limits.evaluations),
+      table_(table),
+      how_(plan.scalarisation),
+      starts_(starts_of_stage(plan, input)) {
   const auto& objectives = input.problem.objectives();
   if (objectives.size() == 1) return;
   how_.extents = input.known_front.extents;
@@ -52,6 +56,7 @@ bool JoinedStarts::report(const EvaluationTable& start, std::size_t source) {
                                     .best_row = best_.row,
                                     .starts = &finished_,
                                     .ahead = [this] { return ahead(); },
+                                    .left = left(),
                                     .alone = true});
 }
 
@@ -84,6 +89,13 @@ StartAhead JoinedStarts::known_of(std::size_t k) const {
   StartAhead known{static_cast<std::int64_t>(k), start.known(), {}};
   if (start.ended) known.outcome = start.outcome;
   return known;
+}
+
+std::int64_t JoinedStarts::left() const {
+  std::int64_t left = 0;
+  for (std::size_t k = next_; k < starts_.size(); ++k)
+    if (!starts_[k].ended) left += limit_ - static_cast<std::int64_t>(starts_[k].table.size());
+  return left;
 }
 
 std::vector<StartAhead> JoinedStarts::ahead() const {

@@ -37,12 +37,15 @@ class JoinedStarts {
   /// One row of the start that is joining. False: the monitor wants to stop.
   bool report(const EvaluationTable& start, std::size_t source);
   void end(StartRun& start);
+  /// Evaluations that are still to be made, at most.
+  std::int64_t left() const;
   /// What is known beyond the table.
   std::vector<StartAhead> ahead() const;
   /// Why the starts ended, if all did so for the same reason.
   StopReason reason() const;
 
   const StageInput& input_;
+  std::int64_t limit_;  ///< evaluations of a start
   EvaluationTable& table_;
   Scalarisation how_;
   std::vector<StartRun> starts_;

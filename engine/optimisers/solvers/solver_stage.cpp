@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/ranks.hpp"
+#include "engine/core/stop.hpp"
 #include "engine/optimisers/solvers/joined_starts.hpp"
 #include "engine/optimisers/solvers/solve_start.hpp"
 #include "engine/problem/replay.hpp"
@@ -58,6 +59,8 @@ class Run {
         start.table = start.recorded = EvaluationTable(start.table.shape());
       }
       if (!start.warning.empty()) solve(k, start, input_.evaluator);
+    } catch (const Stopped&) {  // within an evaluation, which is made again
+      stage_.stop();
     } catch (...) {
       stage_.stop();  // the others need not go on
       throw;

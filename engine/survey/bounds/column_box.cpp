@@ -103,7 +103,7 @@ double ColumnExamination::margin_of(std::size_t condition, std::int64_t guess, c
   return std::isfinite(margin) ? margin : std::numeric_limits<double>::infinity();
 }
 
-void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* steps) const {
+void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* steps, bool skipped) const {
   const std::size_t z = conditions_.axes() - 1;
   const auto note = [&](Step step) {
     if (steps) steps->push_back(step);
@@ -131,6 +131,12 @@ void ColumnExamination::examine(ColumnBox& box, Room& room, std::vector<Step>* s
   while (!left.empty()) {
     Segment segment = left.back();
     left.pop_back();
+    if (skipped) {
+      note({Step::Kind::stays});
+      length += Interval(0, heights_.length(segment.from, segment.to).upper);
+      box.open.push_back(segment);
+      continue;
+    }
     place[z] = heights_.between(segment.from, segment.to);
 
     bool fails = false;

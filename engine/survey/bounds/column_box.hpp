@@ -77,8 +77,9 @@ class ColumnExamination {
   };
   Room room() const { return {conditions_.room(), conditions_.room(), {}}; }
 
-  /// @param steps  what was found is appended; null: nobody asks
-  void examine(ColumnBox& box, Room& room, std::vector<Step>* steps) const;
+  /// @param steps    what was found is appended; null: nobody asks
+  /// @param skipped  the search has been stopped: all open segments stay open
+  void examine(ColumnBox& box, Room& room, std::vector<Step>* steps, bool skipped) const;
 
  private:
   struct Root {

@@ -92,10 +92,11 @@ class BoxSearch {
     std::vector<Box> boxes = {all};
     while (!boxes.empty()) {
       share_pieces(boxes.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
-        for (std::size_t i = begin; i < end; ++i) examine(boxes[i], rooms_[worker]);
+        for (std::size_t i = begin; i < end && !stopped(); ++i)  // a round may take long
+          examine(boxes[i], rooms_[worker]);
       });
       found.boxes += boxes.size();
-      found.stopped = options_.stop && options_.stop();
+      found.stopped = stopped();
       const bool last = found.stopped || found.boxes >= options_.most_boxes;
       std::vector<Box> next;
       for (const Box& box : boxes) {
@@ -124,6 +125,8 @@ class BoxSearch {
     Conditions::Room over, middle, corner;
     Matrices::Room matrices;
   };
+
+  bool stopped() const { return options_.stop && options_.stop(); }
 
   Pose<double> pose(const Box& box) const {
     Pose<double> pose(ranges_.size());

@@ -110,12 +110,13 @@ class Search {
 
   void examine(std::size_t i, ColumnExamination::Room& room) {
     Leaf& leaf = boxes_[i];
+    const bool skipped = options_.stop && options_.stop();  // a round may take long
     if (tree_) {
       std::vector<Step> steps;
-      examination_.examine(leaf.box, room, &steps);
+      examination_.examine(leaf.box, room, &steps, skipped);
       tree_->note(leaf.node, steps);
     } else {
-      examination_.examine(leaf.box, room, nullptr);
+      examination_.examine(leaf.box, room, nullptr, skipped);
     }
     const bool is_open = !leaf.box.open.empty() && may_halve(leaf.box);
     found_[i] = {leaf.box.volume, is_open ? leaf.box.volume.width() : 0};

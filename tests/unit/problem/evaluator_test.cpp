@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <new>
 #include <stdexcept>
 
+#include "engine/core/stop.hpp"
 #include "tests/unit/optimisers/known_problems.hpp"
 #include "tests/unit/optimisers/stage.hpp"
 
@@ -69,6 +71,30 @@ TEST(Evaluator, OutOfMemoryIsNoPropertyOfADesign) {
   for (const int threads : {1, 2, 7}) {
     EvaluationTable table = numbered(problem, 100);
     EXPECT_THROW(ParallelEvaluator(threads).evaluate(problem, table, 0), std::bad_alloc);
+  }
+}
+
+TEST(Evaluator, AStopLeavesCompleteRowsOnlyAndTheRestCanBeCompleted) {
+  std::atomic<bool> asked = false;
+  const FunctionProblem problem(box(1, 0, 1), 0, [&](std::span<const double> x, std::span<double>) {
+    if (x[0] > 0.0125 && x[0] < 0.0135) asked = true;
+    check_stop();
+    return x[0];
+  });
+  for (const int threads : {1, 2, 7}) {
+    EvaluationTable table = numbered(problem, 100);
+    {
+      const StopScope scope([&] { return asked.load(); });
+      EXPECT_THROW(ParallelEvaluator(threads).evaluate(problem, table, 0), Stopped);
+    }
+    EXPECT_LE(table.size(), 13u);
+    for (std::size_t row = 0; row < table.size(); ++row) EXPECT_EQ(table.status[row], Status::feasible);
+    EvaluationTable expected = numbered(problem, 100), resumed = numbered(problem, 100);
+    ParallelEvaluator(1).evaluate(problem, expected, 0);
+    ParallelEvaluator parallel(threads);
+    ReplayEvaluator(parallel, table).evaluate(problem, resumed, 0);
+    EXPECT_TRUE(same_bits(resumed, expected));
+    asked = false;
   }
 }
 

@@ -36,7 +36,9 @@ FinalRecord end_of(const Study& study, double a, double b) {
   table.design(0)[0] = a;
   table.design(0)[1] = b;
   contents.best = {0, 0};
-  return final_record(study, contents);
+  contents.final = final_record(study, contents);
+  complete_final_record(study, contents);
+  return *contents.final;
 }
 
 TEST(RoundedTo, GivesTheDecimalNumber) {
@@ -104,9 +106,9 @@ Ended end_in_box(const std::string& mechanism, const std::string& variable, cons
   contents.stages[0].table.design(0)[0] = (*s.baseline)[s.problem->parts().varies[0]];
   contents.best = {0, 0};
   contents.notes = {"another", "no exact values of the best design: of an end that is no more"};
-  Ended ended{final_record(s, contents), {}};
-  ended.notes = contents.notes;
-  return ended;
+  contents.final = final_record(s, contents);
+  complete_final_record(s, contents);
+  return {*contents.final, contents.notes};
 }
 
 TEST(FinalRecord, NothingIsExactWhereColumnsCannotBeCutByTheBox) {

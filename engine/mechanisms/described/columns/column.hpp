@@ -2,6 +2,8 @@
 // crank and a rod, a torus, lets one say exactly; or roots of any formulas, which intervals isolate.
 #pragma once
 
+#include <limits>
+
 #include "engine/math/dual.hpp"
 #include "engine/math/interval.hpp"
 #include "engine/math/quadrature.hpp"
@@ -21,7 +23,12 @@ struct ColumnRoom {
   std::vector<Interval> intervals;  ///< registers
   std::vector<EndLabel> labels;     ///< of the pieces' ends
   Structure structure = 0;
+  long halvings = 0;                                      ///< of intervals of curves, so far
+  long most_halvings = std::numeric_limits<long>::max();  ///< then TooManyHalvings
 };
+
+/// Thrown by measure().
+struct TooManyHalvings {};
 
 class Column {
  public:

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/core/stop.hpp"
 #include "engine/graph/reverse.hpp"
 #include "engine/mechanisms/described/columns/column.hpp"
 
@@ -24,6 +25,8 @@ void Column::find_curve_ends(const std::array<double, 2>& range, std::span<doubl
 /// @param narrow  where nothing is decided over so much, a change of sign is an end
 void Column::isolate(Signs curves, double from, double to, double narrow, std::span<double> registers,
                      ColumnRoom& room) const {
+  check_stop();
+  if (++room.halvings > room.most_halvings) throw TooManyHalvings();
   set_z<Interval>({from, to}, room.intervals);
   Signs monotone = 0, undecided = 0;
   for (Signs rest = curves; rest != 0; rest &= rest - 1) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/stop.hpp"
 #include "engine/mechanisms/described/columns/ends.hpp"
 #include "engine/mechanisms/described/columns/polynomial.hpp"
 
@@ -209,6 +210,7 @@ SectionSearch::Square SectionSearch::in_square(const Surface& surface, const Sea
 
 /// False: nothing in the box is feasible. Narrows it.
 bool SectionSearch::may_hold(SearchRoom::Box& box, SearchRoom& room) const {
+  check_stop();
   if (!enter(box, room)) return false;
   Signs fails = 0;
   for (std::size_t k = 0; k < plan_.surfaces.size(); ++k) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/stop.hpp"
 #include "engine/math/hash.hpp"
 #include "engine/math/lanes.hpp"
 
@@ -69,6 +70,8 @@ Slice SectionsIntegral::inside(std::size_t level, IntegralRoom& room) const {
   for (std::size_t i = 0; i < plain.size(); ++i)
     if (!(room.registers[plain[i]] >= 0)) return {.broken = static_cast<std::uint32_t>(i + 1)};
   if (level < levels()) return integrate(level, room);
+  constexpr long kColumnsPerCheck = 16;  // a column takes a microsecond
+  if (!ends_in_lines() || room.sections % kColumnsPerCheck == 0) check_stop();
   ++room.sections;
   const auto measured = [&](const auto& innermost, auto& own) {
     const double measure = innermost.measure(room.registers, own);

@@ -127,12 +127,14 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
     return all;
   }
 
-  /// The plan whose survey of the default design, to a few digits, takes the fewest sections.
+  /// The plan whose survey of the default design, to a few digits, takes the fewest sections. One that takes too long
+  /// there is not chosen, unless all do.
   SectionPlan fastest(std::vector<SectionPlan> plans) const {
     const double tolerance = plans.front().order.v ? 1e-3 : 1e-2;
     if (plans.size() == 1 || plans.front().order.outer.empty()) return std::move(plans.front());
     std::vector<double> design;
     for (const Parameter& p : mechanism_.info().parameters) design.push_back(p.nominal);
+    constexpr long kMostHalvings = 2'000'000;  // some seconds
     Room room;
     std::size_t best = 0;
     double least = 1e7;
@@ -142,7 +144,13 @@ class DescribedColumns final : public WithSlopes<DescribedColumns> {
       const auto per_section =
           static_cast<double>(plans[i].surfaces.size() + 8 * plans[i].plain.back().size() + 400 * curves);
       fill_inputs<double>(design, room.inputs);
-      trial.measure(room.inputs, room.integral, std::max(1L, static_cast<long>(least / per_section)));
+      room.integral.column.halvings = 0;
+      room.integral.column.most_halvings = kMostHalvings;
+      try {
+        trial.measure(room.inputs, room.integral, std::max(1L, static_cast<long>(least / per_section)));
+      } catch (const TooManyHalvings&) {
+        continue;
+      }
       const double work = static_cast<double>(room.integral.sections) * per_section;
       if (i > 0 && work >= least) continue;
       best = i;
