@@ -136,8 +136,7 @@ class Reader {
 
 }  // namespace
 
-Node read_formula(Graph& graph, const std::string& text, const std::vector<std::string>& names,
-                  std::span<const Node> nodes) {
+Node read_formula(Graph& graph, const std::string& text, const Names& names, std::span<const Node> nodes) {
   const std::vector<Word> words = words_of(text, names);
   if (text.size() >= kMostCharacters) refuse(text, "has more than " + std::to_string(kMostCharacters) + " characters");
   return Reader(graph, text, nodes).run(words);

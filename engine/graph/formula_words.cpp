@@ -23,7 +23,7 @@ std::string known_words(const std::string& word, const std::vector<std::string>&
 
 class WordCheck {
  public:
-  WordCheck(const std::string& text, const std::vector<std::string>& names) : text_(text), names_(names) {}
+  WordCheck(const std::string& text, const Names& names) : text_(text), names_(names) {}
 
   std::vector<Word> run() {
     for (std::size_t i = 0; i < text_.size();)
@@ -88,14 +88,14 @@ class WordCheck {
 
     const std::string word(begin, end);
     const Operation* function = find_named(functions(), word);
-    const auto position = static_cast<std::size_t>(std::ranges::find(names_, word) - names_.begin());
-    const bool known = position < names_.size() || word == kPiName;
+    const auto position = names_.find(word);
+    const bool known = position || word == kPiName;
     if (calls && known) refuse(text_, "calls " + quote(word, i) + ", which is no function; multiply with '*'");
     if (calls && !function)
       refuse(text_, "calls the unknown function " + quote(word, i) + known_words(word, names_of(functions())));
     if (!calls && function) refuse(text_, "lacks the arguments of " + quote(word, i) + ", in parentheses");
     if (!calls && !known) {
-      std::vector<std::string> names = names_;
+      std::vector<std::string> names = names_.all();
       names.emplace_back(kPiName);
       refuse(text_, "has the unknown name " + quote(word, i) + known_words(word, names));
     }
@@ -118,7 +118,7 @@ class WordCheck {
   }
 
   const std::string& text_;
-  const std::vector<std::string>& names_;
+  const Names& names_;
   std::vector<Word> words_;
   std::vector<Parenthesis> open_;
 };
@@ -141,8 +141,6 @@ std::string quote(std::string_view word, std::size_t place) {
   return "'" + std::string(word) + "' at character " + std::to_string(place + 1);
 }
 
-std::vector<Word> words_of(const std::string& text, const std::vector<std::string>& names) {
-  return WordCheck(text, names).run();
-}
+std::vector<Word> words_of(const std::string& text, const Names& names) { return WordCheck(text, names).run(); }
 
 }  // namespace pkm::graph

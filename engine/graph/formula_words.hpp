@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/graph/names.hpp"
 #include "engine/graph/operation.hpp"
 
 namespace pkm::graph {
@@ -28,6 +29,6 @@ std::string quote(std::string_view word, std::size_t place);
 
 /// Refuses unknown names and functions, wrong numbers of arguments, parentheses, commas, assignments, texts. The order
 /// of operators and operands is left to the reader.
-std::vector<Word> words_of(const std::string& text, const std::vector<std::string>& names);
+std::vector<Word> words_of(const std::string& text, const Names& names);
 
 }  // namespace pkm::graph

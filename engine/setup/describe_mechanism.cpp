@@ -120,7 +120,7 @@ std::string why_no_masses(const Mechanism& mechanism) {
   return "";
 }
 
-void write_abilities(std::ostream& out, const Mechanism& mechanism) {
+void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_links_clear) {
   std::vector<std::vector<std::string>> can, cannot;
   const auto tell = [&](bool has, const char* what, const std::string& how, const std::string& why) {
     (has ? can : cannot).push_back({what, has ? how : why});
@@ -136,8 +136,7 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
        "as many joints as coordinates are needed");
   tell(mechanism.size(), "workspace-ratio", "", "[platform] size is missing");
   tell(mechanism.design_tests(), "tests of the design", "", "there is no [[design]]");
-  const bool clear = mechanism.links() && !mechanism.links()->joined().empty();
-  tell(clear, "clearance of links",
+  tell(keeps_links_clear, "clearance of links",
        "constraint clearance or limit clearance_min: of poses, voxels, task-workspace, motions; not columns or bounds",
        "there are no two links, of limbs with a radius or by [[link]], that could meet");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
@@ -193,7 +192,7 @@ std::string describe_mechanism(const Mechanism& mechanism) {
     links.push_back({link, others.empty() ? "all others" : "all but " + names_text(others)});
   out << titled("links, and those that they keep clear of", links);
   write_nominal_pose(out, mechanism, nominal);
-  write_abilities(out, mechanism);
+  write_abilities(out, mechanism, !joined.empty());
   return out.str();
 }
 

@@ -14,19 +14,16 @@ using graph::Node, limbs::Term, limbs::Vector3;
 void MechanismScope::add(const ConfigValue& at, const std::string& name, Node node) {
   if (!graph::may_be_name(name))
     throw at.refusal("'" + name + "' is no name for formulas: letters, digits and '_', none of the functions nor pi");
-  if (const auto known = std::ranges::find(names_, name); known != names_.end())
-    throw at.refusal("'" + name + "' is the name of " + origins_[static_cast<std::size_t>(known - names_.begin())] +
-                     " already");
-  names_.push_back(name);
+  if (const auto known = names_.find(name))
+    throw at.refusal("'" + name + "' is the name of " + origins_[*known] + " already");
+  names_.add(name);
   origins_.push_back(at.place().key + " (" + at.line() + ")");
   nodes_.push_back(node);
 }
 
-void MechanismScope::replace(const std::string& name, Node node) {
-  nodes_[static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin())] = node;
-}
+void MechanismScope::replace(const std::string& name, Node node) { nodes_[names_.find(name).value()] = node; }
 
-bool MechanismScope::knows(const std::string& name) const { return std::ranges::find(names_, name) != names_.end(); }
+bool MechanismScope::knows(const std::string& name) const { return names_.find(name).has_value(); }
 
 Term MechanismScope::formula(const ConfigValue& value, const std::string& unit, const std::string& what) {
   if (!value.is_text()) return model_.term(model_.graph.number(value.number(unit)));

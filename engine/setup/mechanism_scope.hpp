@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "engine/graph/names.hpp"
 #include "engine/mechanisms/described/model.hpp"
 #include "engine/setup/config_value.hpp"
 
@@ -23,7 +24,6 @@ class MechanismScope {
   const std::vector<graph::Node>& meanings() const { return nodes_; }
   void restore(const std::vector<graph::Node>& meanings) { std::ranges::copy(meanings, nodes_.begin()); }
   bool knows(const std::string& name) const;
-  const std::vector<std::string>& names() const { return names_; }
 
   /// A number, text with a unit of the dimension of `unit`, or a formula of the names known so far. Where it could be
   /// undefined, that is noted as a margin called after `what`.
@@ -61,7 +61,7 @@ class MechanismScope {
   };
 
   described::Model& model_;
-  std::vector<std::string> names_;
+  graph::Names names_;
   std::vector<graph::Node> nodes_;
   std::vector<std::string> origins_;  ///< "parameters.a (line 7)"
   std::vector<Watched> watched_;

@@ -20,8 +20,8 @@ struct Jet {
   std::array<Interval, kMostAxes> by{Interval(0.0), Interval(0.0), Interval(0.0)};
 };
 
-/// What certainly changes nothing is left out.
-inline bool is(const Interval& x, double number) { return x.lower == number && x.upper == number; }
+/// What certainly changes nothing is left out; a slope that may not exist somewhere is no such number.
+inline bool is(const Interval& x, double number) { return x.lower == number && x.upper == number && x.is_defined(); }
 inline Interval times(const Interval& x, const Interval& y) {
   if (is(x, 0) || is(y, 0)) return Interval(0.0);
   return is(x, 1) ? y : is(y, 1) ? x : x * y;

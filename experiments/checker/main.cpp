@@ -1,12 +1,15 @@
-// `pkmopt-check-proof FILE`: checks the proof of a volume's bounds that `pkmopt certify --proof` wrote. It shares the
-// reader of formulas and the intervals with the program, nothing else; README.md has the format.
+// `pkmopt-check-proof FILE`: checks the proof of a volume's bounds that `pkmopt certify --proof` wrote, by interval
+// arithmetic. It shares the reader of formulas and the intervals with the program, nothing else; README.md has the
+// format.
 
 #include <algorithm>
 #include <bitset>
+#include <cerrno>
 #include <charconv>
-#include <fstream>
+#include <cstdio>
 #include <iostream>
-#include <iterator>
+#include <memory>
+#include <system_error>
 
 #include "engine/graph/formula_reader.hpp"
 #include "engine/graph/formula_words.hpp"
@@ -17,6 +20,11 @@ namespace {
 
 constexpr std::size_t kMostConditions = 128;
 constexpr std::int64_t kSteps = std::int64_t{1} << 30;  // of heights along the last axis
+
+/// Why a proof is wrong. Every other exception means that it could not be checked.
+struct Refusal : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct Segment {
   std::int64_t from, to;
@@ -43,7 +51,7 @@ class Check {
 
  private:
   [[noreturn]] void refuse(const std::string& why) const {
-    throw std::runtime_error("line " + std::to_string(line_) + ": " + why);
+    throw Refusal("line " + std::to_string(line_) + ": " + why);
   }
   static std::string number(double x) {
     char text[32];
@@ -72,16 +80,25 @@ class Check {
       refuse("'" + text + "' is no number");
     return value;
   }
+  void expect_end(const std::string& rest) const {
+    if (!rest.empty()) refuse("the line end is expected, not '" + rest + "'");
+  }
   void add_name(const std::string& name, graph::Node node) {
-    if (!graph::may_be_name(name) || std::ranges::find(names_, name) != names_.end())
-      refuse("'" + name + "' is no new name");
-    names_.push_back(name);
+    if (!graph::may_be_name(name) || names_.find(name)) refuse("'" + name + "' is no new name");
+    names_.add(name);
     nodes_.push_back(node);
   }
   graph::Node named(const std::string& name) const {
-    for (std::size_t i = 0; i < names_.size(); ++i)
-      if (names_[i] == name) return nodes_[i];
-    refuse("'" + name + "' is not known");
+    const auto position = names_.find(name);
+    if (!position) refuse("'" + name + "' is not known");
+    return nodes_[*position];
+  }
+  graph::Node formula(const std::string& text) {
+    try {
+      return graph::read_formula(graph_, text, names_, nodes_);
+    } catch (const std::invalid_argument& reason) {
+      refuse(reason.what());
+    }
   }
 
   void read_head() {
@@ -94,11 +111,15 @@ class Check {
       if (kind == "volume" && !has_volume) {
         lower_ = real(rest);
         upper_ = real(rest);
+        expect_end(rest);
         has_volume = true;
       } else if (kind == "axis" && ranges_.size() < kMostAxes && inputs_.empty() && roots.empty()) {
         add_name(word(rest), graph_.input(ranges_.size()));
         const double from = real(rest), to = real(rest);
+        expect_end(rest);
         if (!(from < to)) refuse("the range is empty");
+        // Heights are from + (to - from) * share, so that they are finite and between both, too.
+        if (!std::isfinite(to - from)) refuse("the range is too long: to - from overflows");
         ranges_.push_back({from, to});
       } else if (kind == "given") {
         const std::string name = word(rest);
@@ -109,10 +130,12 @@ class Check {
       } else if (kind == "let") {
         const std::string name = word(rest);
         if (word(rest) != "=") refuse("'=' is expected");
-        add_name(name, graph::read_formula(graph_, rest, names_, nodes_));
+        add_name(name, formula(rest));
       } else if (kind == "turn") {
         const std::string name = word(rest);
-        add_name(name, graph_.apply(graph::turn(), std::array{named(word(rest))}));
+        const graph::Node angle = named(word(rest));
+        expect_end(rest);
+        add_name(name, graph_.apply(graph::turn(), std::array{angle}));
       } else if (kind == "condition" && roots.size() < kMostConditions) {
         roots.push_back(named(word(rest)));
       } else {
@@ -120,6 +143,10 @@ class Check {
       }
     }
     if (!has_volume || ranges_.empty() || roots.empty()) refuse("volume, axes and conditions are expected");
+    // A number that overflowed stands for a real number, which nothing is known about.
+    for (const graph::Node node : graph_.reachable(roots))
+      if (graph_[node].is_number() && !std::isfinite(graph_[node].number))
+        refuse("a formula of numbers alone has no finite value");
     for (const graph::Node root : roots) conditions_.emplace_back(graph_, root);
   }
 
@@ -296,7 +323,7 @@ class Check {
   std::size_t place_ = 0, line_ = 0, boxes_ = 0;
   double lower_ = 0, upper_ = 0;
   graph::Graph graph_;
-  std::vector<std::string> names_;
+  graph::Names names_;
   std::vector<graph::Node> nodes_;
   std::vector<Interval> inputs_;  ///< of the graph: axes, then what is given
   Sides ranges_;
@@ -304,23 +331,56 @@ class Check {
   Interval total_{0.0};
 };
 
+/// All of a file; throws std::system_error where it cannot be read.
+std::string text_of(const char* path) {
+  const auto fail = [] { throw std::system_error(errno, std::generic_category()); };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path, "rb"), std::fclose);
+  if (!file) fail();
+  std::string text;
+  char buffer[1 << 16];
+  while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
+  if (std::ferror(file.get())) fail();
+  return text;
+}
+
+constexpr const char* kUsage = "usage: pkmopt-check-proof FILE\n";
+constexpr const char* kHelp =
+    "\nCheck a proof that 'pkmopt certify --proof FILE' wrote.\n"
+    "\n"
+    "  --help      Print this text\n"
+    "  --version   Print the version\n"
+    "\n"
+    "Exit code: 0 accepted, 1 refused, 2 not checked (no such file, out of memory, output not written, ..).\n";
+
+/// Writes to stdout. @return the exit code: 2 where it cannot be written
+int print(const std::string& text) {
+  std::cout << text << std::flush;
+  if (std::cout) return 0;
+  std::cerr << "not checked: the output cannot be written\n";
+  return 2;
+}
+
 int check(int count, char** words) {
-  if (count != 2) {
-    std::cerr << "usage: pkmopt-check-proof FILE\n";
-    return 2;
-  }
-  std::ifstream file(words[1], std::ios::binary);
-  if (!file) {
-    std::cerr << words[1] << ": cannot be read\n";
+  const std::string word = count == 2 ? words[1] : "";
+  if (word == "--help" || word == "-h") return print(std::string(kUsage) + kHelp);
+  if (word == "--version") return print("pkmopt-check-proof " PKM_CHECKER_VERSION "\n");
+  if (word.empty() || word.starts_with('-')) {
+    std::cerr << kUsage;
     return 2;
   }
   try {
-    std::cout << Check({std::istreambuf_iterator<char>(file), {}}).run();
-    return 0;
-  } catch (const std::exception& reason) {
+    return print(Check(text_of(words[1])).run());
+  } catch (const Refusal& reason) {
     std::cerr << "refused: " << reason.what() << '\n';
     return 1;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "not checked: out of memory\n";
+  } catch (const std::system_error& reason) {
+    std::cerr << "not checked: " << words[1] << ": " << reason.code().message() << '\n';
+  } catch (const std::exception& reason) {
+    std::cerr << "not checked: internal error: " << reason.what() << '\n';
   }
+  return 2;
 }
 
 }  // namespace

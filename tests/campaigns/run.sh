@@ -6,7 +6,7 @@ cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
 
 root=$(cd ../.. && pwd) program=$root/build/ci/bin/pkmopt disk=$root/build/ci/tests/campaigns/libpkm_unreliable_disk.so
 [[ -f $root/build/ci/build.ninja ]] || (cd "$root" && cmake --preset ci --log-level=WARNING) || exit
-(cd "$root" && cmake --build --preset ci --parallel "$(nproc)" --target pkmopt_app pkm_unreliable_disk \
+(cd "$root" && cmake --build --preset ci --parallel "$(nproc)" --target pkmopt_app pkmopt_check_proof pkm_unreliable_disk \
   pkm_ranks_tests pkm_rank_program pkm_mpfi_tests pkm_tests) || exit
 found=0
 step() {
@@ -22,5 +22,6 @@ step env PKM_POWER_STATES=10000 "$root/build/ci/tests/pkm_tests" --gtest_filter=
 step ./disk.py "$program" "$disk"
 step ./soak.py "$program" --evaluations 10000000 --runs 200
 step ./same_front.py "$program"
+step ./proofs.py "$program" "$root/build/ci/bin/pkmopt-check-proof" --mutations 100000
 step ./fuzz.sh --runs "${1:-1000000}"
 exit $found

@@ -279,5 +279,98 @@ TEST_F(Certify, TamperedProofsAreRefused) {
   }
 }
 
+/// Proofs of false volumes that pass where a rule of the checker is wrong.
+TEST_F(Certify, FalseProofsAreRefused) {
+  struct Case {
+    std::string what, volume, head, boxes, reason;
+  };
+  const Case cases[] = {
+      {"a range whose length overflows: heights would be no numbers, which fail everywhere; its volume is 2", "0 1",
+       "axis x -1e308 1e308\nlet n1 = (1 - (x * x))\ncondition n1\n", "x0 .\n", "line 3: the range is too long"},
+      {"a slope that nowhere exists, of sqrt(0), beside that of z: it may be 0; its volume is 0", "0.7 0.8",
+       "axis z -1 1\nlet u = min((z * z), 0)\nlet n1 = ((min(sqrt(u), z) * 2) - 0.5)\ncondition n1\n",
+       "t0 671088639 671088641 536870912 n.\n", "does not rise or fall"},
+      {"a number that overflowed: undefined in double precision, 1e400 in truth; its volume is 1", "0 0",
+       "axis x 0 1\nlet n1 = ((1e200 * 1e200) + x)\ncondition n1\n", "x0 .\n", "no finite value"},
+      {"a third end of a range", "0 2", "axis x 0 1 2\nlet n1 = x\ncondition n1\n", "h0 .\n",
+       "line 3: the line end is expected, not '2'"},
+      {"a third bound of the volume", "0 2 0.5", "axis x 0 1\ncondition x\n", "h0 .\n", "line 2: the line end"},
+      {"an infinite volume", "0 inf", "axis x 0 1\ncondition x\n", "h0 .\n", "'inf' is no number"},
+      {"a count that overflows", "0 2", "axis x 0 1\ncondition x\n", "h18446744073709551616 .\n",
+       "a whole number is expected"},
+      {"no end of halving", "0 2", "axis x 0 1\naxis y 0 1\ncondition y\n",
+       [] {
+         std::string boxes;
+         for (int i = 0; i < 300; ++i) boxes += "n/0\n";
+         return boxes;
+       }(),
+       "cannot be halved"},
+  };
+  for (const Case& one : cases) {
+    folder_.write("false.proof",
+                  "pkmopt proof 1\nvolume " + one.volume + '\n' + one.head + "boxes\n" + one.boxes + "end\n");
+    const auto checked = check("false.proof");
+    EXPECT_EQ(checked.exit_code, 1) << one.what << ": " << checked.out;
+    EXPECT_THAT(checked.err, AllOf(StartsWith("refused: line "), HasSubstr(one.reason))) << one.what;
+  }
+}
+
+TEST_F(Certify, RefusesARangeWhoseLengthOverflows) {
+  folder_.write("disc.toml", R"([mechanism]
+name = "disc"
+[parameters]
+w = { default = 1, min = 0.1, max = 3, unit = "m" }
+[platform]
+coordinates = { x = "along x", y = "along y" }
+[survey]
+sweep = ["x", "y"]
+box = { x = [-1e308, 1e308], y = [-1, 1] }
+[[limb]]
+name = "a"
+drive = "formula"
+joints = { p = "x", q = "y" }
+unit = "m"
+[[margin]]
+name = "disc"
+formula = "w^2 - x^2 - y^2"
+unit = "m^2"
+)");
+  const auto written = run({"certify", "disc.toml", "--proof", "disc.proof"});
+  EXPECT_EQ(written.exit_code, 2) << written.out;
+  EXPECT_THAT(written.err, HasSubstr("no certain bounds over a range of x that is longer than the largest double"));
+}
+
+/// What could not be checked is not refused.
+TEST_F(Certify, TheCheckerSaysWhenItCouldNotCheck) {
+  folder_.write("a.proof", "pkmopt proof 1\nvolume 0 2\naxis x 0 1\ncondition x\nboxes\nh0 .\nend\n");
+  EXPECT_EQ(check("a.proof").exit_code, 0);
+  const auto shell = [&](const std::string& line) { return run_program({"/bin/sh", "-c", line}, folder_.path()); };
+  const std::string checker = "'" PKM_CHECKER "' ";
+  const std::pair<std::string, std::string> cases[] = {
+      {checker + "absent.proof", "not checked: absent.proof: No such file or directory"},
+      {checker + ".", "not checked: .: Is a directory"},
+      {checker + "a.proof > /dev/full", "not checked: the output cannot be written"},
+      {checker + "--version > /dev/full", "not checked: the output cannot be written"},
+      {checker, "usage: pkmopt-check-proof FILE"},
+      {checker + "--prove", "usage: pkmopt-check-proof FILE"},
+      {checker + "a.proof a.proof", "usage: pkmopt-check-proof FILE"},
+  };
+  for (const auto& [line, words] : cases) {
+    const auto found = shell(line);
+    EXPECT_EQ(found.exit_code, 2) << line << found.out;
+    EXPECT_THAT(found.err, StartsWith(words)) << line;
+  }
+#ifndef PKM_CHECK_CONTRACTS  // sanitizers need more memory than that
+  const auto starved = shell("ulimit -v 60000; " + checker + "/dev/zero");
+  EXPECT_EQ(starved.exit_code, 2);
+  EXPECT_THAT(starved.err, StartsWith("not checked: out of memory"));
+#endif
+  const auto help = shell(checker + "--help"), version = shell(checker + "--version");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, HasSubstr("2 not checked"));
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.out, StartsWith("pkmopt-check-proof 0."));
+}
+
 }  // namespace
 }  // namespace pkm::testing

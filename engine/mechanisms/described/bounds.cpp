@@ -1,6 +1,7 @@
 #include "engine/mechanisms/described/bounds.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "engine/graph/derivative.hpp"
@@ -54,6 +55,11 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
   const Ranges given = e.survey_box(parameters, plan, mode, swept);
   for (std::size_t i = 0; i < swept.size(); ++i)
     if (!(given[i][0] < given[i][1])) return {.innermost = swept[i]};
+  for (std::size_t i = 0; i < swept.size(); ++i)
+    if (!std::isfinite(given[i][1] - given[i][0]))
+      throw std::invalid_argument("has no certain bounds over a range of " +
+                                  mechanism.info().coordinates[static_cast<std::size_t>(swept[i])].name +
+                                  " that is longer than the largest double, 1.8e308");
   const std::vector<Interval> inputs = inputs_of(mechanism, e, parameters, plan, mode);
   const PoseConditions conditions = pose_conditions(e.model, inputs);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <unordered_map>
 
 namespace pkm::described {
 namespace {
@@ -20,9 +21,26 @@ bool stands_still(const Graph& graph, const DescribedLink& link) {
   return std::ranges::all_of(link.from, still) && std::ranges::all_of(link.to, still);
 }
 
-bool share_a_group(const DescribedLink& a, const DescribedLink& b) {
-  return std::ranges::any_of(a.groups,
-                             [&](const std::string& group) { return std::ranges::count(b.groups, group) > 0; });
+/// The groups of each link as ascending numbers: pairs are many, texts are slow to compare.
+std::vector<std::vector<std::size_t>> numbered_groups(const std::vector<DescribedLink>& links) {
+  std::unordered_map<std::string, std::size_t> numbers;
+  std::vector<std::vector<std::size_t>> all;
+  for (const DescribedLink& link : links) {
+    std::vector<std::size_t>& groups = all.emplace_back();
+    for (const std::string& group : link.groups)
+      groups.push_back(numbers.try_emplace(group, numbers.size()).first->second);
+    std::ranges::sort(groups);
+  }
+  return all;
+}
+
+/// Whether two ascending lists have a number in common.
+bool overlap(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b) {
+  for (auto i = a.begin(), k = b.begin(); i != a.end() && k != b.end();) {
+    if (*i == *k) return true;
+    ++(*i < *k ? i : k);
+  }
+  return false;
 }
 
 bool share_a_joint(const DescribedLink& a, const DescribedLink& b) {
@@ -42,11 +60,13 @@ std::vector<Node> nodes_of(const std::vector<DescribedLink>& links) {
 }  // namespace
 
 std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<DescribedLink>& links) {
+  const std::vector<std::vector<std::size_t>> groups = numbered_groups(links);
+  std::vector<bool> still;
+  for (const DescribedLink& link : links) still.push_back(stands_still(graph, link));
   std::vector<LinkPair> pairs;
   for (std::size_t i = 0; i < links.size(); ++i)
     for (std::size_t k = i + 1; k < links.size(); ++k)
-      if (!(stands_still(graph, links[i]) && stands_still(graph, links[k])) && !share_a_group(links[i], links[k]) &&
-          !share_a_joint(links[i], links[k]))
+      if (!(still[i] && still[k]) && !overlap(groups[i], groups[k]) && !share_a_joint(links[i], links[k]))
         pairs.push_back({i, k});
   return pairs;
 }
@@ -61,11 +81,14 @@ std::vector<std::size_t> moving_links(const Graph& graph, const std::vector<Desc
 std::vector<JoinedLinks> joined_links(const Model& model) {
   std::vector<JoinedLinks> all;
   if (model.link_pairs.empty()) return all;
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
+  const std::size_t count = model.links.size();
+  std::vector<bool> is_pair(count * count);
+  for (const auto& [first, second] : model.link_pairs)
+    is_pair[first * count + second] = is_pair[second * count + first] = true;
+  for (std::size_t i = 0; i < count; ++i) {
     all.push_back({model.links[i].name, {}});
-    for (std::size_t k = 0; k < model.links.size(); ++k)
-      if (k != i && !std::ranges::count(model.link_pairs, LinkPair{std::min(i, k), std::max(i, k)}))
-        all.back().others.push_back(model.links[k].name);
+    for (std::size_t k = 0; k < count; ++k)
+      if (k != i && !is_pair[i * count + k]) all.back().others.push_back(model.links[k].name);
   }
   return all;
 }

@@ -1,9 +1,11 @@
 #include "engine/survey/bounds/proof.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <ostream>
 #include <stdexcept>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace pkm::bounds {
 namespace {
@@ -12,8 +14,11 @@ using graph::Entry, graph::Node;
 
 constexpr std::size_t kMostBytes = 100'000'000;
 
-/// The shortest text of a number that is read as the same.
+/// The shortest text of a number that is read as the same. Throws std::runtime_error where it is not finite.
 std::string text_of(double number) {
+  if (!std::isfinite(number))
+    throw std::runtime_error(
+        "there is no proof: a number in it would not be finite, and pkmopt-check-proof refuses such");
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
@@ -25,9 +30,12 @@ class Formulas {
     std::vector<Node> roots;
     for (std::size_t k = 0; k < statement.conditions.size(); ++k) roots.push_back(statement.conditions.node(k));
     const std::vector<Node> used = statement.graph.reachable(roots);
-    for (const Node node : used)
-      for (const Node operand : statement.graph[node].operands()) ++uses_[operand];
-    for (const Node root : roots) uses_[root] += 2;  // has a name
+    for (const Node node : used) {
+      const Entry& entry = statement.graph[node];
+      for (const Node operand : entry.operands()) ++uses_[operand];
+      if (entry.operation == &graph::turn()) named_.insert(entry.arguments[0]);
+    }
+    named_.insert(roots.begin(), roots.end());
     for (const Node node : used) write(node);
   }
 
@@ -38,7 +46,7 @@ class Formulas {
     const Entry& entry = statement_.graph[node];
     if (entry.is_number()) {
       names_[node] = entry.number < 0 ? "(" + text_of(entry.number) + ")" : text_of(entry.number);
-      if (uses_[node] >= 2 && entry.groups == 0 && is_condition(node)) give(node, names_[node]);
+      if (named_.contains(node)) give(node, names_[node]);
     } else if (entry.input >= 0) {
       write_input(node, static_cast<std::size_t>(entry.input));
     } else if (entry.operation == &graph::turn()) {
@@ -49,23 +57,11 @@ class Formulas {
       // what is used once stands where it is used, as long as that can be read
       constexpr std::size_t kLongest = 120;
       const std::string text = formula(entry);
-      if (uses_[node] == 1 && text.size() <= kLongest && !feeds_turn(node))
+      if (uses_[node] == 1 && text.size() <= kLongest && !named_.contains(node))
         names_[node] = text;
       else
         give(node, text);
     }
-  }
-  bool is_condition(Node node) const {
-    for (std::size_t k = 0; k < statement_.conditions.size(); ++k)
-      if (statement_.conditions.node(k) == node) return true;
-    return false;
-  }
-  bool feeds_turn(Node node) const {
-    for (std::size_t i = 0; i < statement_.graph.size(); ++i) {
-      const Entry& entry = statement_.graph[static_cast<Node>(i)];
-      if (entry.operation == &graph::turn() && entry.arguments[0] == node) return true;
-    }
-    return false;
   }
   std::string next_name() { return "n" + std::to_string(++count_); }
   void give(Node node, const std::string& text) {
@@ -98,6 +94,7 @@ class Formulas {
   std::ostream& to_;
   std::unordered_map<Node, std::string> names_;
   std::unordered_map<Node, int> uses_;
+  std::unordered_set<Node> named_;  ///< conditions and what is turned: lines of a proof call them by name
   std::size_t count_ = 0;
 };
 
