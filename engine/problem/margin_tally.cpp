@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+
+#include "engine/math/satisfied.hpp"
 
 namespace pkm {
 namespace {
@@ -39,8 +42,9 @@ void MarginTally::add(const std::vector<std::pair<std::string, double>>& margins
     if (std::isnan(margin)) continue;
     const std::size_t number = number_of(name);
     Line& line = lines_[number];
-    const bool kept = margin >= 0;
-    if (!kept && (line.known == line.kept || margin > line.nearest)) line.nearest = margin;
+    const bool kept = is_satisfied(margin);
+    const double miss = kept || std::isfinite(margin) ? margin : -std::numeric_limits<double>::infinity();
+    if (!kept && (line.known == line.kept || miss > line.nearest)) line.nearest = miss;
     ++line.known;
     line.kept += kept;
     known.emplace_back(number, kept);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/satisfied.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/chain_at.hpp"
 #include "experiments/app/link_files.hpp"
@@ -98,7 +99,7 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
   out.section("angles and lengths (rad, m)", rows_of(angles));
   if (chain) tell_chain(*mechanism.chain(), *chain, out);
   for (const auto& [name, value] : report.margins)
-    margins.push_back({name, number(value), std::isnan(value) ? "" : value >= 0 ? "holds" : "broken"});
+    margins.push_back({name, number(value), std::isnan(value) ? "" : is_satisfied(value) ? "holds" : "broken"});
   json["margins"] = values_by_name(report.margins);
   out.section("margins (>= 0 holds)", margins);
   write_links(target, mode, at.pose, arguments, out);

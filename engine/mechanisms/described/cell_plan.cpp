@@ -97,10 +97,13 @@ Parts taken_apart(Conditions& known, Groups z) {
   for (const Node condition : conditions) {
     const bool along = (known.graph[condition].groups & z) != 0;
     const auto lower = along ? lowered(known.graph, condition, z) : std::nullopt;
-    if (lower)
-      parts.clauses.insert(parts.clauses.end(), lower->begin(), lower->end());
-    else
+    if (!lower) {
       parts.plain.push_back(condition);
+      continue;
+    }
+    parts.clauses.insert(parts.clauses.end(), lower->begin(), lower->end());
+    for (const Node finite : finite_parts(known.graph, condition, z))
+      if (std::ranges::find(parts.plain, finite) == parts.plain.end()) parts.plain.push_back(finite);
   }
   simplify(known.graph, parts.clauses, parts.plain);
   return parts;

@@ -5,6 +5,7 @@
 
 #include "engine/core/stop.hpp"
 #include "engine/math/lanes.hpp"
+#include "engine/math/satisfied.hpp"
 
 namespace pkm::described {
 namespace {
@@ -68,7 +69,8 @@ CellTally CellTest::test(const VoxelGrid& grid, std::size_t outer, bool want_bit
     room.registers[input.to] = grid.centre(plan_.order[0], static_cast<std::int64_t>(outer));
   plan_.program.run<double>(kOuter, room.registers);
   CellTally tally;
-  if (!std::ranges::all_of(plan_.early, [&](std::uint32_t at) { return room.registers[at] >= 0; })) return tally;
+  if (!std::ranges::all_of(plan_.early, [&](std::uint32_t at) { return is_satisfied(room.registers[at]); }))
+    return tally;
   for (std::size_t first = 0; first < columns; first += kRow) {
     check_stop();
     const CellTally part = test_columns(grid, outer, first, std::min(kRow, columns - first), want_bits, room);
@@ -110,7 +112,7 @@ bool CellTest::narrow_ranges(const VoxelGrid& grid, std::size_t first, std::size
             ranges.to.begin() + static_cast<std::ptrdiff_t>(whole), 0.0);
   for (const std::uint32_t at : plan_.of_middle) {
     const double* const row = rows + plan_.middle->operand(at).index * kRow;
-    for (std::size_t j = 0; j < count; ++j) ranges.to[j] = row[j] >= 0 ? ranges.to[j] : 0;
+    for (std::size_t j = 0; j < count; ++j) ranges.to[j] = is_satisfied(row[j]) ? ranges.to[j] : 0;
   }
   bool has_holes = false;
   for (const ColumnCondition& condition : plan_.columns) {
@@ -240,7 +242,7 @@ void CellTest::test_cells(const VoxelGrid& grid, std::size_t column_0, std::size
     const auto holds = [&](std::uint32_t condition) {
       const double* const row = &room.rows[plan_.inner->operand(condition).index * kRow];
       std::uint64_t found = 0;
-      for (std::size_t k = 0; k < count; ++k) found |= static_cast<std::uint64_t>(row[k] >= 0) << k;
+      for (std::size_t k = 0; k < count; ++k) found |= static_cast<std::uint64_t>(is_satisfied(row[k])) << k;
       return found;
     };
     for (const std::uint32_t condition : plan_.of_inner) bits &= holds(condition);

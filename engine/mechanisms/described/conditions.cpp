@@ -1,5 +1,7 @@
 #include "engine/mechanisms/described/conditions.hpp"
 
+#include <algorithm>
+
 namespace pkm::described {
 
 Conditions conditions_of(const Model& model, std::size_t mode) {
@@ -43,6 +45,31 @@ Conditions conditions_of(const Model& model, std::size_t mode) {
     n += 2;
   }
   return conditions;
+}
+
+std::vector<Node> finite_parts(Graph& graph, Node condition, Groups along) {
+  // of finite numbers these are finite, but where they overflow
+  static const std::vector<std::string> finite = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "turn", "tanh"};
+  const auto may_be_infinite = [&graph](const graph::Entry& entry) {
+    if (!entry.operation) return false;
+    if (entry.operation->code == graph::Code::divide) {
+      const graph::Entry& divisor = graph[entry.arguments[1]];
+      return !divisor.is_number() || divisor.number == 0;
+    }
+    const bool is_step = entry.operation->rank > 0 && entry.operation->name != "^";
+    return entry.operation->code == graph::Code::other && !is_step && entry.operation != &graph::choice() &&
+           std::ranges::find(finite, entry.operation->name) == finite.end();
+  };
+  const auto is_free = [&](Node node) { return (graph[node].groups & along) == 0; };
+  std::vector<Node> parts;
+  for (const Node node : graph.reachable({&condition, 1}, is_free))
+    for (const Node operand : graph[node].operands())
+      if (is_free(operand) && std::ranges::find(parts, operand) == parts.end()) parts.push_back(operand);
+  std::erase_if(parts, [&](Node part) {
+    return std::ranges::none_of(graph.reachable({&part, 1}), [&](Node node) { return may_be_infinite(graph[node]); });
+  });
+  for (Node& part : parts) part = graph.apply(graph::operation("*"), std::array{part, graph.number(0)});
+  return parts;
 }
 
 std::string name_of_condition(const Model& model, std::size_t condition) {

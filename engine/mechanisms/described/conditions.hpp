@@ -18,6 +18,10 @@ struct Conditions {
 
 Conditions conditions_of(const Model& model, std::size_t mode);
 
+/// Conditions that are satisfied where what a condition computes without the coordinates `along` is finite: 0 times it.
+/// A condition that is taken apart into polynomials along those needs them beside the polynomials.
+std::vector<Node> finite_parts(Graph& graph, Node condition, Groups along);
+
 /// The name of a model's condition, by its place in Conditions::all.
 std::string name_of_condition(const Model& model, std::size_t condition);
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "engine/math/satisfied.hpp"
 #include "engine/mechanisms/described/clearance.hpp"
 #include "engine/mechanisms/described/conditioning.hpp"
 #include "engine/mechanisms/described/eigen_matrix.hpp"
@@ -49,7 +50,7 @@ std::vector<double> inputs_at(const Evaluation& e, std::span<const double> param
 /// The first condition that does not hold, with `words`; "": all do.
 std::string first_broken(const NamedValues& conditions, const std::string& words) {
   for (const auto& [name, margin] : conditions)
-    if (!(margin >= 0)) return name + words;
+    if (!is_satisfied(margin)) return name + words;
   return "";
 }
 
@@ -145,7 +146,7 @@ bool assembles_at(const Evaluation& e, const std::vector<double>& inputs) {
   const auto joints = values.begin() + static_cast<std::ptrdiff_t>(e.model.inputs.joints),
              domains = joints + std::ssize(e.model.domains);
   return std::all_of(values.begin(), joints, [](double q) { return std::isfinite(q); }) &&
-         std::all_of(joints, domains, [](double margin) { return margin >= 0; });
+         std::all_of(joints, domains, is_satisfied);
 }
 
 std::optional<Influence<double>> influence_at(const Evaluation& e, std::span<const double> parameters,

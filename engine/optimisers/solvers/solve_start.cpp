@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/optimisers/solvers/optimality.hpp"
 
@@ -72,6 +73,31 @@ SolverEnd solve_in_rounds(const Solver& solver, Trials& trials, const Evaluation
   return end;
 }
 
+/// Whether the objective changes beside a start at which its gradient is 0 and no bound is active: then the gradient is
+/// wrong or the objective has none, and nothing has converged. By one central difference along a direction that no
+/// symmetry of the variables cancels; its evaluations are recorded.
+bool contradicts_flat_start(Trials& trials) {
+  constexpr double kStep = 1e-3;   // in the unit cube
+  constexpr double kSlope = 1e-3;  // of the objective's size per unit: above the errors of a difference
+  const std::vector<double> start = trials.recall(0);
+  const Trials::Point at = trials.point();
+  const auto is_inside = [](double u) { return u >= kStep && u <= 1 - kStep; };
+  if (!at.usable || at.gradient.empty() || !std::ranges::all_of(start, is_inside) ||
+      !std::ranges::all_of(at.gradient, [](double slope) { return slope == 0; }))
+    return false;
+  const auto beside = [&](double step) -> std::optional<double> {
+    std::vector<double> point = start;
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      const double share = 0.618 * static_cast<double>(i);
+      point[i] += step * (1 - 0.5 * (share - std::floor(share)));
+    }
+    const Trials::Point* const there = trials.at(point.data());
+    return there && there->usable ? std::optional(there->objective) : std::nullopt;
+  };
+  const auto low = beside(-kStep), high = low ? beside(kStep) : std::nullopt;
+  return high && std::fabs(*high - *low) > 2 * kStep * kSlope * std::max(1e-300, std::fabs(at.objective));
+}
+
 /// Solvers may fail by rounding at the very optimum: where the slopes say that it is one, it has converged.
 StopReason stop_reason(Trials::Stop stop, const SolverEnd& end, double optimality) {
   if (stop == Trials::Stop::evaluations) return StopReason::evaluations;
@@ -89,6 +115,9 @@ std::optional<StartOutcome> solve_start(const Solver& solver, Trials& trials, co
     end = solve_in_rounds(solver, trials, table, seed);
   else
     end.message = "the start's evaluation failed, and several objectives are measured from it";
+  const bool stays = trials.best().row == 0 && trials.stop() == Trials::Stop::none;
+  const bool contradicted = measurable && stays && contradicts_flat_start(trials);
+  trials.rethrow();
   if (trials.stop() == Trials::Stop::interrupted) return {};
   StartOutcome outcome;
   outcome.rows = static_cast<std::int64_t>(table.size());
@@ -102,6 +131,11 @@ std::optional<StartOutcome> solve_start(const Solver& solver, Trials& trials, co
   if (measurable && reason == StopReason::tolerance && trials.best().status == Status::failed) {
     outcome.message = "none of its designs could be evaluated";
     outcome.stop = words(StopReason::failed);
+  }
+  if (contradicted) {
+    outcome.message = "the gradient is 0 at the start, but the objective changes beside it";
+    outcome.stop = words(StopReason::failed);
+    outcome.optimality = std::numeric_limits<double>::quiet_NaN();
   }
   return outcome;
 }

@@ -5,6 +5,7 @@
 
 #include "engine/core/stop.hpp"
 #include "engine/graph/reverse.hpp"
+#include "engine/math/satisfied.hpp"
 #include "engine/mechanisms/described/columns/column.hpp"
 
 namespace pkm::described {
@@ -17,7 +18,7 @@ void Column::find_curve_ends(const std::array<double, 2>& range, std::span<doubl
   set_z<double>(range[0], registers);
   for (Signs rest = curves_; rest != 0; rest &= rest - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rest));
-    if (registers[plan_.surfaces[k].coefficients[0]] >= 0) signs |= bit(k);
+    if (is_satisfied(registers[plan_.surfaces[k].coefficients[0]])) signs |= bit(k);
   }
   isolate(curves_, range[0], range[1], 1e-12 * (range[1] - range[0]), registers, room);
 }
@@ -42,9 +43,9 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
     const auto k = static_cast<std::size_t>(std::countr_zero(monotone));
     const std::uint32_t f = plan_.surfaces[k].coefficients[0];
     set_z<double>(from, registers);
-    const bool below = registers[f] >= 0;
+    const bool below = is_satisfied(registers[f]);
     set_z<double>(to, registers);
-    if (below != (registers[f] >= 0))
+    if (below != is_satisfied(registers[f]))
       room.flat.emplace_back(root_between(k, from, to, registers), static_cast<EndLabel>(2 * k + (below ? 1 : 0)));
   }
   if (undecided == 0) return;
@@ -57,12 +58,12 @@ void Column::isolate(Signs curves, double from, double to, double narrow, std::s
 double Column::root_between(std::size_t curve, double from, double to, std::span<double> registers) const {
   const auto& at = plan_.surfaces[curve].coefficients;
   set_z<double>(from, registers);
-  const bool below = registers[at[0]] >= 0;
+  const bool below = is_satisfied(registers[at[0]]);
   double z = 0.5 * (from + to);
   for (int step = 0; step < 100; ++step) {
     set_z<double>(z, registers);
     const double f = registers[at[0]];
-    ((f >= 0) == below ? from : to) = z;
+    (is_satisfied(f) == below ? from : to) = z;
     double next = z - f / registers[at[1]];
     if (!(next > from && next < to)) next = 0.5 * (from + to);
     if (next == z || std::fabs(next - z) <= 1e-16 * (std::fabs(from) + std::fabs(to))) return next;

@@ -27,6 +27,7 @@ std::vector<SlicePart> SectionsIntegral::whole_parts(std::size_t level, const In
     last->piece.root_upper = part.piece.root_upper;
     last->above = part.above;
     last->upper = part.upper;
+    last->beyond_upper = part.beyond_upper;
   }
   return whole;
 }
@@ -39,7 +40,8 @@ Piece<Dual4> SectionsIntegral::moving_piece(std::size_t level, const SlicePart& 
 }
 
 /// An end of a part. A break of breaks, further out, and breaks between lines stay: the slices go on there, so that the
-/// sum's derivative is that of the integral but for the rule's error.
+/// sum's derivative is that of the integral but for the rule's error. Where they jump, a break moves as the constraint
+/// does that is violated beyond it.
 Dual4 SectionsIntegral::moving_end(std::size_t level, const SlicePart& part, bool upper, IntegralRoom& room) const {
   const graph::Program& program = plan().program;
   const Closing closing = upper ? part.upper : part.lower;
@@ -49,6 +51,16 @@ Dual4 SectionsIntegral::moving_end(std::size_t level, const SlicePart& part, boo
   if (closing != kChange) {
     const double slope = slope_of_plain(level, closing, at, room);
     return moved(at, motion_of(room.own, room.moving), slope);
+  }
+  if (may_jump(level, part, upper, room)) {  // by the mean over the points that come or go
+    Components<4> motion;
+    double all = 0;
+    for (const double inwards : {-1.0, 1.0})
+      visit_lost(level, at, inwards, room, [&](double weight, double slope) {
+        motion = motion + motion_of(room.own, room.moving) * (-weight / slope);
+        all += weight;
+      });
+    if (all > 0) return {at, motion * (1 / all)};
   }
   const auto* const section = std::get_if<Section>(&innermost_);
   if (level + 1 < levels() || !section) return at;

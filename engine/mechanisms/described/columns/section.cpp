@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/math/hash.hpp"
+#include "engine/math/satisfied.hpp"
 #include "engine/mechanisms/described/columns/corners.hpp"
 
 namespace pkm::described {
@@ -75,7 +76,7 @@ void Section::run_plain(double t, std::span<double> registers, const SectionRoom
 
 bool Section::plain_holds(double t, std::span<double> registers, const SectionRoom& room) const {
   set_v(t, registers, room);
-  return std::ranges::all_of(plan_.plain.back(), [&](std::uint32_t at) { return registers[at] >= 0; });
+  return std::ranges::all_of(plan_.plain.back(), [&](std::uint32_t at) { return is_satisfied(registers[at]); });
 }
 
 /// @param plain  whether plain conditions are looked at, too
@@ -191,11 +192,32 @@ double Section::measure(std::span<double> registers, SectionRoom& room) const {
   return sum * room.v[1] * room.z[1];
 }
 
-double Section::length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const {
-  double sum = 0;
-  for (std::size_t i = piece.first; i < piece.first + piece.count; ++i)
-    sum += end_at(room.spans[i].upper, t, room) - end_at(room.spans[i].lower, t, room);
+std::array<double, 3> Section::moments(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const {
+  std::array<double, 3> sum{};
+  for (std::size_t i = piece.first; i < piece.first + piece.count; ++i) {
+    const double a = end_at(room.spans[i].lower, t, room), b = end_at(room.spans[i].upper, t, room);
+    sum[0] += b - a;
+    sum[1] += (b * b - a * a) / 2;
+    sum[2] += (b * b * b - a * a * a) / 3;
+  }
   return sum;
+}
+
+void Section::add_pieces(const SectionRoom& room, std::vector<Piece<double>>& pieces) const {
+  for (const auto& piece : room.pieces)
+    pieces.push_back({room.v[0] + room.v[1] * piece.from, room.v[0] + room.v[1] * piece.to,
+                      is_round(piece.from_corner, room), is_round(piece.to_corner, room)});
+}
+
+std::vector<std::array<double, 2>> Section::columns(double v, std::span<double> registers, SectionRoom& room) const {
+  std::vector<std::array<double, 2>> found;
+  const double t = (v - room.v[0]) / room.v[1];
+  const bool holds = plan_.plain.back().empty() || plain_holds(t, registers, room);
+  if (!holds || room.pieces.empty() || t < room.pieces.front().from || t > room.pieces.back().to) return found;
+  find_column(t, registers.data(), room);
+  for (const auto& [lower, upper] : room.column)
+    found.push_back({room.z[0] + room.z[1] * end_at(lower, t, room), room.z[0] + room.z[1] * end_at(upper, t, room)});
+  return found;
 }
 
 bool Section::is_round(std::size_t corner, const SectionRoom& room) {

@@ -111,6 +111,10 @@ class Section {
         }
     }
   }
+  /// Ranges of v in which the columns have the same ends, after measure().
+  void add_pieces(const SectionRoom& room, std::vector<Piece<double>>& pieces) const;
+  /// Ranges of z that are feasible at v, after measure(), in order.
+  std::vector<std::array<double, 2>> columns(double v, std::span<double> registers, SectionRoom& room) const;
   /// The corners that its structure is made of, after measure().
   void find_marks(const SectionRoom& room, Marks& marks) const;
   /// How far a corner is from the surfaces that meet in a corner of a section beside this one, as a share of what they
@@ -132,7 +136,8 @@ class Section {
   /// Values of the plain conditions along v at t.
   void run_plain(double t, std::span<double> registers, const SectionRoom& room, std::vector<double>& values) const;
   bool plain_holds(double t, std::span<double> registers, const SectionRoom& room) const;
-  double length(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const;
+  /// Integrals of 1, s and s^2 over the columns of a piece at t.
+  std::array<double, 3> moments(const SectionRoom::Piece& piece, double t, const SectionRoom& room) const;
   void find_structure(SectionRoom& room) const;
   /// Whether columns close like a root there.
   static bool is_round(std::size_t corner, const SectionRoom& room);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/satisfied.hpp"
+
 namespace pkm::described {
 namespace {
 
@@ -89,7 +91,7 @@ void Section::find_plain_corners(std::span<double> registers, SectionRoom& room)
     const double next = step == kSteps ? high - inset : low + (high - low) * step / kSteps;
     run_plain(next, registers, room, room.now);
     for (std::size_t i = 0; i < room.now.size(); ++i) {
-      if ((room.before[i] >= 0) == (room.now[i] >= 0)) continue;
+      if (is_satisfied(room.before[i]) == is_satisfied(room.now[i])) continue;
       double a = t, b = next, at_a = room.before[i], at_b = room.now[i];
       for (int n = 0; n < 100 && b - a > 4e-16; ++n) {  // Illinois, which halves where a side stays
         double x = a - at_a * (b - a) / (at_b - at_a);
@@ -97,8 +99,9 @@ void Section::find_plain_corners(std::span<double> registers, SectionRoom& room)
         if (x <= a || x >= b) break;
         run_plain(x, registers, room, room.other_adjoints);
         const double f = room.other_adjoints[i];
-        ((f >= 0) == (at_a >= 0) ? a : b) = x;
-        ((f >= 0) == (at_a >= 0) ? at_a : at_b) = f;
+        const bool is_like_a = is_satisfied(f) == is_satisfied(at_a);
+        (is_like_a ? a : b) = x;
+        (is_like_a ? at_a : at_b) = f;
       }
       room.corners.push_back({b, kPlain | static_cast<std::uint32_t>(i)});
     }

@@ -191,6 +191,8 @@ class Planner {
     }
     if (auto clauses = lowering_.conditions(node)) {
       for (const NodeClause& clause : *clauses) add_clause(clause);
+      for (const Node finite : finite_parts(graph_, node, v_ | z_))
+        if (std::ranges::find(plain_, finite) == plain_.end()) plain_.push_back(finite);
       return;
     }
     const bool is_joint = number >= model_.domains.size() + model_.margins.size();

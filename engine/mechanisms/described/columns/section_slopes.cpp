@@ -17,20 +17,28 @@ void Section::add_slopes(double factor, std::span<double> registers, std::span<d
     add_slopes_of_area(room.conics[k], {static_cast<int>(end & 1U), piece.from, piece.to}, sign * measure, slopes[k]);
   };
   // A side moves by dt and takes columns of this length along.
-  const auto add_side = [&](double t, std::uint32_t label, double columns) {
+  const auto add_side = [&](const SectionRoom::Piece& piece, bool upper) {
+    const double t = upper ? piece.to : piece.from, sign = upper ? 1 : -1;
+    const std::uint32_t label = corner_of(kMostSurfaces, upper ? piece.to_corner : piece.from_corner, t, room);
+    const auto [columns, first, second] = moments(piece, t, room);
     const std::size_t k = label & ~kKind;
     if ((label & kKind) == kSide) {
-      adjoints[plan_.range[plan_.range.size() - 2][k]] += factor * room.z[1] * columns;
+      adjoints[plan_.range[plan_.range.size() - 2][k]] += sign * factor * room.z[1] * columns;
     } else if ((label & kKind) == kUpright) {
       const Conic& P = room.conics[k];
-      const double g = -measure * columns / (P.c[1] + 2 * t * P.c[3]);
+      const double g = -sign * measure / (P.c[1] + 2 * t * P.c[3]);
       used |= bit(k);
-      slopes[k][0] += g;
-      slopes[k][1] += g * t;
-      slopes[k][3] += g * t * t;
+      slopes[k][0] += g * columns;
+      slopes[k][1] += g * columns * t;
+      slopes[k][3] += g * columns * t * t;
+      // its coefficients with s are 0 at this design, but may change with it
+      slopes[k][2] += g * first;
+      slopes[k][4] += g * first * t;
+      slopes[k][5] += g * second;
     } else if ((label & kKind) == kPlain) {
       std::vector<double>& own = room.other_adjoints;
-      const double g = -factor * room.z[1] * columns / slope_of_plain(k, t, registers, room, own);
+      const double g = -sign * factor * room.z[1] * columns / slope_of_plain(k, t, registers, room, own);
+      if (!std::isfinite(g)) return;  // it is undefined or infinite beyond, and has no root there
       for (std::size_t i = 0; i < own.size(); ++i) adjoints[i] += g * own[i];
     }
   };
@@ -39,9 +47,8 @@ void Section::add_slopes(double factor, std::span<double> registers, std::span<d
       add_arc(room.spans[i].upper, piece, 1);
       add_arc(room.spans[i].lower, piece, -1);
     }
-    add_side(piece.from, corner_of(kMostSurfaces, piece.from_corner, piece.from, room),
-             -length(piece, piece.from, room));
-    add_side(piece.to, corner_of(kMostSurfaces, piece.to_corner, piece.to, room), length(piece, piece.to, room));
+    add_side(piece, false);
+    add_side(piece, true);
   }
   const auto [vm, vh] = room.v;
   const auto [zm, zh] = room.z;

@@ -13,7 +13,6 @@ constexpr double kNearInLines = 1e-11;  // the same where sections are lines: me
 constexpr double kFar = 1e-3;           // of the range: slices that are further from a break may differ in small parts
 constexpr double kNextTo = 1e-8;        // of the range: breaks that are one
 constexpr double kCloseBy = 64;         // steps from a break to the next one: where rounding may decide
-constexpr double kJump = 1e-7;          // of the greatest slice: what is no rounding
 
 /// Takes two breaks that are next to each other as one: where conics touch, labels change once more a little later,
 /// when rounding no longer hides that they cross. It is at the one where the measure begins to behave like a root,

@@ -6,6 +6,7 @@
 #include "engine/core/stop.hpp"
 #include "engine/math/hash.hpp"
 #include "engine/math/lanes.hpp"
+#include "engine/math/satisfied.hpp"
 
 namespace pkm::described {
 namespace {
@@ -68,7 +69,7 @@ void SectionsIntegral::set(std::size_t level, double at, IntegralRoom& room) con
 Slice SectionsIntegral::inside(std::size_t level, IntegralRoom& room) const {
   const auto& plain = plan().plain[level];
   for (std::size_t i = 0; i < plain.size(); ++i)
-    if (!(room.registers[plain[i]] >= 0)) return {.broken = static_cast<std::uint32_t>(i + 1)};
+    if (!is_satisfied(room.registers[plain[i]])) return {.broken = static_cast<std::uint32_t>(i + 1)};
   if (level < levels()) return integrate(level, room);
   constexpr long kColumnsPerCheck = 16;  // a column takes a microsecond
   if (!ends_in_lines() || room.sections % kColumnsPerCheck == 0) check_stop();
@@ -177,7 +178,9 @@ void SectionsIntegral::add_parts(std::size_t level, const Breaks& breaks, double
               .below = lower.above,
               .above = upper.below,
               .lower = closing(lower, lower.below),
-              .upper = closing(upper, upper.above)},
+              .upper = closing(upper, upper.above),
+              .beyond_lower = lower.below.measure,
+              .beyond_upper = upper.above.measure},
              whole, depth, room);
   }
 }
@@ -221,14 +224,16 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
   if (!same && depth < kDeepest && width > (ends_in_lines() ? kBlurredInLines : kBlurred) * whole &&
       room.sections < room.most) {
     Breaks& breaks = own.breaks[static_cast<std::size_t>(depth) + 1];
-    breaks.assign(1, {part.piece.lower, part.piece.root_lower, {.broken = part.lower}, part.below, part.lower == kBox});
+    const Slice below{.measure = part.beyond_lower, .broken = part.lower};
+    const Slice above{.measure = part.beyond_upper, .broken = part.upper};
+    breaks.assign(1, {part.piece.lower, part.piece.root_lower, below, part.below, part.lower == kBox});
     Slice before = part.below;
     for (Slice& next : slices) {
       find_breaks(level, before, next, whole, breaks, room);
       before = next;
     }
     find_breaks(level, before, part.above, whole, breaks, room);
-    breaks.push_back({part.piece.upper, part.piece.root_upper, part.above, {.broken = part.upper}, part.upper == kBox});
+    breaks.push_back({part.piece.upper, part.piece.root_upper, part.above, above, part.upper == kBox});
     return add_parts(level, breaks, whole, depth + 1, room);
   }
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
@@ -262,10 +267,14 @@ void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& roo
     const std::size_t known = own.parts.size();
     const auto [first, second] = halves(part.piece);
     const Slice middle = slice(level, first.upper, room);
-    add_part(level, {.piece = first, .below = part.below, .above = middle, .lower = part.lower, .upper = kChange},
-             whole, 0, room);
-    add_part(level, {.piece = second, .below = middle, .above = part.above, .lower = kChange, .upper = part.upper},
-             whole, 0, room);
+    SlicePart low{.piece = first, .below = part.below, .above = middle, .lower = part.lower};
+    low.beyond_lower = part.beyond_lower;
+    low.beyond_upper = middle.measure;
+    SlicePart high{.piece = second, .below = middle, .above = part.above, .upper = part.upper};
+    high.beyond_lower = middle.measure;
+    high.beyond_upper = part.beyond_upper;
+    add_part(level, low, whole, 0, room);
+    add_part(level, high, whole, 0, room);
     for (std::size_t i = known + 1; i <= own.parts.size(); ++i)
       std::push_heap(own.parts.begin(), own.parts.begin() + static_cast<std::ptrdiff_t>(i), less);
   }

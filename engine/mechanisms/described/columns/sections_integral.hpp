@@ -5,6 +5,8 @@
 // part: where one has another structure, the part is split there.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <variant>
 
 #include "engine/graph/rows.hpp"
@@ -41,6 +43,7 @@ struct SlicePart {
   Piece<double> piece;
   Slice below, above;  ///< just inside its ends
   Closing lower = kChange, upper = kChange;
+  double beyond_lower = 0, beyond_upper = 0;  ///< measures just outside its ends
   std::array<double, NestedRule::kNodes> at{}, weight{};
   double value = 0, error = 0;
   double unresolved = 0;  ///< error that smaller parts do not mend
@@ -50,6 +53,7 @@ struct SlicePart {
 inline constexpr int kDeepest = 10;        ///< parts within parts
 inline constexpr int kPlacesInLines = 64;  ///< of the outermost coordinate that are compared, where sections are lines
 inline constexpr double kSettled = 1e-11;  ///< of the range: beyond a break, where structures can be told
+inline constexpr double kJump = 1e-7;      ///< of the greatest slice: what is no rounding
 
 /// What an integral overwrites.
 struct IntegralRoom {
@@ -85,6 +89,7 @@ struct IntegralRoom {
   /// Parts of the coordinate within the outermost one at its nodes, where derivatives will be asked for.
   std::vector<std::vector<SlicePart>> kept;
   bool keeps = false;
+  std::unique_ptr<IntegralRoom> other;  ///< of the other side of a break
   long sections = 0;
   long most = 0;  ///< sections, after which what is not known counts as error
 };
@@ -151,6 +156,19 @@ class SectionsIntegral {
   void add_slopes(std::size_t level, double factor, IntegralRoom& room) const;
   void add_side(std::size_t level, const SlicePart& part, bool upper, double factor, IntegralRoom& room) const;
   double slope_of_plain(std::size_t level, Closing closing, double at, IntegralRoom& room) const;
+
+  struct Lost;
+  /// visit(weight, slope): of a point, and how much the constraint that is violated beyond the break changes there with
+  /// the coordinate; room.own: with the registers.
+  using LostVisitor = std::function<void(double, double)>;
+  static bool may_jump(std::size_t level, const SlicePart& part, bool upper, const IntegralRoom& room);
+  /// Visits quadrature nodes in what is feasible on one side of a break alone, if the measure jumps there.
+  /// @param inwards  1 or -1: on which side
+  void visit_lost(std::size_t level, double at, double inwards, IntegralRoom& room, const LostVisitor& visit) const;
+  void visit_lost(std::size_t level, double weight, bool in_is_empty, bool out_is_empty, const Lost& lost) const;
+  void visit_columns(const std::vector<std::array<double, 2>>& columns, double v, double weight,
+                     const Lost& lost) const;
+  double slope_of_violated(double v, double z, const Lost& lost) const;
 
   void start_moving(std::span<const Dual4> inputs, IntegralRoom& room) const;
   void set_moving(std::size_t level, const Dual4& at, IntegralRoom& room) const;

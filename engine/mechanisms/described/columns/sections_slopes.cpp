@@ -42,8 +42,14 @@ void SectionsIntegral::add_slopes(std::size_t level, double factor, IntegralRoom
 void SectionsIntegral::add_side(std::size_t level, const SlicePart& part, bool upper, double factor,
                                 IntegralRoom& room) const {
   const Closing closing = upper ? part.upper : part.lower;
-  if (closing == kChange) return;
   const double at = upper ? part.piece.upper : part.piece.lower, sign = upper ? factor : -factor;
+  if (closing == kChange) {
+    if (may_jump(level, part, upper, room))
+      visit_lost(level, at, upper ? -1 : 1, room, [&](double weight, double slope) {
+        for (std::size_t i = 0; i < room.own.size(); ++i) room.adjoints[i] -= sign * weight / slope * room.own[i];
+      });
+    return;
+  }
   const double measure = (upper ? part.above : part.below).measure;
   if (closing == kBox) {
     room.adjoints[plan().range[level][upper ? 1 : 0]] += sign * measure;

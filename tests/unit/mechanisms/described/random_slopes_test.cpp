@@ -1,0 +1,163 @@
+// Derivatives of volumes by columns against differences, for random mechanism files. PKM_RANDOM_SLOPES: the number of
+// designs; PKM_RANDOM_SLOPES_FIRST: the number of the first one, to repeat a finding.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+
+#include "engine/core/error.hpp"
+#include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/mechanisms/described/random_mechanism.hpp"
+
+namespace pkm {
+namespace {
+
+unsigned asked(const char* variable, unsigned otherwise) {
+  const char* const value = std::getenv(variable);
+  return value ? static_cast<unsigned>(std::atoi(value)) : otherwise;
+}
+
+/// The volume of one mechanism by one plan.
+class Volume {
+ public:
+  Volume(const Mechanism& mechanism, const SurveyPlan& plan) : surveyor_(prepare_survey(mechanism, plan, {})) {}
+
+  double operator()(const std::vector<double>& design) {
+    surveyor_->survey(design, scratch_, survey_);
+    return survey_.volume;
+  }
+  double error() const { return survey_.error; }  ///< of the last volume, relative
+  /// What the last volume took, in closed forms: roots by intervals count more.
+  std::int64_t columns() const { return survey_.columns; }
+  std::vector<double> slopes(const std::vector<double>& design) {
+    std::vector<double> all;
+    for (std::size_t first = 0; first < design.size(); first += 4) {
+      const std::size_t count = std::min<std::size_t>(4, design.size() - first);
+      std::vector<Dual4> moving(design.begin(), design.end());
+      for (std::size_t i = 0; i < count; ++i) moving[first + i].v[static_cast<int>(i)] = 1;
+      surveyor_->slopes()->survey(moving, scratch_, sloped_);
+      for (std::size_t i = 0; i < count; ++i) all.push_back(sloped_.volume.v[static_cast<int>(i)]);
+    }
+    return all;
+  }
+
+ private:
+  std::unique_ptr<const Surveyor> surveyor_;
+  Scratch scratch_;
+  Survey<double> survey_;
+  Survey<Dual4> sloped_;
+};
+
+enum class Verdict { equal, kink, rough, wrong };
+
+/// Compares a derivative with central differences of steps that shrink, extrapolated, two of which agree. Where the
+/// derivatives from below and from above differ, the volume has a kink there. Where nothing agrees, it is rough.
+/// @param scale  what differences are relative to
+Verdict compare(Volume& volume, const std::vector<double>& design, std::size_t parameter, double slope, double scale,
+                double& found) {
+  constexpr double kAgree = 3e-7, kExact = 1e-6, kKink = 3e-6;
+  const double at = volume(design), unit = std::max(std::fabs(design[parameter]), 0.05);
+  const auto moved = [&](double by) {
+    std::vector<double> other = design;
+    other[parameter] += by;
+    return volume(other);
+  };
+  std::optional<double> before;
+  bool agrees = false;
+  double left = 0, right = 0;
+  for (const double share : {1e-3, 2e-4, 4e-5, 8e-6}) {
+    const double h = share * unit;
+    const double low = moved(-h), high = moved(h), near_low = moved(-h / 2), near_high = moved(h / 2);
+    found = (8 * (near_high - near_low) - (high - low)) / (6 * h);
+    left = (3 * at - 4 * near_low + low) / h;
+    right = (4 * near_high - high - 3 * at) / h;
+    agrees = before && std::fabs(found - *before) <= kAgree * scale;
+    if (agrees && std::fabs(found - slope) <= kExact * scale) return Verdict::equal;
+    if (agrees) break;
+    before = found;
+  }
+  if (std::fabs(left - right) > kKink * scale) {
+    // the slope of one side is one of the derivatives that there are
+    return Verdict::kink;
+  }
+  return agrees ? Verdict::wrong : Verdict::rough;
+}
+
+TEST(RandomSlopes, EqualDifferencesForRandomMechanisms) {
+  const unsigned designs = asked("PKM_RANDOM_SLOPES", 100), first = asked("PKM_RANDOM_SLOPES_FIRST", 0);
+  const bool is_campaign = std::getenv("PKM_RANDOM_SLOPES") != nullptr;
+  unsigned compared = 0, lengthy = 0, empty = 0, refused = 0, slopes = 0, kinks = 0, rough = 0, wrong = 0, vague = 0;
+  const std::int64_t most_columns = is_campaign ? 20'000 : 1000;
+  std::map<std::string, unsigned> reasons;
+  for (unsigned k = first; compared < designs && k < first + 40 * designs; ++k) {
+    Stream random(33, 0, k, Stream::Use::start);
+    const std::string text = test::RandomMechanism(random).text();
+    std::shared_ptr<const Mechanism> mechanism;
+    std::optional<Volume> volume;
+    try {
+      mechanism = read_mechanism_toml(text, "random.toml");
+      SurveyPlan plan = test::columns(mechanism->info(), {.tolerance = 1e-8});
+      for (HeldCoordinate& held : plan.held) {
+        const double at = 0.1 * (random.u01() - 0.5);
+        const bool is_height = mechanism->info().coordinates[static_cast<std::size_t>(held.coordinate)].name == "z";
+        if (is_height) continue;  // in its middle, which moves with the design
+        if (plan.held.size() == 1 && mechanism->info().coordinates.size() == 3 && random.chance(0.5))
+          held.kind = HeldCoordinate::Kind::integrated;
+        else
+          held = {held.coordinate, HeldCoordinate::Kind::value, at};
+      }
+      volume.emplace(*mechanism, plan);
+    } catch (const std::exception& problem) {
+      ++refused;
+      ++reasons[problem.what()];
+      continue;
+    }
+    const std::vector<double> design = test::nominal(mechanism->info());
+    SCOPED_TRACE("design " + std::to_string(k) + "\n" + text);
+    const double measure = (*volume)(design);
+    if (!(measure > 1e-6)) {
+      ++empty;
+      continue;
+    }
+    if (!(volume->error() < 1e-7)) {
+      ++vague;
+      continue;
+    }
+    if (volume->columns() > most_columns) {
+      ++lengthy;
+      continue;
+    }
+    ++compared;
+    const std::vector<double> exact = volume->slopes(design);
+    double scale = 0.1 * measure;
+    for (const double slope : exact) scale = std::max(scale, std::fabs(slope));
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      double found = 0;
+      const Verdict verdict = compare(*volume, design, i, exact[i], scale, found);
+      ++slopes;
+      kinks += verdict == Verdict::kink;
+      rough += verdict == Verdict::rough;
+      wrong += verdict == Verdict::wrong;
+      const std::string& name = mechanism->info().parameters[i].name;
+      if (verdict == Verdict::kink && is_campaign) std::cout << "design " << k << ": kink by " << name << '\n';
+      EXPECT_NE(verdict, Verdict::wrong) << name << ": " << exact[i] << ", by differences " << found;
+    }
+    if (is_campaign)
+      std::cerr << '\r' << compared << " of " << designs << " designs, now " << k << ", " << wrong << " slopes wrong   "
+                << std::flush;
+  }
+  std::cout << compared << " designs, " << slopes << " derivatives: " << wrong << " wrong, " << kinks << " at kinks, "
+            << rough << " where differences do not agree; " << empty << " without a workspace, " << vague
+            << " with an error estimate above 1e-7, " << lengthy << " of too many columns, " << refused << " refused\n";
+  if (is_campaign)
+    for (const auto& [reason, count] : reasons) std::cout << count << ": " << reason << '\n';
+  EXPECT_EQ(compared, designs);
+  EXPECT_LE(kinks + rough, slopes / 20);
+}
+
+}  // namespace
+}  // namespace pkm
