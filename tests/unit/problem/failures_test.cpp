@@ -13,7 +13,8 @@ using ::testing::HasSubstr;
 using testing::read_real;
 
 /// Fails where a < 0.25 by an objective, where b > 0.9 by a constraint.
-Study study(){return read_real(R"([mechanism]
+Study study() {
+  return read_real(R"text([mechanism]
 type = "4ppa-2par"
 [variables]
 a = { min = 0.2, max = 0.3 }
@@ -21,8 +22,15 @@ b = { min = 0.8, max = 1.0 }
 [[objective]]
 type = "expression"
 name = "root"
-expression = "sqrt(a - 0.25)" [[constraint]] type = "expression" name = "log_of_b" expression = "log(0.9 - b)" max = 0
-                               [[stage]] optimiser = "ga") ");
+expression = "sqrt(a - 0.25)"
+[[constraint]]
+type = "expression"
+name = "log_of_b"
+expression = "log(0.9 - b)"
+max = 0
+[[stage]]
+optimiser = "ga"
+)text");
 }
 
 EvaluationTable evaluated(const Study& of, const std::vector<std::pair<double, double>>& designs) {
