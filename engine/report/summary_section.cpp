@@ -97,11 +97,15 @@ Json origin(const PageStudy& page) {
 
 Json summary_data(const PageStudy& page) {
   const StudyContents& contents = page.contents;
+  std::vector<std::string> notes = contents.notes;
+  if (page.study)
+    for (const std::string& difference : page.study->differences)
+      notes.push_back(difference + "; the recorded value is used");
   Json json = {{"state", words(contents.state)},
                {"seconds", contents.seconds},
                {"evaluations", contents.evaluations()},
                {"reproducible", contents.reproducible()},
-               {"notes", contents.notes},
+               {"notes", notes},
                {"verdict", verdict_json(verdict_on(contents, page.study ? page.study->problem.get() : nullptr))},
                {"unreadable", page.unreadable},
                {"table", table(page)},

@@ -70,6 +70,7 @@ struct Study {
   std::string round_unit = "1";            ///< the unit that all variables share, else "1"
   std::optional<double> checkpoint_every;  ///< [s]; none: adapts itself
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
+  std::vector<std::string> differences;    ///< of a study file: where its records differ from what its text gives
 
   std::vector<Reference> references;
   std::vector<NamedMotion> motions;  ///< [[motion]]: what objectives refer to by name
