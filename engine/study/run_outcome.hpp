@@ -16,8 +16,10 @@ namespace pkm {
 /// with every change that changes the evaluations that a seed leads to.
 inline constexpr std::int64_t kAlgorithms = 5;
 
+/// Program and arguments that all ranks have in common.
 struct ProgramVersion {
   std::string version, revision;
+  std::string arguments = {};  ///< of the command line, on one line
 };
 
 struct RunOptions {
