@@ -10,12 +10,13 @@ std::vector<OptionSpec> options(const MechanismInfo& mechanism) {
   const auto owned = limits_of(mechanism, "clearance");
   if (owned.empty()) return {};
   const LimitInfo& limit = mechanism.limits[owned.front()];
-  return {{.name = "min",
-           .unit = limit.unit,
-           .initial = 0.0,
-           .lower = 0,
-           .upper = limit.upper,
-           .meaning = "least distance of links that are not joined; 0: they do not touch"}};
+  return {
+      {.name = "min",
+       .unit = limit.unit,
+       .initial = 0.0,
+       .lower = limit.lower,
+       .upper = limit.upper,
+       .meaning = "least distance of links that are not joined; 0: they do not touch; < 0: they may overlap that far"}};
 }
 
 LimitSpec limits(const MechanismInfo& mechanism, const Options& options) {

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <latch>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -17,6 +19,8 @@
 
 #include "engine/core/error.hpp"
 #include "engine/core/stop.hpp"
+#include "engine/core/thread_limit.hpp"
+#include "engine/core/unit.hpp"
 
 namespace pkm {
 namespace {
@@ -29,6 +33,18 @@ thread_local std::size_t members = 1;
 thread_local Room* room = nullptr;
 // Then only threads that have no long piece left take its pieces.
 thread_local bool in_long_piece = false;
+
+/// OpenMP reads the variable itself, and takes whatever number is there; a list's first is that of our regions.
+void check_environment() {
+  const char* const given = std::getenv("OMP_NUM_THREADS");
+  const std::string text = given ? given : "";
+  if (trimmed(text).empty()) return;
+  const auto number = parse_integer(trimmed(std::string_view(text).substr(0, text.find(','))));
+  if (!number || *number < 1 || *number > kMostThreads)
+    throw ConfigError(
+        {"", 0, "OMP_NUM_THREADS"}, "'" + text + "'",
+        "a whole number from 1 to " + std::to_string(kMostThreads) + ", in decimal without leading zeros");
+}
 
 /// Waits until the value is another one: awake for a moment, then asleep. OpenMP's own barriers keep threads awake for
 /// milliseconds by default, and where other programs use the cores, the scheduler makes threads that never sleep wait
@@ -185,6 +201,7 @@ void expect_threads(int size) {
 }  // namespace
 
 int team_size(int threads) {
+  if (threads <= 0) check_environment();
   return std::clamp(threads > 0 ? threads : omp_get_max_threads(), 1, omp_get_thread_limit());
 }
 

@@ -34,7 +34,7 @@ class WorkRef {
 };
 
 /// How many threads are meant: the number itself, or for 0 as many as OpenMP would take (OMP_NUM_THREADS, else as many
-/// as the process has cores); never more than OMP_THREAD_LIMIT.
+/// as the process has cores); at most OMP_THREAD_LIMIT. Throws ConfigError where OMP_NUM_THREADS is out of range.
 int team_size(int threads);
 
 /// Runs body() on this thread, beside a team of so many threads, this one included, as for team_size(): share_pieces()

@@ -84,7 +84,7 @@ std::size_t compromise(const Scores& front) {
 
 std::vector<std::size_t> knees(const Scores& front) {
   constexpr double kRadius = 0.2;
-  constexpr double kCheaper = 1e-9;  // than an end, so that rounding makes no knee of a straight front
+  constexpr double kCheaper = 0.01;  // than an end: a design next to an end is no knee, nor is one that rounding makes
   const Scores scaled = normalised(front);
   const Ranges extent = ranges_of(front);
   const std::vector<double> price = sums(scaled);

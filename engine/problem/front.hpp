@@ -56,8 +56,8 @@ std::vector<std::size_t> ends_of(const Scores& front);
 /// of all; of several the cheapest, then the first. The front must not be empty.
 std::size_t compromise(const Scores& front);
 
-/// Knees: designs that are cheaper than every other one within a fifth of the ranges and cheaper than the front's
-/// ends, cheapest first. To leave one in any direction costs more than it gains. Concave fronts have none.
+/// Knees: designs cheaper than every other one within a fifth of the ranges, and than the front's ends by a hundredth
+/// of them, cheapest first. To leave one in any direction costs more than it gains. Concave fronts have none.
 std::vector<std::size_t> knees(const Scores& front);
 
 /// `count` designs of a front that are spread over it: the compromise, the best of each score, then always the one

@@ -55,7 +55,7 @@ Json chain(const Trajectory& trajectory) {
 
 /// Peaks and energies; those of speeds are null where no sample has any, those of forces absent where a sample has
 /// none.
-Json summary(const TrajectorySummary& s) {
+Json summary(const TrajectorySummary& s, bool has_drive_trains) {
   Json json = {{"infeasible", s.infeasible}, {"peak_speed", s.peak_speed ? Json(listed(*s.peak_speed)) : Json()}};
   if (s.has_forces)
     json.update({{"peak_force", listed(s.peak_force)},
@@ -64,6 +64,10 @@ Json summary(const TrajectorySummary& s) {
                  {"peak_total_power", s.peak_total_power},
                  {"energy", s.energy},
                  {"energy_drawn", s.energy_drawn}});
+  if (s.has_forces && has_drive_trains)
+    json.update({{"peak_motor_torque", listed(s.peak_torque)},
+                 {"rms_motor_torque", listed(s.rms_torque)},
+                 {"peak_motor_speed", listed(s.peak_motor_speed)}});
   return json;
 }
 
@@ -87,7 +91,7 @@ Json along(const Views& views, const View& view, const Motion& motion) {
       {"chain", chain(found)},
       {"conditioning", packed_floats(conditioning)},
       {"reasons", reasons},
-      {"summary", summary(found.summary)}};
+      {"summary", summary(found.summary, views.mechanism.drive_trains() != nullptr)}};
 }
 
 }  // namespace

@@ -2,6 +2,18 @@
 
 namespace pkm {
 
+namespace {
+
+/// Why a stage of a gradient solver would be refused, as where the study is read; null: it would not.
+Json gradients_refused(const DesignProblem& problem) {
+  for (const Variable& v : problem.parts().space.variables())
+    if (v.step > 0) return "the variable " + v.name + " has a step";
+  const Refusal reason = problem.no_derivatives();
+  return reason ? Json(*reason) : Json();
+}
+
+}  // namespace
+
 Json problem_data(const PageStudy& page) {
   const ProblemRecord& problem = page.contents.problem;
   Json json = {{"mechanism", problem.mechanism}};
@@ -10,6 +22,8 @@ Json problem_data(const PageStudy& page) {
     json["title"] = info.title;
     json["source"] = info.source;
   }
+  json["gradients_refused"] =
+      page.study ? gradients_refused(*page.study->problem) : Json("this program cannot read the study's text");
   json["parameters"] = Json::array();
   for (const ParameterRecord& p : problem.parameters)
     json["parameters"].push_back({{"name", p.name}, {"unit", p.unit}, {"value", p.value}, {"varies", p.variable >= 0}});

@@ -98,11 +98,15 @@ Json origin(const PageStudy& page) {
 Json summary_data(const PageStudy& page) {
   const StudyContents& contents = page.contents;
   const DesignProblem* const problem = page.study ? page.study->problem.get() : nullptr;
+  std::vector<std::string> notes = contents.notes;
+  if (page.study)
+    for (const std::string& difference : page.study->differences)
+      notes.push_back(difference + "; the recorded value is used");
   Json json = {{"state", words(contents.state)},
                {"seconds", contents.seconds},
                {"evaluations", contents.evaluations()},
                {"reproducible", contents.reproducible()},
-               {"notes", contents.notes},
+               {"notes", notes},
                {"verdict", verdict_json(verdict_on(contents, problem))},
                {"failures", failures_text(failures_in(contents, problem))},
                {"unreadable", page.unreadable},

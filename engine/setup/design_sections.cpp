@@ -78,6 +78,21 @@ Variable read_variable(const ConfigValue& table, const Parameter& parameter) {
   return variable;
 }
 
+/// The variable as a study file records it, where this is one.
+Variable recorded_variable(const StudyDraft& draft, const Variable& of_text, const Parameter& parameter) {
+  for (const StudyChanges& changes : draft.changes)
+    if (const Variable* const recorded = find_named(changes.recorded_variables, of_text.name)) {
+      const auto [name, unit, lower, upper, step] = *recorded;
+      if (!(lower >= parameter.lower && lower < upper && upper <= parameter.upper && step >= 0 &&
+            step <= upper - lower))
+        throw ConfigError({draft.study.file_name, 0, "variables." + name},
+                          "the recorded bounds " + from_to(lower, upper, unit) + " with step " + with_unit(step, unit),
+                          range_text("bounds", parameter.lower, parameter.upper, unit));
+      return *recorded;
+    }
+  return of_text;
+}
+
 void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < space.dimension(); ++i) {
     const Variable& v = space[i];
@@ -125,7 +140,10 @@ void read_mechanism(const ConfigValue& root, StudyDraft& draft) {
   if (fixed) read_parameters(*fixed, draft.info().parameters, draft.parts.parameters);
   override_parameters(root, draft);
   const auto given = [&](const std::string& name) {
-    const auto set = [&name](const StudyChanges& changes) { return contains(assigned_names(changes.set), name); };
+    const auto set = [&name](const StudyChanges& changes) {
+      const auto is_it = [&name](const auto& recorded) { return recorded.first == name; };
+      return contains(assigned_names(changes.set), name) || std::ranges::any_of(changes.recorded_parameters, is_it);
+    };
     return (fixed && fixed->has(name)) || std::ranges::any_of(draft.changes, set);
   };
   follow(draft, given, draft.parts.parameters);
@@ -145,7 +163,7 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
         throw entry.refusal("the parameter is also fixed in mechanism.parameters (" + fixed->find(key)->line() +
                             "); it can either vary or be fixed");
       const auto i = static_cast<std::size_t>(find_named(known, key) - known.data());
-      variables.push_back(read_variable(entry, known[i]));
+      variables.push_back(recorded_variable(draft, read_variable(entry, known[i]), known[i]));
       draft.parts.varies.push_back(i);
       nominal[i] = std::clamp(nominal[i], variables.back().lower, variables.back().upper);
     }

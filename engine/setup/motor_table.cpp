@@ -1,6 +1,7 @@
 #include "engine/setup/motor_table.hpp"
 
 #include "engine/core/catalogue.hpp"
+#include "engine/core/unit.hpp"
 #include "engine/setup/sections.hpp"
 #include "engine/setup/text_file.hpp"
 #include "engine/setup/toml.hpp"
@@ -14,9 +15,13 @@ std::vector<Motor> load_motors_toml(const std::string& path) {
   std::vector<Motor> motors;
   for (const ConfigValue& table : tables_of(root, "motor")) {
     table.allow({"name", "continuous_torque", "peak_torque", "speed", "rotor_inertia"});
+    const double continuous = table.at("continuous_torque", "the torque that it can hold").positive("N m");
+    const ConfigValue peak = table.at("peak_torque", "the torque of short times");
+    if (peak.positive("N m") < continuous)
+      throw peak.error("at least continuous_torque = " + with_unit(continuous, "N m"));
     motors.push_back({.name = new_name(table, "motor", motors, "the motor's name"),
-                      .continuous_torque = table.at("continuous_torque", "the torque that it can hold").positive("N m"),
-                      .peak_torque = table.at("peak_torque", "the torque of short times").positive("N m"),
+                      .continuous_torque = continuous,
+                      .peak_torque = peak.positive("N m"),
                       .speed = table.at("speed", "the greatest speed").positive("rad/s"),
                       .rotor = table.at("rotor_inertia", "the rotor's inertia").number("kg m^2", 0)});
   }

@@ -28,6 +28,12 @@ std::string entry_name(const ConfigValue& table, const std::string& type, const 
   return name;
 }
 
+/// The name of an objective that the study does not name: peak and RMS of one kind are two quantities.
+std::string default_name(const ObjectiveEntry& entry, const Options& options) {
+  const bool rms = options.has("statistic") && options.word("statistic") == "rms";
+  return entry.name + (rms ? "-rms" : "");
+}
+
 /// Adds what an entry needs to the demands of those before it. All samples of a survey share one characteristic length
 /// and one working mode.
 void add_demand(const ConfigValue& table, const Demand& own, Demand& demand) {
@@ -67,7 +73,7 @@ void expect_served(const ConfigValue& table, const Entry& entry, const StudyDraf
 NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, std::vector<StudyEntry>& entries,
                              StudyDraft& draft) {
   const Options options = read_options(table, entry.options);
-  const std::string name = entry_name(table, entry.name, entries);
+  const std::string name = entry_name(table, default_name(entry, options), entries);
   entries.push_back({entry.name, name, "", entry.options, options});
   expect_served(table, entry, draft);
   const std::size_t survey = survey_read(table, entry, draft);

@@ -71,6 +71,7 @@ struct Study {
   double exact_seconds = 10;     ///< [workspace] exact: what exact values may take in the end; 0: there are none
   std::optional<double> checkpoint_every;  ///< [s]; none: adapts itself
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
+  std::vector<std::string> differences;    ///< of a study file: where its records differ from what its text gives
 
   std::vector<Reference> references;
   std::vector<NamedMotion> motions;             ///< [[motion]]: what objectives refer to by name

@@ -72,6 +72,13 @@ void override_parameters(const ConfigValue& root, StudyDraft& draft) {
                           "a parameter that is not among the [variables] of " + draft.study.file_name);
       draft.parts.parameters[i] = *given[i];
     }
+    for (const auto& [name, value] : changes.recorded_parameters) {
+      const Parameter& p = *find_named(draft.info().parameters, name);
+      if (!(value >= p.lower && value <= p.upper))
+        throw ConfigError({draft.study.file_name, 0, name}, "the recorded value " + with_unit(value, p.unit),
+                          range_text("a number", p.lower, p.upper, p.unit));
+      draft.parts.parameters[static_cast<std::size_t>(&p - draft.info().parameters.data())] = value;
+    }
   }
 }
 

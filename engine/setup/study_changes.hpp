@@ -3,8 +3,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/core/parameter.hpp"
 #include "engine/setup/mechanism_file.hpp"
 
 namespace pkm {
@@ -18,6 +20,11 @@ struct StudyChanges {
   /// Parameters of one limb of a described mechanism, "arm2.l_b", that there have to be beside those that the study
   /// names; no change of it.
   std::vector<std::string> limb_parameters;
+
+  /// Values of parameters and bounds of variables that a study file records; they replace those that its text gives.
+  /// No change of the text.
+  std::vector<std::pair<std::string, double>> recorded_parameters;
+  std::vector<Variable> recorded_variables;
 
   bool empty() const { return set.empty() && limit.empty() && cells.empty(); }
   /// "--set", "L0=2", "--cells", "40"

@@ -36,6 +36,12 @@ bool has_hdf5_data(const std::string& file) {
 
 }  // namespace
 
+std::string digest_of(const std::string& text) {
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(XXH64(text.data(), text.size(), 0)));
+  return digits;
+}
+
 bool starts_hdf5(const std::string& file, std::size_t at) {
   constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
   return at <= file.size() && file.compare(at, signature.size(), signature) == 0;

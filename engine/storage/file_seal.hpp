@@ -1,7 +1,7 @@
 // The block of 512 bytes in front of a study's HDF5 data: format mark, schema, size and checksum, as text that `head`
 // shows:
 //
-//   pkmopt-study schema=4 bytes=51200 xxh64=0123456789abcdef
+//   pkmopt-study schema=5 bytes=51200 xxh64=0123456789abcdef
 //
 // `bytes` and `xxh64` are size and XXH64 of all that follows the block; its seed is the schema, 0 for schemas 1 to 3.
 #pragma once
@@ -12,6 +12,9 @@
 namespace pkm {
 
 inline constexpr std::size_t kSealBytes = 512;
+
+/// The XXH64 of a text, seed 0, as 16 hexadecimal digits.
+std::string digest_of(const std::string& text);
 
 /// HDF5 data begin at byte `at`.
 bool starts_hdf5(const std::string& file, std::size_t at);

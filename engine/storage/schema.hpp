@@ -311,6 +311,7 @@ void describe(Archive& archive, Study& study) {
   }
   archive.attribute("/", "name", study.name);
   archive.attribute("/", "toml_file", study.toml_file);
+  if (since(archive, 5)) archive.attribute("/", "text_digest", study.text_digest);
   archive.attribute("/", "seed", study.seed);
   archive.attribute("/", "program_version", study.program_version);
   archive.attribute("/", "program_revision", study.program_revision);

@@ -19,7 +19,7 @@
 namespace pkm {
 
 /// Version of the file's layout. A file of a newer one is refused by name.
-inline constexpr int kStudySchema = 4;
+inline constexpr int kStudySchema = 5;
 
 /// One parameter of the study's mechanism, in the mechanism's order.
 struct ParameterRecord {
@@ -172,6 +172,7 @@ struct StudyContents {
   std::string toml;                       ///< the study's text
   std::string toml_file;                  ///< and the file it was read from
   std::optional<SourceText> description;  ///< the mechanism's, where the study's text names a file
+  std::string text_digest;                ///< of both texts when the study was begun; "": before schema 5
   std::uint64_t seed = 1;
   std::string program_version;
   std::string program_revision;

@@ -17,8 +17,10 @@ namespace pkm {
 /// with every change that changes the evaluations that a seed leads to.
 inline constexpr std::int64_t kAlgorithms = 6;
 
+/// Program and arguments that all ranks have in common.
 struct ProgramVersion {
   std::string version, revision;
+  std::string arguments = {};  ///< of the command line, on one line
 };
 
 struct RunOptions {

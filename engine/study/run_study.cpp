@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 
 #include "engine/core/error.hpp"
 #include "engine/core/ranks.hpp"
@@ -55,12 +54,8 @@ RunOutcome resume_study(HeldStudy& held, const Catalogues& catalogues, const Ext
     throw StorageError(path + " was written by pkmopt " + contents.program_version + " (" + contents.program_revision +
                        "), whose algorithms have version " + std::to_string(contents.algorithms) +
                        "; this program has version " + std::to_string(kAlgorithms) + " and would not repeat it");
-  Study study = study_of(contents, catalogues);
-  try {
-    contents.problem = continued_problem(study, contents.problem);
-  } catch (const std::invalid_argument& change) {
-    throw StorageError(path + " cannot be continued: " + change.what());
-  }
+  Study study = study_to_continue(contents, path, catalogues);
+  contents.problem = problem_of(study);  // a parameter that the mechanism has gained is added
   if (extension.generations || extension.evaluations) {
     request_extension(study, contents, extension);
     contents.state = StudyState::interrupted;

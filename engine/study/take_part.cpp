@@ -6,6 +6,8 @@
 #include "engine/core/instruction_set.hpp"
 #include "engine/core/ranks.hpp"
 #include "engine/problem/replay.hpp"
+#include "engine/setup/study_changes.hpp"
+#include "engine/setup/text_file.hpp"
 #include "engine/study/extension.hpp"
 #include "engine/study/records.hpp"
 #include "engine/study/run.hpp"
@@ -24,6 +26,23 @@ std::string next_line(const std::string& text, std::size_t& at) {
   return text.substr(begin, end - begin);
 }
 
+/// Rank 0 has read the files, the others have not. Where they see other ones by these names, somebody is mistaken.
+void expect_same_files(const StudyContents& contents) {
+  const auto compare = [](const std::string& file, const std::string& text) {
+    std::string here;
+    try {
+      here = read_text_file(file, "a text");
+    } catch (const ConfigError&) {
+      return;  // there is none on this host
+    }
+    if (without_changes(here) != without_changes(text))
+      ranks::abandon(file + " has another text here than for rank 0 on " + ranks::host(0) +
+                     ": every rank has to see the same files");
+  };
+  compare(contents.toml_file, contents.toml);
+  if (contents.description) compare(contents.description->file_name, contents.description->text);
+}
+
 /// The run that an invitation asks for.
 void join_run(const std::string& invitation, const Catalogues& catalogues, const ProgramVersion& program) {
   std::size_t at = 1;
@@ -34,12 +53,17 @@ void join_run(const std::string& invitation, const Catalogues& catalogues, const
     ranks::abandon("pkmopt " + program.version + " (" + program.revision + ") here, but " + options.program.version +
                    " (" + options.program.revision + ") as rank 0 on " + ranks::host(0) +
                    ": the same program has to run on every host");
+  options.program.arguments = next_line(invitation, at);
+  if (options.program.arguments != program.arguments)
+    ranks::abandon("called as 'pkmopt " + program.arguments + "' here, but as 'pkmopt " + options.program.arguments +
+                   "' as rank 0 on " + ranks::host(0) + ": every rank needs the same arguments");
   options.threads = std::stoi(next_line(invitation, at));
   const auto instructions = static_cast<InstructionSet>(std::stoi(next_line(invitation, at)));
   use_instruction_set(std::min(instructions, widest_instruction_set()));
   Progress silent;
   try {
     StudyContents contents = parse_study(invitation.substr(at), kStudySchema);
+    if (program.arguments.starts_with("run ")) expect_same_files(contents);
     Study study = study_of(contents, catalogues);
     apply_extensions(study, contents.extensions);
     Run(study, std::move(contents), nullptr, options, silent)();
@@ -53,8 +77,8 @@ void join_run(const std::string& invitation, const Catalogues& catalogues, const
 
 std::string invitation(const StudyContents& contents, const RunOptions& options) {
   if (ranks::size() == 1) return "";
-  return kTakePart + options.program.version + '\n' + options.program.revision + '\n' +
-         std::to_string(options.threads) + '\n' + std::to_string(static_cast<int>(instruction_set())) + '\n' +
+  return kTakePart + options.program.version + '\n' + options.program.revision + '\n' + options.program.arguments +
+         '\n' + std::to_string(options.threads) + '\n' + std::to_string(static_cast<int>(instruction_set())) + '\n' +
          pack_study(contents);
 }
 

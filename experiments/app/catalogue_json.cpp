@@ -107,10 +107,9 @@ Json other_parameters_json(const Mechanism& mechanism) {
 }
 
 Json sweep_json(const MechanismInfo& info, const Sweep& sweep, bool has_columns) {
-  const std::vector<std::string> held = coordinate_names(info, sweep.held);
   return {{"swept", coordinate_names(info, sweep.swept)},
           {"columns_along", has_columns ? Json(coordinate_names(info, {sweep.column})[0]) : Json()},
-          {"held", held.size() == 1 ? Json(held[0]) : Json(held)},
+          {"held", coordinate_names(info, sweep.held)},
           {"volume_unit", unit_of_product(info, sweep.swept)}};
 }
 

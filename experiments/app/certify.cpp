@@ -111,10 +111,10 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   if (!arguments.box.empty() && !arguments.motion.empty())
     throw ConfigError({"", 0, "--motion"}, "--box beside it", "one of them");
   const Existing existing = if_forced(arguments.force);
-  check_outputs({arguments.proof}, target.files, existing);
   const auto motion = arguments.motion.empty() ? nullptr : find_motion(target, arguments.motion);
   const SurveyPlan plan = target.plan();
   const std::string mode = known_mode(info, arguments);
+  check_outputs({arguments.proof}, target.files, existing);
   out.say("mechanism", info.name);
   if (target.study) out.head.push_back({"study", target.study->name});
   out.say("design", target.words);

@@ -172,7 +172,7 @@ void check(const CheckArguments& arguments, Session& session) {
     print_json(mechanism_json(mechanism, session.catalogues));
   else
     std::cout << describe_mechanism(mechanism) << '\n'
-              << next_step(session, {"new", "study", arguments.file, "-o", "study.toml"});
+              << next_step(session, {"new", "study", file_argument(arguments.file), "-o", "study.toml"});
 }
 
 }  // namespace

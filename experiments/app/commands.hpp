@@ -31,7 +31,8 @@ inline constexpr int kNothingFeasible = 4;  ///< the study has ended, or cannot 
 /// What every command is given, and gives back.
 struct Session {
   const Catalogues& catalogues;
-  std::string program;  ///< as it was called: "pkmopt", or the name of a user's own
+  std::string program;         ///< as it was called: "pkmopt", or the name of a user's own
+  std::string arguments = {};  ///< the command line's, on one line
   int exit_code = kDone;
 };
 

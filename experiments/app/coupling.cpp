@@ -89,21 +89,25 @@ CsvTable table_of(const MechanismInfo& info, const Survey<double>& survey) {
 }
 
 std::string coupling(const Target& target, const CouplingArguments& arguments, Printout& out) {
-  check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
   const MechanismInfo& info = target.info();
   if (const Refusal reason = no_joint_forces(*target.mechanism))
     throw ConfigError({"", 0, "coupling"}, *reason + ", so no coupling indices");
   const Demand demand{.fields = {&kCouplingIndex}, .poses = true, .mode = known_mode(info, {arguments.mode, ""})};
   const SurveyPlan plan = plan_of(target, arguments);
-  const auto survey = [&](const SurveyPlan& cells) {
-    Survey<double> found;
+  const auto prepare = [&](const SurveyPlan& cells) {
     try {
-      survey_once<double>(*prepare_survey(*target.mechanism, cells, demand), target.parameters, found);
+      return prepare_survey(*target.mechanism, cells, demand);
     } catch (const std::invalid_argument& reason) {
       throw ConfigError({"", 0, info.name}, reason.what());
     }
+  };
+  const auto survey = [&](const SurveyPlan& cells) {
+    Survey<double> found;
+    survey_once<double>(*prepare(cells), target.parameters, found);
     return found;
   };
+  prepare(plan);
+  check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
   const auto title = [](const std::string& of, const Survey<double>& found) {
     return of + ": " + std::to_string(found.feasible_cells) + " of " + std::to_string(found.cells) + " cells feasible";
   };

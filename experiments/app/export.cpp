@@ -9,6 +9,7 @@
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
 #include "experiments/app/next_step.hpp"
+#include "experiments/app/recorded_study.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/slices.hpp"
 #include "experiments/app/workspace_outputs.hpp"
@@ -39,11 +40,16 @@ void export_study(const Session& session, const ExportArguments& arguments) {
   for (const NamedTable& table : tables) files.push_back(path_of(arguments.csv, table));
   std::optional<Target> target;
   if (arguments.any()) {
-    target = find_target(session.catalogues, arguments);
+    target = find_target(session, arguments);
     expect_few_cells(target->plan());
     expect_surface(arguments, names_of(swept_axes(target->plan(), target->info(), {})));
     const auto more = files_of(arguments, *target);
     files.insert(files.end(), more.begin(), more.end());
+  }
+  std::string why;
+  if (!target && !find_recorded_study(contents, arguments.from, session, why)) {
+    const StorageError note(arguments.from + ": this program cannot read the study's text (" + why + ")");
+    std::cerr << session.program << ": note: " << note.what() << '\n';
   }
   const Existing existing = if_forced(arguments.force);
   check_outputs(files, {arguments.from}, existing);

@@ -1,11 +1,13 @@
 // `pkmopt new`: a file to begin with, commented: the description of a mechanism, or a study of one.
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
 #include "engine/core/printable.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/setup/text_file.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/next_step.hpp"
@@ -97,10 +99,13 @@ std::string quoted_toml(const std::string& text) {
 /// Behind a key; whatever a description says, it stays on the line.
 std::string comment(const std::string& text) { return "    # " + printable(text) + '\n'; }
 
+bool is_built_in(const Catalogues& catalogues, const std::string& name) {
+  return std::ranges::any_of(catalogues.mechanisms, [&](const auto& m) { return m->info().name == name; });
+}
+
 /// The key of [mechanism], as a study in that file has to write it.
 std::string mechanism_key(const Catalogues& catalogues, const NewArguments& arguments) {
-  if (std::ranges::any_of(catalogues.mechanisms, [&](const auto& m) { return m->info().name == arguments.name; }))
-    return "type = " + quoted_toml(arguments.name) + '\n';
+  if (is_built_in(catalogues, arguments.name)) return "type = " + quoted_toml(arguments.name) + '\n';
   const auto folder_of = [](const std::string& file) { return fs::weakly_canonical(fs::absolute(file).parent_path()); };
   const fs::path here =
       arguments.output.empty() ? fs::weakly_canonical(fs::current_path()) : folder_of(arguments.output);
@@ -116,23 +121,27 @@ std::string bound(double value, const Parameter& p) {
   return shortest(std::clamp(std::stod(formatted("%.2g", value)), p.lower, p.upper));
 }
 
-/// Lengths before all else, as far as there is room for them.
-std::vector<const Parameter*> usual_variables(const std::vector<Parameter>& parameters) {
-  std::vector<const Parameter*> some;
+/// Parameters that can vary, lengths first.
+std::vector<const Parameter*> candidates(const std::vector<Parameter>& parameters) {
+  std::vector<const Parameter*> all;
   for (const bool length : {true, false})
     for (const Parameter& p : parameters)
-      if ((p.unit == "m") == length && p.nominal > 0 && p.lower < p.upper && some.size() < kMostVariables)
-        some.push_back(&p);
-  return some;
+      if ((p.unit == "m") == length && p.nominal > 0 && p.lower < p.upper) all.push_back(&p);
+  return all;
 }
 
-std::string study_text(const Catalogues& catalogues, const NewArguments& arguments) {
-  const auto mechanism = find_mechanism(catalogues, arguments.name);
-  const MechanismInfo& info = mechanism->info();
+std::vector<const Parameter*> first_few(std::vector<const Parameter*> parameters) {
+  parameters.resize(std::min(parameters.size(), kMostVariables));
+  return parameters;
+}
+
+std::string study_text(const Catalogues& catalogues, const NewArguments& arguments, const Mechanism& mechanism,
+                       const std::vector<const Parameter*>& variables) {
+  const MechanismInfo& info = mechanism.info();
   std::string text = "# A study of " + printable(info.name) + ", for pkmopt: 'pkmopt check FILE', 'pkmopt run FILE'.\n";
   text += "[mechanism]\n" + mechanism_key(catalogues, arguments);
   text += "\n[variables]" + comment("what the optimiser may change");
-  for (const Parameter* const p : usual_variables(info.parameters)) {
+  for (const Parameter* const p : variables) {
     const std::string unit = p->unit == "1" ? "" : "[" + p->unit + "] ";
     text += p->name + " = { min = " + bound(kBelow * p->nominal, *p) + ", max = " + bound(kAbove * p->nominal, *p) +
             " }" + comment(unit + (p->meaning.empty() ? p->name : p->meaning));
@@ -141,11 +150,52 @@ std::string study_text(const Catalogues& catalogues, const NewArguments& argumen
   std::vector<std::string> cells;
   for (const std::string& name : coordinate_names(info, info.sweeps.front().swept)) cells.push_back(name + " = 24");
   text += "cells = { " + join(cells) + " }\n\n[[objective]]\n";
-  if (const Size* const size = mechanism->size())
+  if (const Size* const size = mechanism.size())
     text += "type = \"workspace-ratio\"" + comment("volume over " + size->meaning());
   else
     text += "type = \"workspace-volume\"\n";
   return text + "\n[[stage]]" + comment("a genetic algorithm") + "optimiser = \"ga\"\ngenerations = 50\n";
+}
+
+/// The first candidates of which a bound changes the objective of the default design; where none does, as of one
+/// without a workspace, the first.
+std::vector<const Parameter*> usual_variables(const DesignProblem& problem, const Mechanism& mechanism) {
+  const MechanismInfo& info = mechanism.info();
+  std::vector<double> design;
+  for (const Parameter& p : info.parameters) design.push_back(p.nominal);
+  const auto objective = [&] { return mechanism.refuse(design) ? std::nan("") : problem.report(design).objectives[0]; };
+  const double usual = objective();
+  const auto all = candidates(info.parameters);
+  std::vector<const Parameter*> some;
+  for (const Parameter* const p : all) {
+    if (some.size() == kMostVariables) break;
+    double& value = design[static_cast<std::size_t>(p - info.parameters.data())];
+    const auto changes = [&](double factor) {
+      value = std::stod(bound(factor * p->nominal, *p));
+      const double other = objective();
+      return !std::isnan(other) && other != usual;
+    };
+    if (changes(kBelow) || changes(kAbove)) some.push_back(p);
+    value = p->nominal;
+  }
+  return some.empty() ? first_few(all) : some;
+}
+
+/// The study, after it has been read and a few of its designs have been evaluated. Throws ConfigError where that cannot
+/// be done, as of a mechanism without a box.
+std::string usual_study(const Catalogues& catalogues, const NewArguments& arguments) {
+  const auto mechanism = find_mechanism(catalogues, arguments.name);
+  const std::string text =
+      study_text(catalogues, arguments, *mechanism, first_few(candidates(mechanism->info().parameters)));
+  std::optional<SourceText> description;
+  if (!is_built_in(catalogues, arguments.name))
+    description = {read_text_file(arguments.name, "a mechanism in TOML"), arguments.name};
+  const Study study = read_study_toml(text, "the study", catalogues, description);
+  try {
+    return study_text(catalogues, arguments, *mechanism, usual_variables(*study.problem, *mechanism));
+  } catch (const std::invalid_argument& reason) {
+    throw ConfigError({arguments.name, 0, ""}, reason.what());
+  }
 }
 
 void write_new(const NewArguments& arguments, const Session& session) {
@@ -157,14 +207,15 @@ void write_new(const NewArguments& arguments, const Session& session) {
   const bool study = arguments.kind == "study";
   if (study && arguments.name.empty())
     throw ConfigError({"", 0, "new study"}, "no mechanism", "a mechanism's name or its file");
-  if (!arguments.output.empty()) check_outputs({arguments.output}, {arguments.name}, if_forced(arguments.force));
-  const std::string text = study ? study_text(session.catalogues, arguments) : mechanism_text(arguments.name);
+  const std::string text = study ? usual_study(session.catalogues, arguments) : mechanism_text(arguments.name);
   if (arguments.output.empty()) {
     std::cout << text;
     return;
   }
+  check_outputs({arguments.output}, {arguments.name}, if_forced(arguments.force));
   write_file(arguments.output, text, if_forced(arguments.force));
-  std::cout << "wrote " << arguments.output << '\n' << next_step(session, {study ? "run" : "check", arguments.output});
+  std::cout << "wrote " << arguments.output << '\n'
+            << next_step(session, {study ? "run" : "check", file_argument(arguments.output)});
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+std::string file_argument(const std::string& file) { return file.starts_with('-') ? "./" + file : file; }
+
 std::string command_text(const Session& session, const std::vector<std::string>& words) {
   std::string text = session.program;
   for (const std::string& word : words) text += ' ' + quoted(word);
@@ -43,20 +45,21 @@ void expect_file(const std::string& word, const std::string& wanted, const std::
                  const Session& session) {
   std::error_code unseen;
   if (is_mechanism(word, session) && !std::filesystem::exists(word, unseen))
-    throw ConfigError({}, "the mechanism '" + word + "'", wanted, session.program + ' ' + instead + ' ' + word);
+    throw ConfigError({}, "the mechanism '" + word + "'", wanted,
+                      session.program + ' ' + instead + ' ' + quoted(file_argument(word)));
 }
 
 void expect_study_file(const std::string& file, const std::string& instead, const Session& session) {
   expect_file(file, "a study file, F.h5", "list mechanisms", session);
   if (is_file(file, ".toml"))
     throw ConfigError({file, 0, ""}, "a file in TOML", "a study file, F.h5, as '" + session.program + " run' writes it",
-                      session.program + ' ' + instead + ' ' + quoted(file));
+                      session.program + ' ' + instead + ' ' + quoted(file_argument(file)));
 }
 
 void expect_toml(const std::string& file, const std::string& instead, const Session& session) {
   if (is_file(file, ".h5"))
     throw ConfigError({file, 0, ""}, "a study file", "a study or a mechanism in TOML",
-                      session.program + ' ' + instead + ' ' + quoted(file));
+                      session.program + ' ' + instead + ' ' + quoted(file_argument(file)));
 }
 
 }  // namespace pkm

@@ -11,6 +11,9 @@ namespace pkm {
 /// A word as a shell takes it, in quotes where it needs them.
 std::string quoted(const std::string& word);
 
+/// The name of a file as an argument: "./-x.h5" for one that would be taken for an option.
+std::string file_argument(const std::string& file);
+
 /// "pkmopt run a.toml": the program with words that are quoted where they need it.
 std::string command_text(const Session& session, const std::vector<std::string>& words);
 

@@ -26,6 +26,7 @@
 #include "experiments/app/command_line.hpp"
 #include "experiments/app/commands.hpp"
 #include "experiments/app/fitted.hpp"
+#include "experiments/app/next_step.hpp"
 #include "experiments/app/printable_stream.hpp"
 #include "experiments/app/version.hpp"
 #include "objectives/all.hpp"
@@ -139,7 +140,9 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
   // again.
   if (argc > 0 && argv[0] == program_invocation_name) use_file_checker({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
-  Session session{catalogues, name.empty() ? "pkmopt" : name};
+  std::string words;
+  for (int i = 1; i < argc; ++i) words += (i > 1 ? " " : "") + quoted(printable(argv[i]));
+  Session session{catalogues, name.empty() ? "pkmopt" : name, words};
   const auto paint_on = [&session](int descriptor) -> PrintableStream::Paint {
     const std::size_t columns = columns_of_terminal(descriptor);
     const bool colours = shows_colours(descriptor);
@@ -168,7 +171,7 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
   std::signal(SIGXFSZ, SIG_IGN);  // so that a limit of file sizes is an error that can be told
   try {
     const ranks::Group group;
-    if (ranks::rank() > 0) return take_part(catalogues, {program_version(), program_revision()});
+    if (ranks::rank() > 0) return take_part(catalogues, {program_version(), program_revision(), words});
     const int exit_code = work();
     if (ranks::size() > 1) dismiss_ranks(exit_code);
     return exit_code;

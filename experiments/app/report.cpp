@@ -2,14 +2,13 @@
 
 #include <filesystem>
 #include <iostream>
-#include <new>
 
 #include "engine/core/team.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/records.hpp"
 #include "experiments/app/next_step.hpp"
+#include "experiments/app/recorded_study.hpp"
 #include "experiments/app/running.hpp"
 #include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
@@ -26,12 +25,8 @@ struct ReportArguments {
 
 PageStudy page_study(const std::string& file, const Session& session) {
   PageStudy page{std::filesystem::path(file).filename().string(), read_study(file), {}};
-  try {
-    page.study = study_of(page.contents, session.catalogues);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    page.unreadable = message_of(error);
+  page.study = find_recorded_study(page.contents, file, session, page.unreadable);
+  if (!page.study) {
     const StorageError note(file + ": this program cannot read the study's text, so what would have to be evaluated " +
                             "again is left out (" + page.unreadable + ")");
     std::cerr << session.program << ": note: " << note.what() << '\n';
@@ -43,10 +38,10 @@ void report(const ReportArguments& arguments, const Session& session) {
   for (const std::string& file : arguments.files) expect_study_file(file, "run", session);
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
-  check_outputs({output}, arguments.files, if_forced(arguments.force));
   page_parts();  // or say at once that there are none
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
+  check_outputs({output}, arguments.files, if_forced(arguments.force));
   const SlowStep slow = announced(session, "evaluating what the page shows");
   std::string page;
   with_team(arguments.threads, [&] { page = html_page(page_data(studies, program_words())); });

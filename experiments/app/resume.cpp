@@ -24,7 +24,7 @@ void resume(const ResumeArguments& arguments, Session& session) {
   const auto& extension = arguments.extension;
   HeldStudy held(arguments.file);
   if (!extension.generations && !extension.evaluations && held.contents.state == StudyState::finished) {
-    const Study study = study_of(held.contents, session.catalogues);
+    const Study study = study_to_continue(held.contents, arguments.file, session.catalogues);
     const auto verdict = verdict_on(held.contents, study.problem.get());
     if (!arguments.common.quiet)
       std::cout << summary_text(held.contents, study, verdict)

@@ -94,8 +94,11 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
   HeldStudy held(output);
   if (const Refusal reason = refuse_other(held.contents, study, session.catalogues))
     throw StorageError(output + " holds " + *reason + "; go on with it by '" + session.program + " resume " +
-                       quoted(output) + "', or overwrite it with --force");
-  if (held.contents.state == StudyState::finished) return {.contents = std::move(held.contents)};
+                       quoted(file_argument(output)) + "', or overwrite it with --force");
+  if (held.contents.state == StudyState::finished) {
+    study_to_continue(held.contents, output, session.catalogues);
+    return {.contents = std::move(held.contents)};
+  }
   return resume_study(held, session.catalogues, {}, options, progress);
 }
 

@@ -6,6 +6,7 @@
 
 #include "engine/core/ranks.hpp"
 #include "engine/core/team.hpp"
+#include "engine/core/thread_limit.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/report/standing.hpp"
 #include "experiments/app/next_step.hpp"
@@ -21,7 +22,7 @@ SlowStep announced(const Session& session, const std::string& step) {
 }
 
 void add_threads(CLI::App& command, int& threads) {
-  add_integer(command, "--threads N", threads, 1, 1024,
+  add_integer(command, "--threads N", threads, 1, kMostThreads,
               "Number of threads (default: OMP_NUM_THREADS, else one per core)");
 }
 
@@ -48,7 +49,8 @@ int threads_of(const RunningArguments& arguments) {
 RunOptions run_options(const RunningArguments& arguments, const Session& session) {
   if (const auto warning = ranks::crowded(threads_of(arguments)))
     std::cerr << session.program << ": warning: " << *warning << '\n';
-  RunOptions options{.threads = arguments.threads, .program = {program_version(), program_revision()}};
+  RunOptions options{.threads = arguments.threads,
+                     .program = {program_version(), program_revision(), session.arguments}};
   if (!arguments.time.empty()) options.time_limit = time_limit(arguments.time);
   return options;
 }
@@ -80,7 +82,7 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
   if (!outcome.stopped.empty()) {
     // Also when quiet: it must not be missed.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
-    if (!end.unwritten) std::cout << "; go on with: " << command_text(session, {"resume", file});
+    if (!end.unwritten) std::cout << "; go on with: " << command_text(session, {"resume", file_argument(file)});
     std::cout << '\n';
     session.exit_code = kStoppedEarly;
   } else if (!arguments.quiet) {
@@ -94,7 +96,8 @@ void print_end(const RunEnd& end, const Study& study, const std::string& file, c
                   100 * outcome.parallel_efficiency, outcome.team.c_str(), exchange.c_str(),
                   100 * outcome.checkpoint_share);
     std::cout << (outcome.evaluations > 0 ? line : "nothing was left to do: no new evaluations\n");
-    if (!end.unwritten) std::cout << "written to " << file << '\n' << next_step(session, {"report", file});
+    if (!end.unwritten)
+      std::cout << "written to " << file << '\n' << next_step(session, {"report", file_argument(file)});
   }
   if (end.unwritten) {
     std::cout << std::flush;

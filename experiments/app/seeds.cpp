@@ -18,7 +18,7 @@
 namespace pkm {
 namespace {
 
-constexpr int kMostCompared = 4;  // studies in the report that is proposed
+constexpr std::size_t kMostCompared = 4;  // studies in the report that is proposed
 
 std::string seed_file(const std::string& output, std::uint64_t seed) {
   const std::filesystem::path path(output);
@@ -125,14 +125,14 @@ void print_verdict(const SeedTable& table, const RunArguments& arguments, Sessio
 void print_next_step(const std::string& output, std::uint64_t first, const std::vector<std::string>& files,
                      const RunArguments& arguments, const Session& session) {
   if (session.exit_code == kStoppedEarly) {
-    std::cout << "stopped; go on with: " << session.program << " run " << quoted(arguments.study);
+    std::cout << "stopped; go on with: " << session.program << " run " << quoted(file_argument(arguments.study));
     for (const std::string& word : arguments.changes.arguments()) std::cout << ' ' << quoted(word);
-    std::cout << " --seeds " << arguments.seeds << " --seed " << first << " --resume --output " << quoted(output)
-              << '\n';
+    std::cout << " --seeds " << arguments.seeds << " --seed " << first << " --resume --output "
+              << quoted(file_argument(output)) << '\n';
   } else if (!arguments.common.quiet) {
     std::vector<std::string> words = {"report"};
-    words.insert(words.end(), files.begin(),
-                 files.begin() + std::min<std::ptrdiff_t>(std::ssize(files), kMostCompared));
+    for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), kMostCompared); ++i)
+      words.push_back(file_argument(files[i]));
     std::cout << next_step(session, words);
   }
 }

@@ -1,14 +1,13 @@
 // pkmopt show: what a study found, from its file.
 
 #include <iostream>
-#include <new>
 
 #include "engine/report/standing.hpp"
 #include "engine/storage/study_file.hpp"
 #include "engine/storage/study_lock.hpp"
 #include "engine/study/progress.hpp"
-#include "engine/study/records.hpp"
 #include "experiments/app/next_step.hpp"
+#include "experiments/app/recorded_study.hpp"
 #include "experiments/app/summary.hpp"
 
 namespace pkm {
@@ -57,7 +56,7 @@ std::string standing(StudyContents& contents, const ShowArguments& arguments, co
   const auto holder = StudyLock::holder(arguments.file);
   if (contents.state == StudyState::running && holder) return *holder + " works on it\n";
   contents.state = StudyState::interrupted;
-  return "it was interrupted; go on with: " + command_text(session, {"resume", arguments.file}) + '\n';
+  return "it was interrupted; go on with: " + command_text(session, {"resume", file_argument(arguments.file)}) + '\n';
 }
 
 /// References are in the study's text only, and a verdict's reasons partly; a file whose text this program no longer
@@ -66,15 +65,11 @@ void show(const ShowArguments& arguments, const Session& session) {
   expect_study_file(arguments.file, "check", session);
   StudyContents contents = read_study(arguments.file);
   const std::string state = standing(contents, arguments, session);
-  Study study;
-  std::string note;
-  try {
-    study = study_of(contents, session.catalogues);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    note = "note: this program cannot read the study's text, so references are left out (" + message_of(error) + ")\n";
-  }
+  std::string why;
+  const auto found = find_recorded_study(contents, arguments.file, session, why);
+  const std::string note =
+      found ? "" : "note: this program cannot read the study's text, so references are left out (" + why + ")\n";
+  const Study study = found.value_or(Study());
   const auto verdict = verdict_on(contents, study.problem.get());
   if (arguments.json)
     print_json(summary_json(contents, verdict, failures_in(contents, study.problem.get())));

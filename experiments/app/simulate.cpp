@@ -84,14 +84,15 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
 }
 
 std::string simulate_target(const Target& target, const SimulateArguments& arguments, Printout& out) {
-  check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
   const MechanismInfo& info = target.info();
   const Dynamics& dynamics = needed(target.mechanism->dynamics(), "simulate", "dynamics", info);
   if (const Refusal reason = no_joint_forces(*target.mechanism))
     throw ConfigError({"", 0, "simulate"}, *reason + ", so no dynamics");
   const std::string mode = known_mode(info, arguments);
   const MotionSample at = parse_motion(*target.mechanism, arguments);
-  const Simulation run = simulate(setup_of(target, dynamics, mode, arguments), at.pose, at.velocity);
+  const auto setup = setup_of(target, dynamics, mode, arguments);
+  check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
+  const Simulation run = simulate(setup, at.pose, at.velocity);
   if (run.states.empty()) throw std::runtime_error("nothing to simulate: " + run.stopped);
   if (!arguments.csv.empty()) write_table(arguments, table_of(info, run, target.mechanism->drive_trains()));
 

@@ -9,8 +9,8 @@
 #include "engine/setup/motion_section.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/storage/study_file.hpp"
-#include "engine/study/records.hpp"
 #include "experiments/app/axes.hpp"
+#include "experiments/app/recorded_study.hpp"
 
 namespace pkm {
 namespace {
@@ -63,22 +63,22 @@ Target named_target(const Catalogues& catalogues, const std::string& name, const
   return target;
 }
 
-Target of_file(const Catalogues& catalogues, const DesignArguments& arguments) {
+Target of_file(const Session& session, const DesignArguments& arguments) {
   const StudyContents contents = read_study(arguments.from);
-  Target target = of_study(study_of(contents, catalogues, arguments.changes));
+  Target target = of_study(recorded_study(contents, arguments.from, session, arguments.changes));
   static_cast<ChosenDesign&>(target) = chosen_design(contents, *target.study, arguments.choice);
   target.files = {arguments.from};
   return target;
 }
 
-Target chosen_target(const Catalogues& catalogues, const DesignArguments& arguments) {
+Target chosen_target(const Session& session, const DesignArguments& arguments) {
   if (arguments.from.empty() == arguments.target.empty())
     throw ConfigError({}, arguments.from.empty() ? "no design" : "'" + arguments.target + "' together with --from",
                       "a mechanism, a file in TOML or --from F.h5");
-  if (!arguments.from.empty()) return of_file(catalogues, arguments);
+  if (!arguments.from.empty()) return of_file(session, arguments);
   if (const char* const option = given_option(arguments.choice))
     throw ConfigError({"", 0, option}, "no --from", "--from F.h5 beside it");
-  return named_target(catalogues, arguments.target, arguments.changes);
+  return named_target(session.catalogues, arguments.target, arguments.changes);
 }
 
 void set_masses(Target& target, const std::string& model) {
@@ -236,11 +236,11 @@ bool may_be_file(const std::string& name) {
   return name.ends_with(".toml") || std::filesystem::exists(name, unreadable);
 }
 
-Target find_target(const Catalogues& catalogues, const DesignArguments& given_arguments) {
+Target find_target(const Session& session, const DesignArguments& given_arguments) {
   DesignArguments arguments = given_arguments;
   for (const std::string& name : assigned_names(arguments.set))
     if (name.find('.') != std::string::npos) arguments.changes.limb_parameters.push_back(name);
-  Target target = chosen_target(catalogues, arguments);
+  Target target = chosen_target(session, arguments);
   if (!arguments.masses.empty()) set_masses(target, arguments.masses);
   if (!target.study) {
     const auto limits = parse_assignments(arguments.changes.limit, "--limit", assignable_limits(target.info()));

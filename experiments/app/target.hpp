@@ -98,7 +98,7 @@ std::shared_ptr<const Mechanism> find_mechanism(const Catalogues& catalogues, co
 std::shared_ptr<const Motion> find_motion(const Target& target, const std::string& name);
 
 /// Throws ConfigError when there is no such mechanism or study, or --set describes no mechanism.
-Target find_target(const Catalogues& catalogues, const DesignArguments& arguments);
+Target find_target(const Session& session, const DesignArguments& arguments);
 
 /// Declares the arguments of one design; what is parsed goes to `arguments`, which must outlive `command`.
 void add_design_arguments(CLI::App& command, DesignArguments& arguments);
@@ -113,7 +113,7 @@ std::pair<CLI::App&, Arguments&> add_design_command(CLI::App& app, Session& sess
         expect_toml(arguments.target, name + " --from", session);
         Printout out{.for_programs = arguments.json};
         const SlowStep slow = announced(session, name + " is computing, Ctrl-C ends it");
-        const std::string wrong = look(find_target(session.catalogues, arguments), arguments, out);
+        const std::string wrong = look(find_target(session, arguments), arguments, out);
         out.print();
         if (!wrong.empty()) throw std::runtime_error(wrong);
       });

@@ -5,6 +5,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/setup/assignments.hpp"
+#include "engine/setup/motor_table.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/joint_forces.hpp"
@@ -83,7 +84,6 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   std::vector<std::string> inputs = target.files;
   for (const std::string& file : {arguments.motion, arguments.motors})
     if (!file.empty()) inputs.push_back(file);
-  check_outputs({arguments.csv}, inputs, if_forced(arguments.force));
   const Mechanism& mechanism = *target.mechanism;
   const MechanismInfo& info = target.info();
   const std::string mode = known_mode(info, arguments);
@@ -101,6 +101,8 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
     throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");
   const double zeta = arguments.zeta.empty() ? 0 : parse_number(arguments.zeta, "--zeta", "rad");
   const auto motion = find_motion(target, arguments.motion);
+  if (!arguments.motors.empty()) load_motors_toml(arguments.motors);  // its errors precede those of the output
+  check_outputs({arguments.csv}, inputs, if_forced(arguments.force));
   Trajectory found =
       follow(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench, zeta);
   if (arguments.any()) {

@@ -106,7 +106,6 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
     if (const std::string note = turns_note({{name, unit}}, {&value, 1}); !note.empty())
       out.head.push_back({"note", note});
   }
-  if (workspace.held.size() == 1) json["held"] = Json(json["held"][0]);
 
   std::vector<Row> rows;
   const Extents extents = extents_of(workspace);
@@ -161,7 +160,6 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
   for (const std::string& file : {arguments.csv, arguments.html, arguments.svg, arguments.png})
     if (!file.empty()) files.push_back(file);
   const Existing existing = if_forced(arguments.force);
-  check_outputs(files, target.files, existing);
   if (!arguments.html.empty()) page_parts();  // or say at once that there are none
   with_team(arguments.threads, [&] {
     SurveyPlan plan = target.plan();
@@ -174,6 +172,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     expect_axes(swept_axes(plan, target.info(), slices), arguments);
     cut(plan, target, slices, ranges_given);
     const std::string mode = known_mode(target.info(), arguments);
+    check_outputs(files, target.files, existing);
     WorkspaceFields found = fields_of(target, plan, mode);
     found.touches_box = touches(found, ranges_given);
     flatten(found, target.info(), slices);

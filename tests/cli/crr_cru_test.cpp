@@ -74,7 +74,8 @@ TEST(CliCrrCru, PrintsWhatExists) {
   const json info = pkmopt({"list", "mechanisms", "3crr-r-cru", "--json"}).json();
   EXPECT_EQ(info["modes"].size(), 16u);
   EXPECT_EQ(info["default_mode"], "-,-,+,-");
-  EXPECT_EQ(info["held"], "phi");
+  EXPECT_EQ(info["held"], json::array({"phi"}));
+  for (const json& sweep : info["other_sweeps"]) EXPECT_TRUE(sweep["held"].is_array());
   EXPECT_EQ(info["other_sweeps"].size(), 3u);
   EXPECT_EQ(info["other_sweeps"][2]["columns_along"], "y");
   EXPECT_THAT(pkmopt({"list", "mechanisms", "3crr-r-cru"}).out, HasSubstr("other_sweeps"));

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "engine/storage/study_lock.hpp"
 #include "tests/cli/study_folder.hpp"
 #include "tests/cli/study_program.hpp"
@@ -35,6 +37,141 @@ TEST_F(CliNextStep, EachStepNamesTheNext) {
   EXPECT_THAT(output_, EndsWith("\nwritten to my study.h5\nnext: pkmopt report 'my study.h5'\n"));
   ASSERT_EQ(run({"run", "s.toml", "--seeds", "2"}), 0) << output_;
   EXPECT_THAT(output_, EndsWith("\nnext: pkmopt report s-seed-1.h5 s-seed-2.h5\n"));
+}
+
+TEST_F(CliNextStep, WhatIsPrintedIsACommandForEveryName) {
+  const auto shell = [&](const std::string& printed) {
+    ChildProcess child({"/bin/sh", "-c", "exec '" PKM_PROGRAM "'" + printed.substr(std::strlen("pkmopt"))}, folder_);
+    const int code = child.wait();
+    output_ = child.output();
+    return code;
+  };
+  const auto command_after = [this](const std::string& word) {
+    const auto at = output_.find(word);
+    return at == std::string::npos ? "" : output_.substr(at + word.size(), output_.find('\n', at) - at - word.size());
+  };
+  for (const std::string stem : {"-x", "--json", "two words", "it's", "a$b;c", "\"q\""}) {
+    fs::copy_file(path("s.toml"), path(stem + ".toml"));
+    ASSERT_EQ(run({"run", "./" + stem + ".toml", "--time", "1e-9"}), 3) << output_;
+    const std::string resume = command_after("go on with: ");
+    EXPECT_THAT(resume, ::testing::StartsWith("pkmopt resume "));
+    ASSERT_EQ(run({"show", "./" + stem + ".h5"}), 0) << output_;
+    EXPECT_EQ(command_after("go on with: "), resume);
+    ASSERT_EQ(shell(resume), 0) << resume << output_;
+    const std::string report = command_after("next: ");
+    EXPECT_THAT(report, ::testing::StartsWith("pkmopt report "));
+    EXPECT_EQ(shell(report + " --no-such-option"), 2) << report;
+    EXPECT_THAT(output_, HasSubstr("unknown option '--no-such-option'"));
+    ASSERT_EQ(run({"new", "study", "4ppa-2par", "-o", "./" + stem + "2.toml"}), 0) << output_;
+    EXPECT_EQ(shell(command_after("next: ") + " --time 1e-9 --quiet"), 3) << output_;
+    ASSERT_EQ(run({"run", "./" + stem + ".toml", "--seeds", "2", "--time", "1e-9"}), 3) << output_;
+    EXPECT_EQ(shell(command_after("go on with: ")), 0) << output_;
+  }
+  EXPECT_EQ(run({"show", "./-x.toml"}), 2);
+  EXPECT_THAT(output_, HasSubstr("did you mean 'pkmopt check ./-x.toml'?"));
+}
+
+TEST_F(CliNextStep, ANewStudyVariesWhatHasAnEffect) {
+  std::ofstream(path("m.toml")) << R"([mechanism]
+name = "five-bar"
+[parameters]
+width  = { default = "20 mm", min = "1 mm", max = "100 mm" }
+paint  = { default = "1 mm", min = 0, max = "2 mm" }
+cover  = { default = "5 mm", min = 0, max = "20 mm" }
+weight = { default = "30 mm", min = 0, max = "50 mm" }
+d      = { default = "150 mm", min = 0, max = "4 m" }
+l_a    = { default = "250 mm", min = "10 mm", max = "4 m" }
+l_b    = { default = "350 mm", min = "10 mm", max = "4 m" }
+[platform]
+coordinates = { x = "along x", y = "along y" }
+[survey]
+sweep = ["x", "y"]
+box   = { x = ["d - l_a - l_b", "l_a + l_b - d"], y = [0, "l_a + l_b"] }
+[[limb]]
+name     = "left"
+drive    = "crank"
+base     = ["-d", 0, 0]
+axis     = [0, 0, 1]
+zero     = [1, 0, 0]
+crank    = "l_a"
+rod      = "l_b"
+platform = [0, 0, 0]
+branch   = "+"
+radius   = "width + paint + cover + weight"
+[[limb]]
+name     = "right"
+drive    = "crank"
+base     = ["d", 0, 0]
+axis     = [0, 0, 1]
+zero     = [1, 0, 0]
+crank    = "l_a"
+rod      = "l_b"
+platform = [0, 0, 0]
+branch   = "-"
+)";
+  ASSERT_EQ(run({"new", "study", "m.toml"}), 0) << output_;
+  for (const char* varies : {"\nd = {", "\nl_a = {", "\nl_b = {"}) EXPECT_THAT(output_, HasSubstr(varies));
+  for (const char* idle : {"width", "paint", "cover", "weight"}) EXPECT_THAT(output_, Not(HasSubstr(idle)));
+}
+
+TEST_F(CliNextStep, ANewStudyOfAMechanismWithoutABoxIsRefused) {
+  std::ifstream file(PKM_EXPERIMENTS "/mechanisms/3-rrr.toml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto begin = text.find("[survey"), end = text.find("\n[[limb]]", begin);
+  ASSERT_NE(begin, std::string::npos);
+  std::ofstream(path("m.toml")) << text.erase(begin, end - begin);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"-o", "new.toml"}}) {
+    std::vector<std::string> arguments = {"new", "study", "m.toml"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(arguments), 2);
+    EXPECT_EQ(output_, "pkmopt: m.toml: mechanism 3-rrr has no [survey] box for x; give a box\n");
+  }
+  EXPECT_FALSE(fs::exists(path("new.toml")));
+}
+
+// Whatever else is wrong with a command is found first.
+TEST_F(CliNextStep, AnOutputThatExistsIsComplainedOfLast) {
+  for (const char* file : {"x.csv", "x.html", "x.toml", "x.stl", "x.vtkhdf"}) std::ofstream(path(file)) << "mine";
+  ASSERT_EQ(run({"run", "s.toml", "-o", "s.h5", "--quiet"}), 0) << output_;
+  const std::string five_bar = PKM_EXPERIMENTS "/mechanisms/five-bar.toml";
+  const std::string motors = PKM_EXPERIMENTS "/mechanisms/motors/rotary-delta.toml";
+  const struct {
+    std::vector<std::string> right, wrong;
+    std::string sentence;
+  } cases[] = {
+      {{"new", "study", "4ppa-2par", "-o", "x.toml"}, {"new", "study", "4ppa-2pra", "-o", "x.toml"}, "4ppa-2pra"},
+      {{"new", "mechanism", "delta", "-o", "x.toml"}, {"new", "mechanism", "del/ta", "-o", "x.toml"}, "del/ta"},
+      {{"report", "s.h5", "-o", "x.html"}, {"report", "s.h5", "none.h5", "-o", "x.html"}, "none.h5"},
+      {{"export", "s.h5", "--stl", "x.stl"}, {"export", "s.h5", "--stl", "x.stl", "--front", "1"}, "--front"},
+      {{"workspace", "s.toml", "--csv", "x.csv"}, {"workspace", "s.toml", "--csv", "x.csv", "--cells", "0"}, "--cells"},
+      {{"workspace", "s.toml", "--csv", "x.csv"}, {"workspace", "s.toml", "--csv", "x.csv", "--cut", "w=0"}, "--cut"},
+      {{"workspace", "s.toml", "--csv", "x.csv"}, {"workspace", "s.toml", "--csv", "x.csv", "--mode", "m"}, "--mode"},
+      {{"coupling", "3crr-r-cru", "--cells", "4", "--csv", "x.csv"},
+       {"coupling", "3crr-r-cru", "--cells", "4", "--csv", "x.csv", "--mode", "m"},
+       "--mode"},
+      {{"trajectory", motors, "--motion", "cycle", "-o", "x.csv"},
+       {"trajectory", motors, "--motion", "circle", "-o", "x.csv"},
+       "circle"},
+      {{"trajectory", motors, "--motion", "cycle", "-o", "x.csv"},
+       {"trajectory", motors, "--motion", "cycle", "--motors", "none.toml", "-o", "x.csv"},
+       "none.toml"},
+      {{"simulate", "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3", "--duration", "0.01", "--step", "1e-3", "-o",
+        "x.csv"},
+       {"simulate", "3crr-r-cru", "--at", "x=0.2,y=0.17,z=0.22,phi=0.3", "--duration", "soon", "--step", "1e-3", "-o",
+        "x.csv"},
+       "soon"},
+      {{"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg", "--stl", "x.stl"},
+       {"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8", "--stl", "x.stl"},
+       "theta"},
+      {{"certify", five_bar, "-o", "x.csv"}, {"certify", five_bar, "-o", "x.csv", "--mode", "m"}, "--mode"},
+  };
+  for (const auto& [right, wrong, sentence] : cases) {
+    EXPECT_EQ(run(right), 1) << right[0];
+    EXPECT_THAT(output_, HasSubstr(" exists already; overwrite it with --force")) << right[0];
+    EXPECT_NE(run(wrong), 0) << wrong[0];
+    EXPECT_THAT(output_, HasSubstr(sentence)) << wrong[0];
+    EXPECT_THAT(output_, Not(HasSubstr("exists already"))) << wrong[0];
+  }
 }
 
 TEST_F(CliNextStep, WhatIsPrintedAsAFileHoldsNoNextStep) {

@@ -161,7 +161,7 @@ TEST_P(OldStudiesOfTheseAlgorithms, EndAsTheirOwnProgramEndedThem) {
     arguments.insert(arguments.end(), how.begin(), how.end());
     ASSERT_EQ(run(arguments), 0) << output_;
     EXPECT_EQ(first_difference(straight, read("s.h5")), "") << how[1] << " threads";
-    EXPECT_THAT(slurp("s.h5"), StartsWith("pkmopt-study schema=4 "));
+    EXPECT_THAT(slurp("s.h5"), StartsWith("pkmopt-study schema=5 "));
   }
 }
 

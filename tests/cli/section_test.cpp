@@ -88,6 +88,8 @@ TEST_F(CliSection, HeldIsASliceWhereNoSurveyHoldsTheCoordinate) {
   const json cut = workspace({"4ppa-2par", "--cut", "theta=20deg", "--cells", "20", "--csv", "cut.csv"});
   EXPECT_EQ(held["volume"], cut["volume"]);
   EXPECT_EQ(held["held"][1]["name"], "theta");
+  EXPECT_EQ(workspace({"4ppa-2par", "--cells", "8"})["held"].size(), 1u);
+  EXPECT_EQ(workspace({PKM_EXPERIMENTS "/mechanisms/five-bar.toml", "--cells", "8"})["held"], json::array());
   EXPECT_EQ(text("held.csv"), text("cut.csv"));
 }
 

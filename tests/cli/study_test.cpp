@@ -23,7 +23,28 @@ TEST_F(GaProgram, ThreadsAreAsManyAsOpenMPIsToldUnlessTheCommandSays) {
   EXPECT_NE(output_.find(" on 3 threads, checkpoints"), std::string::npos) << output_;
   EXPECT_EQ(run({"run", "study.toml", "--force", "--threads", "2"}), 0);
   EXPECT_NE(output_.find(" on 2 threads, checkpoints"), std::string::npos) << output_;
+  ASSERT_EQ(setenv("OMP_NUM_THREADS", " 2,1", 1), 0);  // of regions within regions, too
+  EXPECT_EQ(run({"run", "study.toml", "--force"}), 0);
+  EXPECT_NE(output_.find(" on 2 threads, checkpoints"), std::string::npos) << output_;
+  for (const char* given : {"0", "-1", "1025", "1e2", "many", "99999999999999999999"}) {
+    ASSERT_EQ(setenv("OMP_NUM_THREADS", given, 1), 0);
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"run", "study.toml", "--force"},
+                                                    {"resume", "study.h5"},
+                                                    {"evaluate", "study.toml"},
+                                                    {"workspace", "study.toml"}}) {
+      EXPECT_EQ(run(command), 2) << command[0];
+      EXPECT_NE(output_.find("pkmopt: OMP_NUM_THREADS: found '" + std::string(given) +
+                             "'; expected a whole number from 1 to 1024, in decimal without leading zeros\n"),
+                std::string::npos)
+          << output_;
+    }
+    EXPECT_EQ(run({"run", "study.toml", "--force", "--threads", "2"}), 0) << output_;
+  }
   unsetenv("OMP_NUM_THREADS");
+  EXPECT_EQ(run({"run", "study.toml", "--threads", "1025"}), 2);
+  EXPECT_NE(output_.find("pkmopt: --threads: found '1025'; expected a whole number from 1 to 1024, in decimal"),
+            std::string::npos)
+      << output_;
 }
 
 TEST_F(GaProgram, ExistingFilesAreNotOverwritten) {

@@ -298,6 +298,41 @@ TEST_F(Ranks, AreNamedWhereTheyComputeOtherNumbers) {
   EXPECT_THAT(output_, HasSubstr("what was evaluated in generation 0 of stage 1 differs from that of rank 0 on "));
 }
 
+TEST_F(Ranks, ThatReadOtherFilesAreNamed) {
+  write_toml(std::string(kRatio) + kGa);
+  std::ofstream(path("other.toml")) << kHead << kVolume << kGa;
+  fs::create_directory(path("here"));
+  fs::create_directory(path("there"));
+  std::ofstream(path("here/study.toml")) << kHead << kRatio << kGa;
+  std::ofstream(path("there/study.toml")) << kHead << kVolume << kGa;
+  const auto two = [&](const std::vector<std::string>& first, const std::vector<std::string>& second) {
+    std::vector<std::string> words = {PKM_MPIRUN, "--bind-to", "none", "-n", "1"};
+    words.insert(words.end(), first.begin(), first.end());
+    words.insert(words.end(), {":", "-n", "1"});
+    words.insert(words.end(), second.begin(), second.end());
+    ChildProcess child(words, folder_);
+    const int code = child.wait();
+    output_ = child.output();
+    return code;
+  };
+  EXPECT_NE(two({PKM_PROGRAM, "run", "study.toml", "--quiet", "-o", "a.h5"},
+                {PKM_PROGRAM, "run", "other.toml", "--quiet", "-o", "a.h5"}),
+            0);
+  EXPECT_THAT(output_,
+              HasSubstr("called as 'pkmopt run other.toml --quiet -o a.h5' here, but as 'pkmopt run study.toml "
+                        "--quiet -o a.h5' as rank 0 on "));
+  EXPECT_NE(two({"--wdir", path("here"), PKM_PROGRAM, "run", "study.toml", "--quiet"},
+                {"--wdir", path("there"), PKM_PROGRAM, "run", "study.toml", "--quiet"}),
+            0);
+  EXPECT_THAT(output_, HasSubstr("study.toml has another text here than for rank 0 on "));
+  // Where there is no such file, rank 0's is that of all.
+  fs::remove(path("there/study.toml"));
+  EXPECT_EQ(two({"--wdir", path("here"), PKM_PROGRAM, "run", "study.toml", "--quiet", "--force"},
+                {"--wdir", path("there"), PKM_PROGRAM, "run", "study.toml", "--quiet", "--force"}),
+            0)
+      << output_;
+}
+
 TEST_F(Ranks, EndTogetherWhereRank0CannotBegin) {
   write_toml("[[stage]]\noptimiser = \"gaa\"\n", std::string(kHead) + kRatio);
   EXPECT_EQ(run_on(3, {"run", "study.toml", "--quiet"}), 2);

@@ -193,7 +193,7 @@ function addOverlays(studies, grid) {
     addPlot(grid, {
       title: "Workspaces over each other",
       caption: [
-        "Of the best designs: ",
+        "Of the best designs, with their volumes by cells: ",
         ...those.flatMap(({ study, cells }, k) => [
           (k ? ", " : "") + study.name + " ",
           result(cells.volume, cells.volume_unit),

@@ -115,6 +115,10 @@ function motionSummary(motion, joints) {
       joints.map(() => "W"),
       summary.peak_total_power,
     );
+    const all = (unit) => joints.map(() => unit);
+    add("peak torque of the motor", summary.peak_motor_torque, all("N m"));
+    add("root mean square of the motor’s torque", summary.rms_motor_torque, all("N m"));
+    add("peak speed of the motor", summary.peak_motor_speed, all("rad/s"));
     if (summary.energy !== undefined) {
       rows.push([
         name,

@@ -16,7 +16,7 @@ function gainedSentence({ summary, problem }) {
   return [
     ...told.flatMap((row, k) => [
       k ? "; " : "",
-      row.name + " ",
+      rowLabel(row, table.rows) + " ",
       element("b", "", result(row.values[0], row.unit)),
       ...(row.gain
         ? [" (", gainText(row.gain), ")"]
@@ -63,7 +63,7 @@ function holdingSentence({ summary, problem, point }) {
   );
   shown.title = active.join("\n");
   const solved = stages.some((stage) => stage.starts);
-  return [shown, solved ? "." : ". Multipliers are known after a gradient stage."];
+  return [shown, solved || problem.gradients_refused ? "." : ". Multipliers are known after a gradient stage."];
 }
 
 const isBound = (name) => / bound/.test(name);
@@ -96,9 +96,10 @@ function nextSentence(study) {
         .map((sentence) => sentence.replace(/ at its (\w+) bound.*/, " ($1 bound)"));
   if (bounds.length)
     return ["Widen the bounds the design lies on, as far as it can be built: " + bounds.slice(0, 3).join(", ") + "."];
-  if (study.front && !stages.some((stage) => stage.starts))
+  const solvable = !problem.gradients_refused && !stages.some((stage) => stage.starts);
+  if (study.front && solvable)
     return ["Refine the trade-off: a stage ", code('optimiser = "nlopt", start = "pareto"'), "."];
-  if (!optimality && problem.objectives.length === 1 && !stages.some((stage) => stage.starts))
+  if (!optimality && problem.objectives.length === 1 && solvable)
     return [
       "Add a gradient stage (",
       code('optimiser = "nlopt", start = "best"'),

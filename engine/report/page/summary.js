@@ -55,19 +55,23 @@ function cards(study) {
     if (row.values[0] === null) continue;
     const { unit, scale } = resultUnit(row.unit);
     const value = rounded(digits(row.values[0] * scale), row.values[0], row.unit);
-    list.append(card(row.name, value, unit, ...(row.gain ? [gainText(row.gain), ...against] : [row.meaning])));
+    list.append(card(rowLabel(row, table.rows), value, unit, ...(row.gain ? [gainText(row.gain), ...against] : [row.meaning])));
   }
   if (stages.length)
     list.append(
       card(
-        "volume of work",
-        study.summary.evaluations.toLocaleString("en-GB"),
         "evaluations",
+        study.summary.evaluations.toLocaleString("en-GB"),
+        "1",
         "in " + count(stages.length, "stage") + ": " + stages.map((stage) => stage.optimiser).join(", then "),
       ),
     );
   return list.children.length ? list : "";
 }
+
+/** A result of voxels is named apart where the same on exact columns stands beside it. */
+const rowLabel = (row, rows) =>
+  rows.some((other) => other.kind === row.kind && other.name === row.name + ", exact") ? row.name + ", by cells" : row.name;
 
 const isResult = (row) => row.kind === "objective" || row.kind === "report" || row.kind === "certain";
 const unitOf = (row) => (isResult(row) ? resultUnit(row.unit).unit : shownUnit(row.unit));
@@ -89,10 +93,12 @@ function tableCell(row, value) {
   return node;
 }
 
-/** "min" or "max" where a variable is at its bound. */
+/** Where a variable is at a bound, or, as a baseline may be, beyond it. */
 function boundAt(value, { lower, upper }) {
   const near = 1e-6 * (upper - lower);
-  return value - lower <= near ? "min" : upper - value <= near ? "max" : "";
+  if (value < lower - near) return "below min";
+  if (value > upper + near) return "above max";
+  return value <= lower + near ? "min" : value >= upper - near ? "max" : "";
 }
 
 /** @param variables  of the problem: a value at a bound is marked */
@@ -119,7 +125,7 @@ function designTable({ columns, rows }, variables) {
       body.append(element("tr", "group", cell));
       kind = row.kind;
     }
-    const name = element("th", "text", row.name);
+    const name = element("th", "text", rowLabel(row, rows));
     name.scope = "row";
     name.title = row.meaning;
     const line = element("tr", "", name, element("td", "unit", unitText(unitOf(row))));
@@ -296,7 +302,8 @@ function timeSpent({ stages, seconds }) {
 
 function word(text) {
   // of a shell
-  return /^[\w./+-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
+  const file = text.startsWith("-") ? "./" + text : text; // no option
+  return /^[\w./+-]+$/.test(file) ? file : "'" + file.replaceAll("'", "'\\''") + "'";
 }
 
 function details(title, text) {

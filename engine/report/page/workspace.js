@@ -124,7 +124,7 @@ function showWorkspace(study, section) {
       "lead",
       "Feasible poses" +
         (places.length ? " at " + places.join("; ") : "") +
-        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their ${solid ? "volume" : "extent"}: `,
+        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. Their ${solid ? "volume" : "extent"}, counted on these cells: `,
       ...volumes,
       "." +
         (designs.length > 1

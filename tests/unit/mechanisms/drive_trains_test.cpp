@@ -216,6 +216,17 @@ TEST(DriveTrainStudy, ObjectivesAreThoseOfTheTrajectory) {
   EXPECT_THAT(describe(study), HasSubstr("reflected inertia"));
 }
 
+TEST(DriveTrainStudy, PeakAndRmsOfMotorTorqueHaveTheirOwnNames) {
+  const std::string torque = "type = \"motor-torque\"\nmotion = \"cycle\"\n", rms = "statistic = \"rms\"\n";
+  const Study study = read(kDrives + "[[report]]\n" + torque + "[[report]]\n" + torque + rms + "[[constraint]]\n" +
+                           torque + "max = 5\n[[constraint]]\n" + torque + rms + "max = 2\n");
+  for (const auto& infos : {study.problem->reports(), study.problem->margins()}) {
+    ASSERT_EQ(infos.size(), 2u);
+    EXPECT_EQ(infos[0].name, "motor-torque");
+    EXPECT_EQ(infos[1].name, "motor-torque-rms");
+  }
+}
+
 std::string message_of(const std::string& more) {
   try {
     read(more);

@@ -59,6 +59,19 @@ TEST(Front, KneesAreBendsAndNotEnds) {
   EXPECT_TRUE(knees(line({0, 0.5, 1})).empty());  // a straight front has none
 }
 
+TEST(Front, ADesignNextToAnEndIsNoKnee) {
+  // Bulges outwards, but for one design that is a little cheaper than the end beside it.
+  Scores scores{2};
+  scores.add(std::array{0.0, 1.0});
+  scores.add(std::array{4e-6, 1 - 8e-6});
+  for (int i = 1; i <= 50; ++i) scores.add(std::array{i / 50.0, 1 - std::pow(i / 50.0, 3)});
+  EXPECT_TRUE(knees(scores).empty());
+  // One that saves a fifth is a knee, however near the end it is in one score.
+  scores.values[2] = 4e-6;
+  scores.values[3] = 0.8;
+  EXPECT_THAT(knees(scores), ElementsAre(1));
+}
+
 TEST(Front, AChoiceHasTheEndsAndTheCompromise) {
   Scores scores{2};
   for (int i = 0; i <= 100; ++i) scores.add(std::array{i / 100.0, std::pow(1 - i / 100.0, 3)});

@@ -16,6 +16,7 @@
 #include "engine/report/standing.hpp"
 #include "engine/report/thinning.hpp"
 #include "tests/unit/contracts/nominal.hpp"
+#include "tests/unit/setup/real_studies.hpp"
 #include "tests/unit/storage/sample_study.hpp"
 
 namespace pkm {
@@ -257,6 +258,58 @@ TEST(PageData, OfManyMotionsTheFirstOnesAreEmbedded) {
   EXPECT_EQ(of_many["motions"]["motions"][0]["name"], "motion 1");
   EXPECT_EQ(of_many["mechanism"]["designs"][0]["motions"].size(), shown);
   EXPECT_LT(many.size(), 3 * few.size());
+}
+
+TEST(PageData, SaysWhetherTheStudyWouldAcceptAGradientStage) {
+  const auto study = [](const std::string& workspace, const std::string& variable) {
+    return "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.15, max = 0.3" + variable +
+           " }\n[workspace]\n" + workspace +
+           "\n[[objective]]\ntype = \"workspace-ratio\"\n[[stage]]\noptimiser = \"ga\"\n";
+  };
+  const std::string columns = "method = \"columns\"",
+                    voxels = "method = \"voxels\"\ncells = { x = 6, z = 6, theta = 6 }";
+  for (const std::string& text : {study(columns, ""), study(voxels, ""), study(columns, ", step = 0.01")}) {
+    PageStudy page = sample_page();
+    page.study = testing::read_real(text);
+    const std::string complaint =
+        testing::real_complaint(text + "[[stage]]\noptimiser = \"nlopt\"\nstart = \"best\"\n");
+    const json refused = json::parse(json_text(problem_data(page)))["gradients_refused"];
+    EXPECT_EQ(refused.is_null(), complaint == "accepted") << complaint;
+    if (!refused.is_null()) {
+      EXPECT_THAT(complaint, HasSubstr(refused.get<std::string>()));
+    }
+  }
+  EXPECT_TRUE(problem_data(sample_page())["gradients_refused"].is_string()) << "there is no study to ask";
+}
+
+TEST(PageData, MotorsHaveRowsOfTheirOwnWhereThereAreDriveTrains) {
+  const std::string text = R"([mechanism]
+type = "3crr-r-cru"
+[variables]
+l = { min = 0.3, max = 0.5 }
+[[motion]]
+name = "there"
+type = "points"
+points = [{ x = 0.15, y = 0.2, z = 0.2, phi = 0 }, { x = 0.2 }]
+time = 0.5
+[[objective]]
+type = "workspace-volume"
+[[stage]]
+optimiser = "ga"
+)";
+  const auto summary_of = [&](const std::string& drives) {
+    const Study study = testing::read_real(text + drives);
+    const Mechanism& mechanism = *study.problem->parts().mechanism;
+    const Views views = views_of(mechanism, test::voxels(mechanism.info(), 6), "", study.motions,
+                                 {"nominal", study.problem->parts().parameters});
+    return json::parse(json_text(motions_data(views)))["motions"][0]["designs"][0]["summary"];
+  };
+  const json with = summary_of("[[drive_train]]\njoint = \"all\"\nlead = \"20 mm\"\n"), without = summary_of("");
+  for (const char* key : {"peak_motor_torque", "rms_motor_torque", "peak_motor_speed"}) {
+    EXPECT_EQ(with[key].size(), 4u) << key;
+    EXPECT_FALSE(without.contains(key));
+  }
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_GE(with["peak_motor_torque"][i], with["rms_motor_torque"][i]);
 }
 
 TEST(PageData, ADesignThatIsNoneIsSaidSo) {

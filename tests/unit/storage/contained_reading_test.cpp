@@ -35,7 +35,7 @@ TEST_F(ContainedReading, GivesTheHelperTheWholeFile) {
 
 TEST_F(ContainedReading, PassesOnWhatTheHelperRefuses) {
   EXPECT_EQ(with_helper("printf '/best: no group'; exit 1"),
-            file_ + ": not laid out as schema 4 says (/best: no group)");
+            file_ + ": not laid out as schema 5 says (/best: no group)");
 }
 
 TEST_F(ContainedReading, TellsHowTheHelperEnded) {

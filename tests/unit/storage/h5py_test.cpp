@@ -48,7 +48,7 @@ generation [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]
 population [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]
 columns ['workspace-shape', 'rail-length']
 format pkmopt-study
-schema 4
+schema 5
 seed 18364758544493064720
 name Größe, 4PPa-2PaR <b>
 lower [0.1, 0.35]
@@ -103,21 +103,21 @@ TEST_F(H5py, AMissingPartIsNamed) {
   ASSERT_EQ(python("remove", "/stages/1/evaluations/margin"), "");
   seal_again();
   EXPECT_THAT(test::storage_error([&] { read_study(path_); }),
-              testing::StartsWith(path_ + ": not laid out as schema 4 says (/stages/1/evaluations/margin: "));
+              testing::StartsWith(path_ + ": not laid out as schema 5 says (/stages/1/evaluations/margin: "));
 }
 
 TEST_F(H5py, AnIndexThatPointsNowhereIsNamed) {
   ASSERT_EQ(python("put", "/stages/1/generations/population 5 12"), "");
   seal_again();
   EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-            path_ + ": not laid out as schema 4 says (/stages/1: population holds what is no row of evaluations)");
+            path_ + ": not laid out as schema 5 says (/stages/1: population holds what is no row of evaluations)");
 }
 
 TEST_F(H5py, AFrontThatPointsNowhereIsNamed) {
   ASSERT_EQ(python("put", "/stages/1/front/row 1 12"), "");
   seal_again();
   EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-            path_ + ": not laid out as schema 4 says (/stages/1: the front holds what is no row of evaluations)");
+            path_ + ": not laid out as schema 5 says (/stages/1: the front holds what is no row of evaluations)");
 }
 
 TEST_F(H5py, APartOfAnotherSizeIsNamed) {
@@ -125,7 +125,7 @@ TEST_F(H5py, APartOfAnotherSizeIsNamed) {
   seal_again();
   EXPECT_EQ(
       test::storage_error([&] { read_study(path_); }),
-      path_ + ": not laid out as schema 4 says (/stages/1/evaluations/seconds: has 11 values, but 12 are expected)");
+      path_ + ": not laid out as schema 5 says (/stages/1/evaluations/seconds: has 11 values, but 12 are expected)");
 }
 
 TEST_F(H5py, WhatPkmoptNeverWritesIsRefused) {
@@ -145,7 +145,7 @@ TEST_F(H5py, WhatPkmoptNeverWritesIsRefused) {
     ASSERT_EQ(python("forge", kind), "") << kind;
     seal_again();
     EXPECT_EQ(test::storage_error([&] { read_study(path_); }),
-              path_ + ": not laid out as schema 4 says (" + reason + ")")
+              path_ + ": not laid out as schema 5 says (" + reason + ")")
         << kind;
   }
 }

@@ -69,6 +69,7 @@ inline StudyContents sample_study() {
   study.toml = "[study]\nname = \"Größe\"  # with a long comment " + std::string(70000, '.') + "\n";
   study.toml_file = "wide.toml";
   study.description = {"# Größe\n" + std::string(70000, '.') + "\n", "delta.toml"};
+  study.text_digest = "0123456789abcdef";
   study.seed = 0xfedcba9876543210;
   study.program_version = "0.1.0";
   study.program_revision = "abc123";

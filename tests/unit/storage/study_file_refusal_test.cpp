@@ -60,10 +60,10 @@ TEST(StudyFileRefuses, NewerSchema) {
   const std::string path = folder / "s.h5";
   write_study(path, StudyContents{});
   std::string bytes = slurp(path);
-  seal(bytes, 5);
+  seal(bytes, kStudySchema + 1);
   spill(path, bytes);
   EXPECT_EQ(storage_error([&] { read_study(path); }),
-            path + ": written with study schema 5, but this program reads schemas up to 4; use a newer pkmopt");
+            path + ": written with study schema 6, but this program reads schemas up to 5; use a newer pkmopt");
   EXPECT_EQ(slurp(path), bytes);
 }
 
@@ -71,9 +71,9 @@ TEST(StudyFileRefuses, AnotherSchemasDigit) {
   const Folder folder;
   const std::string path = folder / "s.h5";
   write_study(path, StudyContents{});
-  for (const char digit : {'0', '1', '2', '3', '5', '6'}) {
+  for (const char digit : {'0', '1', '2', '3', '4', '6'}) {
     std::string bytes = slurp(path);
-    bytes[bytes.find("schema=4") + 7] = digit;
+    bytes[bytes.find("schema=5") + 7] = digit;
     spill(folder / "other.h5", bytes);
     EXPECT_THAT(storage_error([&] { read_study(folder / "other.h5"); }), HasSubstr(": the file is damaged")) << digit;
   }

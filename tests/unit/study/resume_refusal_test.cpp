@@ -19,6 +19,7 @@ TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
   EXPECT_EQ(study_of(sound, all_catalogues()).name, "two stages");
   const auto refusal = [&](const auto& forge) -> std::string {
     StudyContents forged = sound;
+    forged.text_digest.clear();  // as of a program before schema 5
     forge(forged);
     try {
       study_of(forged, all_catalogues());
@@ -37,13 +38,74 @@ TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
   EXPECT_EQ(refusal([](StudyContents& c) {
               c.problem.variables.push_back({"l_d", "m", 0.5, 0.7, 0});
             }),
-            begin + "the variables a, b, l_u, and a, b, l_u, l_d");
+            begin + "the variables a [m], b [m], l_u [m], and a [m], b [m], l_u [m], l_d [m]");
   EXPECT_EQ(refusal([](StudyContents& c) { c.stages.push_back(c.stages.back()); }), begin + "2 stages, and 3");
   EXPECT_EQ(refusal([](StudyContents& c) { c.stages[1].optimiser = "nlopt"; }), begin + "stage 2 by ga, and by nlopt");
   EXPECT_EQ(refusal([](StudyContents& c) {
               c.extensions.push_back({-1, "generations", 9});
             }),
             begin + "2 stages, and a new limit of stage 0");
+  EXPECT_EQ(refusal([](StudyContents& c) { c.problem.objectives[0].direction = Direction::minimise; }),
+            begin + "the objectives maximise workspace-ratio [rad/m], and minimise workspace-ratio [rad/m]");
+  EXPECT_EQ(refusal([](StudyContents& c) { c.problem.margins[0].name = "rail-length"; }),
+            begin + "no constraint rail-length [m^2 rad], and one");
+  EXPECT_EQ(refusal([](StudyContents& c) { c.problem.reports[0].unit = "m"; }),
+            begin + "no report conditioning [m], and one");
+  EXPECT_EQ(refusal([](StudyContents& c) { c.problem.parameters[4].unit = "mm"; }),
+            begin + "no parameter d [mm], and one");
+  EXPECT_EQ(
+      refusal([](StudyContents& c) { std::swap(c.problem.parameters[0].variable, c.problem.parameters[1].variable); }),
+      begin + "no parameter a [m], variable 2, and one");
+  EXPECT_EQ(refusal([&](StudyContents& c) {
+              c.text_digest = sound.text_digest;
+              c.toml += "\n";
+            }),
+            begin + "its text, or its mechanism's, was changed after the study was begun");
+}
+
+// Values that differ, because somebody changed them or because the program has other defaults.
+TEST_F(RunStudy, RecordedValuesReplaceThoseOfTheText) {
+  const Study study = read_study_toml(kStudy, "two.toml", all_catalogues());
+  Progress silent;
+  const StudyContents sound = run_study(study, path("s.h5"), false, {}, silent).contents;
+  EXPECT_EQ(sound.text_digest.size(), 16u);
+  const auto study_with = [&](const auto& change) {
+    StudyContents changed = sound;
+    change(changed);
+    return study_of(changed, all_catalogues());
+  };
+  const auto plain = study_with([](StudyContents&) {});
+  EXPECT_TRUE(plain.differences.empty());
+
+  const std::string text = ", but its text gives ", end = " in this program";
+  const auto fixed = study_with([](StudyContents& c) { c.problem.parameters[4].value = 0.16; });
+  EXPECT_EQ(fixed.differences, std::vector<std::string>{"it records d = 0.16 m" + text + "0.15 m" + end});
+  EXPECT_EQ(fixed.problem->parts().parameters[4], 0.16);
+  EXPECT_EQ(fixed.baseline->at(4), 0.16);
+  const auto bounds = study_with([](StudyContents& c) {
+    c.problem.variables[1].upper = 1.4;
+    c.problem.variables[2].step = 0.01;
+  });
+  EXPECT_EQ(bounds.differences,
+            (std::vector<std::string>{"it records variables.b.max = 1.4 m" + text + "1.5 m" + end,
+                                      "it records variables.l_u.step = 0.01 m" + text + "0 m" + end}));
+  EXPECT_EQ(bounds.problem->space()[1].upper, 1.4);
+  EXPECT_EQ(bounds.problem->space()[2].step, 0.01);
+  const auto options = study_with([](StudyContents& c) {
+    for (std::string& line : c.stages[1].options)
+      if (line.starts_with("population = ")) line = "population = 9";
+  });
+  EXPECT_EQ(options.differences, std::vector<std::string>{"it records population = 9 of stage 2" + text + "6" + end});
+  const auto gained = study_with([](StudyContents& c) {
+    c.problem.margins.clear();
+    c.problem.reports.clear();
+  });
+  EXPECT_EQ(gained.differences,
+            (std::vector<std::string>{"it has no constraint workspace-volume, which this program adds",
+                                      "it has no report conditioning, which this program adds"}));
+  for (const double wrong : {std::nan(""), -1.0, 1e9})
+    EXPECT_THROW(study_with([wrong](StudyContents& c) { c.problem.parameters[4].value = wrong; }), ConfigError);
+  EXPECT_THROW(study_with([](StudyContents& c) { c.problem.variables[1].upper = 0.5; }), ConfigError);
 }
 
 TEST_F(RunStudy, RefusesOtherAlgorithmsAndOtherPaths) {
@@ -102,9 +164,10 @@ TEST_F(RunStudy, RefusesAProblemThatHasChanged) {
   };
   using Parameters = std::vector<ParameterRecord>;
   EXPECT_EQ(message([](Parameters& p) { p[4].value = 0.16; }),
-            " cannot be continued: it was begun with d = 0.16 m, where this program takes 0.15 m");
-  EXPECT_EQ(message([](Parameters& p) { p[4].name = "height"; }),
-            " cannot be continued: it has the parameter height, which this program's mechanism 4ppa-2par has not");
+            " cannot be continued: it records d = 0.16 m, but its text gives 0.15 m in this program");
+  EXPECT_EQ(
+      message([](Parameters& p) { p[4].name = "height"; }),
+      " cannot be continued: the study's text and what is recorded of it disagree: no parameter height [m], and one");
   EXPECT_EQ(message([](Parameters&) {}), "accepted");
 }
 

@@ -1,0 +1,72 @@
+// What the page's first screen says, without a browser: its scripts on made-up studies, with elements that are text
+// alone. Argument: the folder of the scripts.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
+import vm from "node:vm";
+
+class Node {
+  constructor() {
+    this.children = [];
+  }
+  append(...children) {
+    this.children.push(...children);
+  }
+  get textContent() {
+    return this.children.map((child) => child.textContent ?? child).join("");
+  }
+}
+const scripts = ["text", "summary", "overview"].map((name) =>
+  readFileSync(path.join(process.argv[2], name + ".js"), "utf8"),
+);
+const exported = "({ boundAt, rowLabel, cards, nextSentence, holdingSentence, word, designTable })";
+const page = vm.runInNewContext([...scripts, exported].join("\n"), { document: { createElement: () => new Node() } });
+const text = (parts) => [parts].flat().map((part) => part.textContent ?? part).join("");
+
+// A baseline may lie beyond a bound.
+const bounds = { lower: 0.1, upper: 0.3 };
+const marks = [0.05, 0.1, 0.2, 0.3, 0.4].map((value) => page.boundAt(value, bounds));
+assert.deepEqual(marks, ["below min", "min", "", "max", "above max"]);
+
+// A volume by cells beside the exact one, and the count of evaluations.
+const row = (name, kind = "objective") => ({ kind, name, unit: "m^3", values: [0.17, 0.08], meaning: "" });
+const table = (rows) => ({ columns: [{ name: "best" }, { name: "baseline" }], rows });
+const both = [row("workspace-volume"), row("workspace-volume, exact")];
+assert.equal(page.rowLabel(both[0], both), "workspace-volume, by cells");
+assert.equal(page.rowLabel(both[1], both), "workspace-volume, exact");
+assert.equal(page.rowLabel(row("workspace-volume"), [row("workspace-volume")]), "workspace-volume");
+const study = (more = {}, problem = {}) => ({
+  file: "-s.h5",
+  problem: { objectives: [{ name: "workspace-volume", unit: "m^3" }], variables: [], parameters: [], ...problem },
+  summary: {
+    table: table(both),
+    evaluations: 420,
+    stages: [{ optimiser: "ga", starts: 0 }],
+    state: "finished",
+    active: [],
+    optimality: null,
+    origin: { seed: "1", toml_file: "s.toml" },
+    ...more,
+  },
+});
+const tiles = text(page.cards(study()));
+assert.ok(tiles.includes("evaluations420in 1 stage: ga"), tiles);
+assert.ok(!tiles.includes("volume of work"), tiles);
+assert.ok(tiles.includes("workspace-volume, by cells") && tiles.includes("workspace-volume, exact"), tiles);
+assert.ok(text(page.designTable(table(both), [])).includes("workspace-volume, by cells"));
+
+// A gradient stage is advised where the study would accept one.
+const active = { active: ["limbs is active, margin 1e-5 m"] };
+assert.match(text(page.nextSentence(study())), /Add a gradient stage/);
+assert.match(text(page.holdingSentence(study(active))), /after a gradient stage/);
+const refused = { gradients_refused: "voxels have no derivatives" };
+assert.doesNotMatch(text(page.nextSentence(study({}, refused))), /stage/);
+assert.doesNotMatch(text(page.holdingSentence(study(active, refused))), /gradient/);
+const front = (problem) => ({ ...study({}, { objectives: [{}, {}], ...problem }), front: {} });
+assert.match(text(page.nextSentence(front())), /a stage .*nlopt/);
+assert.doesNotMatch(text(page.nextSentence(front(refused))), /stage/);
+
+// Commands parse for every name of a file.
+assert.equal(text(page.nextSentence(study({ state: "interrupted" }))), "Let it finish: pkmopt resume ./-s.h5.");
+assert.equal(page.word("it's"), "'it'\\''s'");
+console.log("the words of the page are right");
