@@ -18,6 +18,7 @@ step ./interrupts.py "$program" --interrupts 200 --bound 0.2
 step env PKM_RANK_KILLS=10 "$root/build/ci/tests/ranks/pkm_ranks_tests" --gtest_filter='*Killed*'
 step env PKM_INTERVAL_OPERATIONS=1000000 "$root/build/ci/tests/mpfi/pkm_mpfi_tests"
 step env PKM_BOUNDED_DESIGNS=1000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*BoundedColumns*'
+step env PKM_RANDOM_SLOPES=2000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*RandomSlopes*'
 step env PKM_POWER_STATES=10000 "$root/build/ci/tests/pkm_tests" --gtest_filter='*PowerOfTheDrives*'
 step ./disk.py "$program" "$disk"
 step ./soak.py "$program" --evaluations 10000000 --runs 200

@@ -73,12 +73,12 @@ SolverEnd solve_in_rounds(const Solver& solver, Trials& trials, const Evaluation
   return end;
 }
 
-/// Whether the objective changes beside a start at which its gradient is 0 and no bound is active: then the gradient is
-/// wrong or the objective has none, and nothing has converged. By one central difference along a direction that no
-/// symmetry of the variables cancels; its evaluations are recorded.
+/// Whether the objective has a slope at a start at which its gradient is 0 and no bound is active: then the gradient is
+/// wrong, and nothing has converged. By one central difference along a direction that no symmetry of the variables
+/// cancels; its two evaluations are recorded. At a stationary point the difference is small beside the curvature.
 bool contradicts_flat_start(Trials& trials) {
   constexpr double kStep = 1e-3;   // in the unit cube
-  constexpr double kSlope = 1e-3;  // of the objective's size per unit: above the errors of a difference
+  constexpr double kNoise = 1e-7;  // of the objective: above the errors of its values
   const std::vector<double> start = trials.recall(0);
   const Trials::Point at = trials.point();
   const auto is_inside = [](double u) { return u >= kStep && u <= 1 - kStep; };
@@ -95,7 +95,10 @@ bool contradicts_flat_start(Trials& trials) {
     return there && there->usable ? std::optional(there->objective) : std::nullopt;
   };
   const auto low = beside(-kStep), high = low ? beside(kStep) : std::nullopt;
-  return high && std::fabs(*high - *low) > 2 * kStep * kSlope * std::max(1e-300, std::fabs(at.objective));
+  if (!high) return false;
+  const double bend = std::fabs(*high - 2 * at.objective + *low);
+  const double noise = kNoise * std::max({std::fabs(at.objective), std::fabs(*low), std::fabs(*high)});
+  return std::fabs(*high - *low) > std::max(bend, noise);
 }
 
 /// Solvers may fail by rounding at the very optimum: where the slopes say that it is one, it has converged.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -13,7 +14,8 @@ namespace pkm::test {
 /// Writes the text of a mechanism with random limbs, margins, box and sweep. Every dimension is a parameter.
 class RandomMechanism {
  public:
-  explicit RandomMechanism(Stream& random) : random_(random) {}
+  /// @param curves  whether columns may end at roots that only intervals isolate, which takes long
+  RandomMechanism(Stream& random, bool curves) : random_(random), curves_(curves) {}
 
   std::string text() {
     constexpr std::array<const char*, 4> kPlatforms[] = {
@@ -46,7 +48,7 @@ class RandomMechanism {
     std::vector<std::string> order = coordinates_;
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random_.below(i)]);
     std::vector<std::string> swept;
-    const std::size_t most = 1 + random_.below(3);
+    const std::size_t most = 1 + random_.below(curves_ ? 2 : 3);
     for (const std::string& each : order)
       if (swept.size() < most && (each != "phi" || swept.empty() || random_.chance(0.5))) swept.push_back(each);
     for (std::size_t i = 0; i < swept.size(); ++i) out << (i > 0 ? ", " : "") << '"' << swept[i] << '"';
@@ -153,7 +155,7 @@ class RandomMechanism {
       out << "range = [\"" << low << "\", \"" << high << "\"]\n";
     }
     for (const char* const end : {"base", "platform"}) {
-      if (!has_rod || !random_.chance(0.3)) continue;
+      if (!has_rod || (drive > 0 && !curves_) || !random_.chance(curves_ ? 0.5 : 0.3)) continue;
       out << "joint_" << end << " = { axis = ["
           << (planar_ ? number(-c) + ", " + number(-s) + ", 0" : std::string("0, 0, ") + pick({"1", "-1"}))
           << "], in = \"" << pick({"base", "platform"}) << "\", ";
@@ -168,31 +170,31 @@ class RandomMechanism {
     const std::string a = place("m" + std::to_string(i), between(-0.1, 0.15));
     const std::string u = coordinates_[random_.below(2)], v = coordinates_[random_.below(coordinates_.size())];
     std::string formula;
-    switch (random_.below(9)) {
+    switch (curves_ ? 7 + random_.below(2) : random_.below(7)) {
       case 0:
         formula = "(" + u + " + " + v + ") - " + v + " + " + a;
         break;
       case 1:
         formula = a + " - " + u + " + 0*" + v;
         break;
-      case 2:
+      case 7:
         formula = a + " + 0.3*" + u + " + sin(" + v + ") - sin(" + v + ")";
         break;
-      case 3:
+      case 2:
         formula = "sqrt((" + u + " + 2)^2 + (" + v + " - " + v + ")^2) - 2 + " + a;
         break;
-      case 4: {
+      case 3: {
         const std::string tilt = parameter("tilt" + std::to_string(i), 0, "rad", -3);
         formula = u + "*cos(" + tilt + ") + " + v + "*sin(" + tilt + ") + " + a;
         break;
       }
-      case 5:
+      case 4:
         formula = "min(" + u + " + " + a + " + 0*" + v + ", 0.3 - " + v + ")";
         break;
-      case 6:
+      case 5:
         formula = "max(" + u + " + " + a + ", " + v + " - 0.05)";
         break;
-      case 7:
+      case 8:
         formula = "exp(" + u + ")*exp(" + v + ")/exp(" + v + ") - 1 + " + a;
         break;
       default:
@@ -203,6 +205,7 @@ class RandomMechanism {
   }
 
   Stream& random_;
+  bool curves_;
   bool planar_ = false, turns_ = false;
   std::vector<std::string> coordinates_;
   std::string radius_, platform_;

@@ -116,6 +116,28 @@ TEST(Solvers, DoNotConvergeWhereNothingCanBeEvaluated) {
   }
 }
 
+/// A gradient of 0 is compared with a difference before it counts as convergence.
+TEST(Solvers, DoNotConvergeWhereAGradientOfZeroIsWrong) {
+  const auto f = [](auto x) { return x[0] + 2.0 * x[1] + 3.0; };
+  const FunctionProblem wrong(box(2, 0, 1), 0, [f](auto x, auto) { return decltype(x[0] + 0.0)(value_of(f(x))); });
+  for (const std::string optimiser : {"nlopt", "ipopt"}) {
+    const Outcome outcome = solve(optimiser, wrong, {}, {{0.5, 0.5}});
+    EXPECT_EQ(outcome.result.starts[0].stop, "failed") << optimiser;
+    EXPECT_EQ(outcome.result.starts[0].message, "the gradient is 0 at the start, but the objective changes beside it");
+    EXPECT_TRUE(std::isnan(outcome.result.starts[0].optimality));
+    EXPECT_EQ(outcome.result.starts[0].rows, static_cast<std::int64_t>(outcome.table.size()));
+    EXPECT_GE(outcome.table.size(), 3u);
+  }
+  // stationary starts, and those on bounds, have converged
+  const auto bowl = [](auto x, auto) { return (x[0] - 0.5) * (x[0] - 0.5) * (1.5 + x[0]) + x[1] * 0.0; };
+  for (const FunctionProblem& problem : {FunctionProblem(box(2, 0, 1), 0, bowl),
+                                         FunctionProblem(box(2, 0.5, 1), 0, [](auto x, auto) { return x[0] * 0.0; })}) {
+    const Outcome outcome = solve("nlopt", problem, {{"algorithm", "slsqp"}}, {{0.5, 0.5}});
+    EXPECT_EQ(outcome.result.starts[0].stop, words(StopReason::tolerance));
+    EXPECT_EQ(outcome.result.starts[0].optimality, 0);
+  }
+}
+
 TEST(Solvers, IpoptReadsNoOptionFile) {
   const auto problem = corner();
   const auto before = std::filesystem::current_path();
