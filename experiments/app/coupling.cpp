@@ -94,19 +94,21 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
     throw ConfigError({"", 0, "coupling"}, *reason + ", so no coupling indices");
   const Demand demand{.fields = {&kCouplingIndex}, .poses = true, .mode = known_mode(info, {arguments.mode, ""})};
   const SurveyPlan plan = plan_of(target, arguments);
-  const auto prepare = [&](const SurveyPlan& cells) {
+  const auto explained = [&info](const auto& action) {
     try {
-      return prepare_survey(*target.mechanism, cells, demand);
+      return action();
     } catch (const std::invalid_argument& reason) {
       throw ConfigError({"", 0, info.name}, reason.what());
     }
   };
   const auto survey = [&](const SurveyPlan& cells) {
-    Survey<double> found;
-    survey_once<double>(*prepare(cells), target.parameters, found);
-    return found;
+    return explained([&] {
+      Survey<double> found;
+      survey_once<double>(*prepare_survey(*target.mechanism, cells, demand), target.parameters, found);
+      return found;
+    });
   };
-  prepare(plan);
+  explained([&] { return prepare_survey(*target.mechanism, plan, demand); });
   check_outputs({arguments.csv}, target.files, if_forced(arguments.force));
   const auto title = [](const std::string& of, const Survey<double>& found) {
     return of + ": " + std::to_string(found.feasible_cells) + " of " + std::to_string(found.cells) + " cells feasible";

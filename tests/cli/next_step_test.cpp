@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "engine/report/html_page.hpp"
 #include "engine/storage/study_lock.hpp"
 #include "tests/cli/study_folder.hpp"
 #include "tests/cli/study_program.hpp"
@@ -14,6 +15,16 @@ namespace {
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+/// Some builds are without the report's page.
+bool has_page() {
+  try {
+    page_parts();
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
 
 class CliNextStep : public StudyProgram {
  protected:
@@ -142,7 +153,7 @@ TEST_F(CliNextStep, AnOutputThatExistsIsComplainedOfLast) {
       {{"new", "study", "4ppa-2par", "-o", "x.toml"}, {"new", "study", "4ppa-2pra", "-o", "x.toml"}, "4ppa-2pra"},
       {{"new", "mechanism", "delta", "-o", "x.toml"}, {"new", "mechanism", "del/ta", "-o", "x.toml"}, "del/ta"},
       {{"report", "s.h5", "-o", "x.html"}, {"report", "s.h5", "none.h5", "-o", "x.html"}, "none.h5"},
-      {{"export", "s.h5", "--stl", "x.stl"}, {"export", "s.h5", "--stl", "x.stl", "--front", "1"}, "--front"},
+      {{"export", "s.h5", "--vtk", "x.vtkhdf"}, {"export", "s.h5", "--vtk", "x.vtkhdf", "--front", "1"}, "--front"},
       {{"workspace", "s.toml", "--csv", "x.csv"}, {"workspace", "s.toml", "--csv", "x.csv", "--cells", "0"}, "--cells"},
       {{"workspace", "s.toml", "--csv", "x.csv"}, {"workspace", "s.toml", "--csv", "x.csv", "--cut", "w=0"}, "--cut"},
       {{"workspace", "s.toml", "--csv", "x.csv"}, {"workspace", "s.toml", "--csv", "x.csv", "--mode", "m"}, "--mode"},
@@ -166,6 +177,7 @@ TEST_F(CliNextStep, AnOutputThatExistsIsComplainedOfLast) {
       {{"certify", five_bar, "-o", "x.csv"}, {"certify", five_bar, "-o", "x.csv", "--mode", "m"}, "--mode"},
   };
   for (const auto& [right, wrong, sentence] : cases) {
+    if (right[0] == "report" && !has_page()) continue;
     EXPECT_EQ(run(right), 1) << right[0];
     EXPECT_THAT(output_, HasSubstr(" exists already; overwrite it with --force")) << right[0];
     EXPECT_NE(run(wrong), 0) << wrong[0];
