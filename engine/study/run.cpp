@@ -170,7 +170,7 @@ bool Run::is_asked_to_stop() const {
 }
 
 bool Run::is_overdue() {
-  constexpr double kPatience = 0.1;  // s, in which most generations end
+  constexpr double kPatience = 0.1;  // s, in which most generations and final steps end
   if (!is_asked_to_stop()) return false;
   const double now = seconds();
   double asked = std::numeric_limits<double>::infinity();

@@ -45,7 +45,7 @@ RunOutcome Run::outcome() {
 
 /// What was found is stored before what may take long.
 void Run::finish() {
-  const StopScope stop([this] { return is_asked_to_stop(); });
+  const StopScope stop([this] { return is_overdue(); });
   try {
     contents_.final = final_record(study_, contents_);
     try {

@@ -91,11 +91,13 @@ StartAhead JoinedStarts::known_of(std::size_t k) const {
   return known;
 }
 
-std::int64_t JoinedStarts::left() const {
-  std::int64_t left = 0;
+std::int64_t JoinedStarts::left() {
+  if (table_.size() < counts_at_) return left_;
+  counts_at_ = table_.size() + starts_.size() / 16;
+  left_ = 0;
   for (std::size_t k = next_; k < starts_.size(); ++k)
-    if (!starts_[k].ended) left += limit_ - static_cast<std::int64_t>(starts_[k].table.size());
-  return left;
+    if (!starts_[k].ended) left_ += limit_ - static_cast<std::int64_t>(starts_[k].table.size());
+  return left_;
 }
 
 std::vector<StartAhead> JoinedStarts::ahead() const {

@@ -37,8 +37,8 @@ class JoinedStarts {
   /// One row of the start that is joining. False: the monitor wants to stop.
   bool report(const EvaluationTable& start, std::size_t source);
   void end(StartRun& start);
-  /// Evaluations that are still to be made, at most.
-  std::int64_t left() const;
+  /// Evaluations that are still to be made, at most; counted now and then.
+  std::int64_t left();
   /// What is known beyond the table.
   std::vector<StartAhead> ahead() const;
   /// Why the starts ended, if all did so for the same reason.
@@ -55,6 +55,8 @@ class JoinedStarts {
   std::atomic<bool> stopped_ = false;
   std::optional<Goal> goal_;  ///< of the start that is joining
   Ranked best_, best_of_start_;
+  std::int64_t left_ = 0;
+  std::size_t counts_at_ = 0;  ///< rows of the table at which they are counted next
   std::vector<StartOutcome> finished_;
   std::vector<std::int64_t> population_;  ///< the best of the start that is joining
   std::optional<FrontKeeper> front_;      ///< several objectives: of the ends

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include "constraints/all.hpp"
 #include "engine/core/catalogue.hpp"
@@ -64,7 +66,10 @@ class Bounded final : public Mechanism, CertainBounds {
     const auto surveyor = prepare_survey(*inner_, plan, {});
     Survey<double> survey;
     survey_once<double>(*surveyor, p, survey);
-    if (interrupts) std::raise(SIGINT);
+    if (interrupts) {  // and so long that they are not waited for
+      std::raise(SIGINT);
+      while (!options.stop()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     const bool stopped = options.stop && options.stop();
     return {.lower = stopped ? 0 : least * survey.volume, .upper = greatest * survey.volume, .stopped = stopped};
   }
