@@ -65,7 +65,7 @@ def cpu_seconds(command, folder):
 def main():
     program, checker = (os.path.abspath(path) for path in sys.argv[1:3])
     cases = [
-        ("check, links", links, 100, 6, [program, "check"]),
+        ("check, links", links, 300, 6, [program, "check"]),
         ("check, [let]", lets, 20000, 3, [program, "check"]),
         ("certify --proof, [let]", lets, 5000, 3,
          [program, "certify", "--boxes", "1", "--gap", "1.99", "--proof", "a.proof", "--force", "--threads", "1"]),

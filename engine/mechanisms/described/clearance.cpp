@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -55,6 +56,50 @@ std::vector<Node> nodes_of(const std::vector<DescribedLink>& links) {
     nodes.push_back(link.radius);
   }
   return nodes;
+}
+
+/// Sweep and prune: links in the order of the lower ends of their bounding boxes along the axis of greatest extent,
+/// each with those behind it that are not beyond the least distance so far. Of equal distances, that of the first pair.
+/// @param pairs  ascending
+template <class S>
+Nearest<S> nearest_pair(const std::vector<Capsule<S>>& links, const std::vector<LinkPair>& pairs) {
+  Nearest<S> nearest{S(std::numeric_limits<double>::infinity())};
+  if (pairs.empty()) return nearest;
+  std::vector<Bounds<S>> box;
+  double widest = 0;
+  for (const Capsule<S>& link : links) {
+    box.push_back(bounds_of(link.axis));
+    widest = std::max(widest, value_of(link.radius));
+  }
+  const auto extent = [&](std::size_t axis) {
+    const auto lower = [axis](const Bounds<S>& each) { return value_of(each.lower[axis]); };
+    const auto [least, greatest] = std::ranges::minmax(box, {}, lower);
+    return lower(greatest) - lower(least);
+  };
+  std::size_t axis = 0;
+  for (const std::size_t other : {1, 2})
+    if (extent(other) > extent(axis)) axis = other;
+  std::vector<std::size_t> order(links.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return value_of(box[i].lower[axis]); });
+  const auto ends = [](const LinkPair& pair) { return std::pair(pair.first, pair.second); };
+  for (auto i = order.begin(); i != order.end(); ++i)
+    for (auto k = i + 1; k != order.end(); ++k) {
+      const double apart = value_of(box[*k].lower[axis]) - value_of(box[*i].upper[axis]);
+      if (apart - (value_of(links[*i].radius) + widest) > value_of(nearest.clearance)) break;
+      const LinkPair pair{std::min(*i, *k), std::max(*i, *k)};
+      // not nearer than their boxes are
+      const double radii = value_of(links[pair.first].radius) + value_of(links[pair.second].radius);
+      if (value_of(distance_of_bounds(box[pair.first], box[pair.second])) - radii > value_of(nearest.clearance))
+        continue;
+      if (!std::ranges::binary_search(pairs, ends(pair), {}, ends)) continue;
+      const S found = capsule_distance(links[pair.first], links[pair.second]);
+      const bool is_first = ends(pair) < std::pair(nearest.first, nearest.second);
+      if (const double least = value_of(nearest.clearance);
+          value_of(found) < least || (value_of(found) == least && is_first))
+        nearest = {found, pair.first, pair.second};
+    }
+  return nearest;
 }
 
 }  // namespace
@@ -120,16 +165,7 @@ std::optional<NearestBodies<S>> nearest_bodies(const Evaluation& e, const std::v
   if (model.link_pairs.empty() && (obstacles.empty() || model.moving_links.empty())) return {};
   const std::vector<Capsule<S>> links = capsules_at(e, inputs);
   if (links.empty()) return NearestBodies<S>{S(std::nan("")), "", ""};
-  std::vector<Bounds<S>> box;
-  for (const Capsule<S>& link : links) box.push_back(bounds_of(link.axis));
-  Nearest<S> nearest{S(std::numeric_limits<double>::infinity())};
-  for (const auto& [first, second] : model.link_pairs) {
-    // not nearer than their boxes are
-    const double radii = value_of(links[first].radius) + value_of(links[second].radius);
-    if (value_of(distance_of_bounds(box[first], box[second])) - radii > value_of(nearest.clearance)) continue;
-    const S found = capsule_distance(links[first], links[second]);
-    if (value_of(found) < value_of(nearest.clearance)) nearest = {found, first, second};
-  }
+  const Nearest<S> nearest = nearest_pair(links, model.link_pairs);
   const Nearest<S> other = nearest_obstacle<S>(links, model.moving_links, obstacles);
   if (value_of(other.clearance) < value_of(nearest.clearance))
     return NearestBodies<S>{other.clearance, model.links[other.first].name, obstacles[other.second].name};
