@@ -112,7 +112,7 @@ Trajectory follow(const Mechanism& mechanism, std::span<const double> parameters
       const auto joints = velocities->influence(parameters, at.pose, mode);
       if (joints)
         set_rates(point, joints->G * at.velocity, accelerations<double, 0>(*joints, at.velocity, at.acceleration));
-      if (!joints || (joints->G.rows() == joints->G.cols() && is_singular(joints->G))) mark_singular(point);
+      if (!joints || (joints->G.rows() >= joints->G.cols() && is_rank_deficient(joints->G))) mark_singular(point);
     }
     if (mechanism.chain()) point.chain = mechanism.chain()->report(parameters, at, phase);
     trajectory.points.push_back(std::move(point));

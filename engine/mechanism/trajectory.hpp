@@ -13,7 +13,8 @@
 namespace pkm {
 
 /// One sample. What does not exist (the pose does not assemble, no masses) is absent. Where J is singular to working
-/// precision (engine/model/singular.hpp) no forces give the motion: the sample is not feasible and has none.
+/// precision (engine/model/singular.hpp) no forces give the motion: the sample is not feasible and has none. Redundant
+/// drives have no unique forces: their samples have speeds alone, by the same rule.
 struct TrajectoryPoint {
   MotionSample motion;
   bool feasible = false;

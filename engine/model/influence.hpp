@@ -7,8 +7,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
-#include "engine/math/small_matrix.hpp"
+#include "engine/model/singular.hpp"
 
 namespace pkm {
 
@@ -67,6 +68,15 @@ Influence<S, N> reversed(const Influence<S, N>& influence) {
     for (std::size_t i = 0; i < n; ++i) back.H[i] = back.H[i] - seen * F(i, k);
   }
   return back;
+}
+
+/// The Jacobian by the twist: K with qdot = K t for every twist t that the platform can have, so that K T = J. It is J
+/// times the pseudo-inverse of T. None where angles have a singularity of their own: not every twist has rates.
+/// @param J  joints x coordinates
+/// @param T  6 x coordinates, t = T V
+inline std::optional<AxisMatrix<double>> twist_jacobian(const AxisMatrix<double>& J, const AxisMatrix<double>& T) {
+  if (is_rank_deficient(T)) return {};
+  return J * solve(transpose(T) * T, transpose(T));
 }
 
 }  // namespace pkm

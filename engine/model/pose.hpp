@@ -27,6 +27,14 @@ SchoenfliesPose<S> schoenflies(const MatrixUpTo<S, kMostJoints>& pose) {
   return {pose[0], pose[1], pose[2], pose[3]};
 }
 
+/// PoseReport::T of such a pose. @param axis  of the rotation, 0 to 2
+inline AxisMatrix<double> schoenflies_twist(std::size_t axis) {
+  auto T = AxisMatrix<double>::zero(6, 4);
+  for (std::size_t k = 0; k < 3; ++k) T(k, k) = 1;
+  T(3 + axis, 3) = 1;
+  return T;
+}
+
 /// A coordinate of the pose or an actuated joint.
 struct AxisInfo {
   std::string name;  ///< "x", "q1"
@@ -45,6 +53,9 @@ struct PoseReport {
   std::string reason;                        ///< why it does not assemble, or the first broken margin; "" when feasible
   std::optional<AxisVector<double>> joints;  ///< order of MechanismInfo::joints; NaN for one that is not there
   std::optional<AxisMatrix<double>> Jq, G, J;  ///< Jq qdot = G V, J = Jq^-1 G (absent when Jq is singular)
+  /// 6 x coordinates: t = T V is the twist of the platform, velocity of its origin and angular velocity, both along the
+  /// base's axes; V are rates of the coordinates.
+  std::optional<AxisMatrix<double>> T;
   std::optional<double> det_Jq, det_G;
   std::optional<double> conditioning;  ///< inverse condition number in [0, 1]
   NamedValues indices;                 ///< mechanism's own singularity indices

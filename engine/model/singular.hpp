@@ -61,4 +61,27 @@ bool is_singular(const M& J) {
   return is_singular(J, u);
 }
 
+/// The upper triangle R of J = Q R with orthonormal columns Q, by modified Gram-Schmidt: it has J's singular values.
+/// NaN where a column depends on those before it exactly. @param J  with at least as many rows as columns
+inline AxisMatrix<double> triangle_of(AxisMatrix<double> J) {
+  auto R = AxisMatrix<double>::zero(J.cols(), J.cols());
+  for (std::size_t k = 0; k < J.cols(); ++k) {
+    double square = 0;
+    for (std::size_t i = 0; i < J.rows(); ++i) square += J(i, k) * J(i, k);
+    R(k, k) = std::sqrt(square);
+    for (std::size_t j = k + 1; j < J.cols(); ++j) {
+      for (std::size_t i = 0; i < J.rows(); ++i) R(k, j) += J(i, k) / R(k, k) * J(i, j);
+      for (std::size_t i = 0; i < J.rows(); ++i) J(i, j) -= J(i, k) / R(k, k) * R(k, j);
+    }
+  }
+  return R;
+}
+
+/// The same criterion for redundant drives: whether the rank of J is less than its number of columns, so that the
+/// platform can move while all joints stand still. @param J  joints x coordinates
+inline bool is_rank_deficient(const AxisMatrix<double>& J) {
+  if (J.rows() < J.cols()) return true;
+  return is_singular(J.rows() == J.cols() ? J : triangle_of(J));
+}
+
 }  // namespace pkm

@@ -114,6 +114,7 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
     draft.scope.add(value, name, coordinate.node());
     model.info.coordinates.push_back({name, turns ? "rad" : "m"});
     model.turns_about.push_back(turns ? std::optional(axis) : std::nullopt);
+    model.moves_along.push_back(turns ? std::nullopt : std::optional(axis));
     const graph::Node none = model.graph.number(0);
     model.turn_axes.push_back({none, none, none});
     if (turns) {
@@ -142,6 +143,8 @@ void read_let(const ConfigValue& root, MechanismDraft& draft) {
 void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   described::Model& model = draft.model;
   if (const auto origin = platform.find("origin")) draft.origin = draft.scope.point(*origin, "origin");
+  model.origin = nodes(draft.origin);
+  for (std::size_t row = 0; row < 3; ++row) model.turn[row] = nodes(draft.turn[row]);
   if (const auto length = platform.find("characteristic_length")) {
     model.length = draft.scope.of_design(*length, "m", "characteristic_length").node();
     model.info.characteristic_length = length->is_text() ? length->text("a formula") : shortest(length->number("m"));

@@ -47,14 +47,11 @@ class JointReader {
     for (const ConfigValue& table : tables) add_joint(table);
     gather_bodies();
     refuse_loose();
-    return {std::move(solids_), std::move(joints_), turn_of_platform()};
+    return {std::move(solids_), std::move(joints_)};
   }
 
  private:
   Vector3 vector(const Nodes& of) { return {model_.term(of[0]), model_.term(of[1]), model_.term(of[2])}; }
-  std::array<Nodes, 3> turn_of_platform() const {
-    return {nodes(draft_.turn[0]), nodes(draft_.turn[1]), nodes(draft_.turn[2])};
-  }
 
   /// @param body  of the model, or the platform: whose mass it has, or a share of it
   std::size_t add_solid(const std::string& body, DescribedSolid solid) {

@@ -190,6 +190,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   model.info.closed_forms.push_back(copy.drive + ": " + limb.form);
   add_range(copy.table, copy.group, joint, model.info.joints.back().unit, limb.joint, draft);
   add_surfaces(limb, model);
+  if (copy.drive != "slider" || copy.table.has("rod")) model.rods.push_back({nodes(limb.C), nodes(at.B)});
   add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);
   draft.limbs.push_back(named(copy, at, limb));

@@ -1,6 +1,7 @@
 // `pkmopt certify`: what is certain of one design's workspace, whatever numbers are rounded to.
 
 #include <chrono>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 
@@ -65,38 +66,51 @@ std::vector<std::array<double, 2>> ranges_of(const Target& target, const SurveyP
   return ranges;
 }
 
+/// What is shown of all poses of a box or a motion: its key, its words where it holds and where it does not.
+struct PosesClaim {
+  std::string key, holds, not_shown;
+};
+
 /// @param what  "box" or "motion"
 /// @return what is wrong; "": nothing
-std::string tell_verdict(const MechanismInfo& info, const std::string& name, const PosesVerdict& verdict,
-                         const std::string& holds, const std::string& what, Printout& out) {
+std::string tell_verdict(const MechanismInfo& info, const PosesClaim& claim, const PosesVerdict& verdict,
+                         const std::string& what, Printout& out) {
   using Kind = PosesVerdict::Kind;
-  const std::string kind = verdict.kind == Kind::holds ? "yes" : verdict.kind == Kind::fails ? "no" : "undecided";
-  out.json[name] = {
-      {"verdict", kind}, {"what", text_or_null(verdict.what)}, {"pose", axes_json(info.coordinates, verdict.where)}};
-  if (what == "motion") out.json[name]["time"] = json_or_null(verdict.time);
-  if (verdict.kind == Kind::holds) {
-    out.head.push_back({name, holds});
-    return "";
+  static const std::map<Kind, std::string> kinds = {
+      {Kind::holds, "yes"}, {Kind::fails, "no"}, {Kind::undecided, "undecided"}, {Kind::not_examined, "not examined"}};
+  out.json[claim.key] = {{"verdict", kinds.at(verdict.kind)},
+                         {"what", text_or_null(verdict.what)},
+                         {"pose", axes_json(info.coordinates, verdict.where)}};
+  if (what == "motion") out.json[claim.key]["time"] = json_or_null(verdict.time);
+  const std::string where = !verdict.where ? ""
+                                           : (verdict.time ? "t = " + number(*verdict.time, "s") + ", " : "") +
+                                                 axes_text(info.coordinates, *verdict.where);
+  const bool singular = claim.key == "regular";
+  switch (verdict.kind) {
+    case Kind::holds:
+      out.head.push_back({claim.key, claim.holds});
+      return "";
+    case Kind::fails:
+      out.head.push_back({claim.key, singular ? "no, singular at " + where + ": " + verdict.what
+                                              : "not everywhere: " + verdict.what + " does not hold at " + where});
+      return "the " + what + " is not " + claim.not_shown + " everywhere";
+    case Kind::undecided:
+      out.head.push_back({claim.key, "undecided: " + verdict.what + ", near " + where});
+      return "the " + what + " is not decided everywhere";
+    default:
+      out.head.push_back({claim.key, "not examined, because " + verdict.what});
+      return "singularities are not examined";
   }
-  const std::string where =
-      (verdict.time ? "t = " + number(*verdict.time, "s") + ", " : "") + axes_text(info.coordinates, *verdict.where);
-  const std::string words = verdict.kind == Kind::fails
-                                ? "not everywhere: " + verdict.what + " does not hold at " + where
-                                : "undecided: " + verdict.what + ", near " + where;
-  out.head.push_back({name, words});
-  return "the " + what + " is not " + (verdict.kind == Kind::fails ? "feasible" : "decided") + " everywhere";
 }
 
 std::string tell_poses(const MechanismInfo& info, const PosesCertificate& found, const std::string& what,
                        Printout& out) {
   const std::string in = (what == "box" ? "in the " : "along the ") + what;
-  std::string wrong = tell_verdict(info, "feasible", found.feasible, "everywhere " + in, what, out);
-  if (found.regular) {
-    const std::string singular = tell_verdict(info, "regular", *found.regular, "no singularity " + in, what, out);
-    if (wrong.empty()) wrong = singular;
-  }
+  const std::string wrong = tell_verdict(info, {"feasible", "everywhere " + in, "feasible"}, found.feasible, what, out);
+  const std::string singular =
+      tell_verdict(info, {"regular", "no singularity " + in, "regular"}, found.regular, what, out);
   out.say("boxes", found.boxes, std::to_string(found.boxes) + " looked at");
-  return wrong;
+  return wrong.empty() ? singular : wrong;
 }
 
 std::string certify(const Target& target, const CertifyArguments& arguments, Printout& out) {

@@ -70,6 +70,17 @@ std::vector<AssemblyMode> nearest(const ForwardKinematics& kinematics, const Tar
   return {next};
 }
 
+/// What the list of poses guarantees. @param left_out  unusual poses that are not listed
+ForwardGuarantee guarantee_of(const ForwardKinematics& kinematics, const ForwardArguments& arguments,
+                              std::size_t left_out) {
+  ForwardGuarantee list = kinematics.guarantee();
+  if (!arguments.near.empty())
+    return {false, list.is_complete ? "the nearest of all isolated poses"
+                                    : "found by Newton's method from the pose of --near alone; there may be others"};
+  if (left_out == 0) return list;
+  return {false, list.method + ", of which --all lists " + std::to_string(left_out) + " unusual ones more"};
+}
+
 std::string forward(const Target& target, const ForwardArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
   const Axes& coordinates = info.coordinates;
@@ -117,6 +128,9 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
   out.json["status"] = status.word;
   out.json["reason"] = text_or_null(status.reason);
   out.say("poses", poses, std::to_string(poses.size()));
+  const ForwardGuarantee guarantee = guarantee_of(kinematics, arguments, modes.size() - poses.size());
+  out.say("complete", guarantee.is_complete, (guarantee.is_complete ? "yes, " : "no, ") + guarantee.method);
+  out.json["guarantee"] = guarantee.method;
   if (!poses.empty()) out.text += '\n' + aligned(rows);
   if (!poses.empty() && arguments.moves())
     out.section("motion of the platform (" + units_of(coordinates, "/s") + ", " + units_of(coordinates, "/s^2") + ")",
@@ -132,7 +146,8 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
 void add_forward(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_design_command<ForwardArguments>(
       app, session, "forward", "Given joint values: the pose of every assembly mode.",
-      "Limits are not looked at. Exit code 1 when no pose assembles.\n"
+      "Limits are not looked at. Exit code 1 when no pose assembles. Poses are distinct as rigid-body poses; the line\n"
+      "'complete' says whether they are all that there are.\n"
       "Example: pkmopt forward 4ppa-2par --joints q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846",
       forward);
   add_list_option(command, "--joints", arguments.joints, "Every joint's value")->required();

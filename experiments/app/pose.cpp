@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/math/satisfied.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/chain_at.hpp"
@@ -42,8 +43,43 @@ void tell_joints(const Target& target, const std::string& mode, const MotionSamp
   out.section("joints", rows);
 }
 
+const std::vector<std::string> kTwist = {"vx", "vy", "vz", "wx", "wy", "wz"};
+
+/// Matrices with the names of their rows and columns.
+void add_jacobians(const MechanismInfo& info, const PoseReport& report,
+                   const std::optional<AxisMatrix<double>>& J_twist, Json& json) {
+  json.update({{"J", matrix_json(report.J)},
+               {"J_rows", names_of(info.joints)},
+               {"J_columns", names_of(info.coordinates)},
+               {"J_columns_are", "coordinate rates"},
+               {"J_twist", matrix_json(J_twist)},
+               {"J_twist_rows", names_of(info.joints)},
+               {"J_twist_columns", kTwist},
+               {"J_twist_columns_are", "twist"},
+               {"T", matrix_json(report.T)},
+               {"T_rows", kTwist},
+               {"T_columns", names_of(info.coordinates)},
+               {"Jq", matrix_json(report.Jq)},
+               {"G", matrix_json(report.G)},
+               {"det_Jq", json_or_null(report.det_Jq)},
+               {"det_G", json_or_null(report.det_G)}});
+}
+
+/// Whether each rate of a coordinate is one component of the twist.
+bool is_twist_of_rates(const AxisMatrix<double>& T) {
+  for (std::size_t j = 0; j < T.cols(); ++j) {
+    std::size_t ones = 0, zeros = 0;
+    for (std::size_t i = 0; i < T.rows(); ++i) {
+      ones += T(i, j) == 1;
+      zeros += T(i, j) == 0;
+    }
+    if (ones != 1 || ones + zeros != T.rows()) return false;
+  }
+  return true;
+}
+
 /// Matrices that the pose has, where it has them.
-void print_jacobians(const PoseReport& report, Printout& out) {
+void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<double>>& J_twist, Printout& out) {
   const auto print = [&out](const std::string& title, const std::optional<AxisMatrix<double>>& matrix) {
     out.text += matrix ? matrix_text(title, *matrix) : '\n' + title + ": does not exist\n";
   };
@@ -54,6 +90,9 @@ void print_jacobians(const PoseReport& report, Printout& out) {
   } else {
     print("J, where qdot = J V", report.J);
   }
+  if (!report.T || is_twist_of_rates(*report.T)) return;
+  print("T, where the twist of the platform [vx vy vz wx wy wz] = T V, V the rates of the coordinates", report.T);
+  print("J_twist, where qdot = J_twist [vx vy vz wx wy wz]", J_twist);
 }
 
 std::string pose(const Target& target, const PoseArguments& arguments, Printout& out) {
@@ -71,15 +110,13 @@ std::string pose(const Target& target, const PoseArguments& arguments, Printout&
   say_pose(info, at.pose, report, out);
   if (report.assembles && !report.feasible && !report.reason.empty()) out.head.back()[1] += ": " + report.reason;
   Json& json = out.json;
-  json.update({{"joints", axes_json(info.joints, report.joints)},
-               {"J", matrix_json(report.J)},
-               {"Jq", matrix_json(report.Jq)},
-               {"G", matrix_json(report.G)},
-               {"det_Jq", json_or_null(report.det_Jq)},
-               {"det_G", json_or_null(report.det_G)}});
+  json["joints"] = axes_json(info.joints, report.joints);
+  const auto J_twist =
+      report.J && report.T ? twist_jacobian(*report.J, *report.T) : std::optional<AxisMatrix<double>>();
+  add_jacobians(info, report, J_twist, json);
   tell_joints(target, mode, at, report, out);
-  if (!arguments.joint_error.empty()) tell_tool_error(target, mode, at, arguments.joint_error, out);
-  if (report.assembles) print_jacobians(report, out);
+  if (!arguments.joint_error.empty()) tell_tool_error(target, mode, at, report.T, arguments.joint_error, out);
+  if (report.assembles) print_jacobians(report, J_twist, out);
 
   std::vector<Row> indices, margins;
   const auto add_index = [&indices](const std::string& name, std::optional<double> value) {

@@ -1,5 +1,7 @@
 #include "experiments/app/tool_error.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/model/singular.hpp"
@@ -22,10 +24,34 @@ std::vector<double> joint_errors(const MechanismInfo& info, const std::vector<st
   return errors;
 }
 
+/// The twist of a mechanism that does not state it: its lengths are the translation, the rotation is unknown.
+AxisMatrix<double> translation_of(const MechanismInfo& info) {
+  auto T = AxisMatrix<double>::zero(6, info.coordinates.size());
+  for (std::size_t j = 0, row = 0; j < info.coordinates.size() && row < 3; ++j)
+    if (!info.coordinates[j].turns()) T(row++, j) = 1;
+  return T;
+}
+
+/// The longest translation and rotation of the twists E e over a box of errors e. Norms are convex, so that their
+/// maxima are at corners of the box.
+std::array<double, 2> longest_of_twist(const AxisMatrix<double>& E, const std::vector<double>& errors) {
+  std::array<double, 2> longest{};
+  for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
+    std::array<double, 2> squares{};
+    for (std::size_t i = 0; i < E.rows(); ++i) {
+      double component = 0;
+      for (std::size_t j = 0; j < errors.size(); ++j) component += (corner >> j & 1 ? 1 : -1) * E(i, j) * errors[j];
+      squares[i / 3] += component * component;
+    }
+    for (std::size_t part = 0; part < 2; ++part) longest[part] = std::max(longest[part], std::sqrt(squares[part]));
+  }
+  return longest;
+}
+
 }  // namespace
 
 void tell_tool_error(const Target& target, const std::string& mode, const MotionSample& at,
-                     const std::vector<std::string>& lists, Printout& out) {
+                     const std::optional<AxisMatrix<double>>& T, const std::vector<std::string>& lists, Printout& out) {
   const MechanismInfo& info = target.info();
   const Velocities& velocities =
       needed(target.mechanism->velocities(), "--joint-error", "influence coefficients", info);
@@ -50,18 +76,14 @@ void tell_tool_error(const Target& target, const std::string& mode, const Motion
     const AxisInfo& axis = info.coordinates[i];
     rows.push_back({axis.name, axis.turns() ? position(worst[i], axis.unit) : with_micrometres(worst[i])});
   }
-  double longest = 0;
-  for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
-    double square = 0;
-    for (std::size_t i = 0; i < worst.size(); ++i) {
-      double move = 0;
-      for (std::size_t j = 0; j < errors.size(); ++j) move += (corner >> j & 1 ? 1 : -1) * of_joints(i, j) * errors[j];
-      if (!info.coordinates[i].turns()) square += move * move;
-    }
-    longest = std::max(longest, std::sqrt(square));
+  const auto [translation, rotation] = longest_of_twist((T ? *T : translation_of(info)) * of_joints, errors);
+  rows.push_back({"translation", with_micrometres(translation)});
+  Json told = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", translation}};
+  if (T && std::ranges::any_of(info.coordinates, &AxisInfo::turns)) {
+    told["rotation"] = rotation;
+    rows.push_back({"rotation", position(rotation, "rad")});
   }
-  rows.push_back({"translation", with_micrometres(longest)});
-  out.json["tool_error"] = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", longest}};
+  out.json["tool_error"] = told;
   out.section("greatest error of the tool, for errors of the joints up to " + axes_text(info.joints, errors), rows);
 }
 

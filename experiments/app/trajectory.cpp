@@ -33,6 +33,7 @@ std::string why_absent(const Mechanism& mechanism, const Trajectory& trajectory)
   if (!mechanism.dynamics())
     return name + "dynamics: no forces, no power\n" +
            (mechanism.velocities() ? "" : name.substr(1) + "influence coefficients: no speeds\n");
+  if (const Refusal reason = no_joint_forces(mechanism)) return '\n' + *reason + ": no forces, no power\n";
   if (trajectory.summary.has_forces) return "";
   const auto first = std::ranges::find_if(trajectory.points, [](const auto& p) { return !p.forces; });
   return "\npeaks and energies of the forces are not known: the motion has none" + place_of(trajectory, *first) + ": " +
@@ -59,7 +60,9 @@ void tell_summary(const Mechanism& mechanism, const Trajectory& trajectory, Prin
   const std::string forces = units_of(assignable_forces(info));
   const std::string per = trajectory.periodic ? "per cycle" : "over the motion";
   add("peak_speed", "peak speed [" + units_of(info.joints, "/s") + "]", s.peak_speed);
-  if (mechanism.dynamics()) {
+  if (const Refusal reason = no_joint_forces(mechanism)) {
+    json["no_forces"] = *reason;
+  } else {
     add("peak_force", "peak force [" + forces + "]", if_known(s.peak_force));
     add("rms_force", "RMS force [" + forces + "]", if_known(s.rms_force));
     add("peak_power", "peak power [W]", if_known(s.peak_power));
@@ -88,15 +91,17 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   const MechanismInfo& info = target.info();
   const std::string mode = known_mode(info, arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
-  if (const Refusal reason = no_joint_forces(mechanism); reason && mechanism.dynamics())
-    throw ConfigError({"", 0, "trajectory"}, *reason + ", so no forces of its drives");
-  if (!arguments.wrench.empty() && !mechanism.dynamics())
-    throw ConfigError({"", 0, "--wrench"}, "mechanism " + info.name + " has no dynamics, so a wrench has no effect");
+  const Refusal no_forces = no_joint_forces(mechanism);
+  if (!arguments.wrench.empty() && no_forces)
+    throw ConfigError({"", 0, "--wrench"}, *no_forces + ", so a wrench has no effect");
   if (!arguments.motors.empty() && !mechanism.drive_trains())
     throw ConfigError({"", 0, "--motors"}, "no drive trains", "a study with [[drive_train]]");
   if (const Refusal reason = no_joint_forces(mechanism); reason && !arguments.motors.empty())
     throw ConfigError({"", 0, "--motors"}, *reason + ", so no torques of its motors");
   expect_reactions(mechanism, arguments);
+  if (arguments.any() && no_forces)
+    throw ConfigError({"", 0, arguments.reactions ? "--reactions" : "--joint"},
+                      *no_forces + ", so no forces in its joints");
   if (!arguments.zeta.empty() && !mechanism.chain())
     throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");
   const double zeta = arguments.zeta.empty() ? 0 : parse_number(arguments.zeta, "--zeta", "rad");

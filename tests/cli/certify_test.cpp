@@ -106,7 +106,7 @@ TEST_F(Certify, DecidesMotions) {
   EXPECT_EQ(leaves.exit_code, 1);
   EXPECT_THAT(leaves.err, HasSubstr("the motion is not feasible everywhere"));
   EXPECT_EQ(leaves.json()["feasible"]["verdict"], "no");
-  EXPECT_TRUE(leaves.json()["regular"].is_null());
+  EXPECT_EQ(leaves.json()["regular"]["verdict"], "not examined");
   const double t = leaves.json()["feasible"]["time"];
   // samples say the same, as far as they can
   const auto sampled = run({"trajectory", file, "--motion", "leaves.toml", "--samples", "1001", "--json"}).json();
@@ -117,6 +117,25 @@ TEST_F(Certify, DecidesMotions) {
     EXPECT_TRUE(!feasible || at < t || at > t + 6e-4) << at;
   }
   EXPECT_THAT(run({"certify", file, "--motion", "leaves.toml"}).out, HasSubstr("does not hold at t = "));
+}
+
+TEST_F(Certify, ReportsSingularitiesAlways) {
+  const std::string cables = PKM_TEST_DATA "/redundant/four-cables.toml";
+  const auto box = run({"certify", cables, "--box", "x=-0.1:0.1,y=-0.1:0.1"});
+  EXPECT_EQ(box.exit_code, 1);
+  EXPECT_THAT(box.out, HasSubstr("feasible   everywhere in the box\n"));
+  EXPECT_THAT(box.out, HasSubstr("regular    no, singular at x = 0 m, y = 0 m, phi = 0 rad"));
+  EXPECT_THAT(box.out, HasSubstr("det(G^T G) = 0), to working precision"));
+  EXPECT_THAT(box.err, HasSubstr("the box is not regular everywhere"));
+  folder_.write("flat.toml", "type = \"formulas\"\nduration = 1\nx = \"0.1*t\"\ny = 0\nphi = 0\n");
+  folder_.write("turned.toml", "type = \"formulas\"\nduration = 1\nx = \"0.1*t\"\ny = 0\nphi = 0.1\n");
+  EXPECT_EQ(run({"certify", cables, "--motion", "flat.toml", "--json"}).json()["regular"]["verdict"], "no");
+  const auto turned = run({"certify", cables, "--motion", "turned.toml"});
+  EXPECT_EQ(turned.exit_code, 0) << turned.err;
+  EXPECT_THAT(turned.out, HasSubstr("regular    no singularity along the motion\n"));
+
+  const auto leaves = run({"certify", kMechanisms + "orthoglide.toml", "--box", "x=-0.1:0.12,y=-0.1:0.12,z=-0.1:0.12"});
+  EXPECT_THAT(leaves.out, HasSubstr("regular    not examined, because not every pose is feasible\n"));
 }
 
 TEST_F(Certify, RefusesMotionsInOneSentence) {

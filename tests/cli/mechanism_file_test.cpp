@@ -15,6 +15,7 @@ namespace pkm::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 std::string text_of(const std::string& file) {
@@ -117,6 +118,52 @@ TEST_F(MechanismFile, ForwardNearAPoseIsTheAssemblyNextToIt) {
     EXPECT_NEAR(next["z"], file ? -0.45 : -0.9, 1e-9);
     EXPECT_GT(near(file ? "x=0,y=0,z=0.4" : "x=0.5,y=1,z=1,theta=0.2")["z"], file ? 0.1 : -0.89);
   }
+}
+
+TEST_F(MechanismFile, ForwardSaysWhetherItsListIsComplete) {
+  const auto of_file = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command = {"forward", "delta.toml", "--joints", "arm1=0.4,arm2=0.4,arm3=0.4"};
+    command.insert(command.end(), more.begin(), more.end());
+    return run(command);
+  };
+  EXPECT_THAT(of_file({}).out,
+              HasSubstr("\n  complete   no, found by Newton's method from poses over the survey's box"));
+  EXPECT_EQ(of_file({"--json"}).json()["complete"], false);
+  EXPECT_THAT(of_file({"--near", "x=0,y=0,z=-0.4"}).out,
+              HasSubstr("complete   no, found by Newton's method from the pose"));
+  const std::vector<std::string> closed = {"forward", "4ppa-2par", "--joints",
+                                           "q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846"};
+  EXPECT_THAT(run(closed).out, HasSubstr("complete   no, closed form: every isolated pose, of which --all lists"));
+  std::vector<std::string> all = closed;
+  all.push_back("--all");
+  EXPECT_THAT(run(all).out, HasSubstr("complete   yes, closed form: every isolated pose\n"));
+  all.push_back("--json");
+  EXPECT_EQ(run(all).json()["complete"], true);
+  EXPECT_EQ(run(all).json()["guarantee"], "closed form: every isolated pose");
+}
+
+TEST_F(MechanismFile, PoseNamesRowsAndColumnsOfItsJacobians) {
+  const std::string at = "x=0.1,y=0,z=1.2,alpha=0.2,beta=0.3,gamma=0.1",
+                    gough = PKM_EXPERIMENTS "/mechanisms/gough.toml";
+  const auto pose = run({"pose", gough, "--at", at, "--json"}).json();
+  EXPECT_EQ(pose["J_rows"], (std::vector<std::string>{"left1", "left2", "left3", "right1", "right2", "right3"}));
+  EXPECT_EQ(pose["J_columns"], (std::vector<std::string>{"x", "y", "z", "alpha", "beta", "gamma"}));
+  EXPECT_EQ(pose["J_columns_are"], "coordinate rates");
+  EXPECT_EQ(pose["J_twist_rows"], pose["J_rows"]);
+  EXPECT_EQ(pose["J_twist_columns"], (std::vector<std::string>{"vx", "vy", "vz", "wx", "wy", "wz"}));
+  EXPECT_EQ(pose["J_twist_columns_are"], "twist");
+  EXPECT_EQ(pose["T_rows"], pose["J_twist_columns"]);
+  for (std::size_t i = 0; i < 6; ++i)  // J = J_twist T
+    for (std::size_t j = 0; j < 6; ++j) {
+      double sum = 0;
+      for (std::size_t k = 0; k < 6; ++k) sum += double(pose["J_twist"][i][k]) * double(pose["T"][k][j]);
+      EXPECT_NEAR(pose["J"][i][j], sum, 1e-14);
+    }
+  EXPECT_THAT(run({"pose", gough, "--at", at}).out, HasSubstr("\nJ_twist, where qdot = J_twist [vx vy vz wx wy wz]\n"));
+  const auto built_in = run({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg", "--json"}).json();
+  EXPECT_EQ(built_in["J_columns"], (std::vector<std::string>{"x", "y", "z", "theta"}));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(built_in["J_twist"][i][5], built_in["J"][i][3]);
+  EXPECT_THAT(run({"pose", "4ppa-2par", "--at", "x=0.25,y=0.85,z=-0.8,theta=30deg"}).out, Not(HasSubstr("J_twist")));
 }
 
 TEST_F(MechanismFile, AStudyGoesOnAndIsShownWithoutIt) {

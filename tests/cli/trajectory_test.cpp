@@ -27,6 +27,42 @@ std::vector<std::string> lines_of_file(const std::string& path) {
   return lines;
 }
 
+TEST(CliTrajectory, RedundantDrivesHaveSpeedsWithoutForces) {
+  const std::string data = PKM_TEST_DATA "/redundant/", rrr = data + "4-rrr.toml";
+  const auto found = pkmopt({"trajectory", rrr, "--motion", data + "4-rrr-motion.toml"});
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("peak speed [rad/s]"));
+  EXPECT_THAT(found.out, HasSubstr("mechanism 4-rrr has 4 joints for 3 coordinates, not as many of both: no forces"));
+  const json all = pkmopt({"trajectory", rrr, "--motion", data + "4-rrr-motion.toml", "--json"}).json();
+  EXPECT_EQ(all["summary"]["no_forces"], "mechanism 4-rrr has 4 joints for 3 coordinates, not as many of both");
+  EXPECT_FALSE(all["summary"].contains("peak_force"));
+  const json& samples = all["samples"];
+  for (std::size_t k = 1; k + 1 < samples.size(); ++k)  // speeds beside differences of the joints
+    for (const auto& [name, speed] : samples[k]["speeds"].items()) {
+      const double step = double(samples[k + 1]["time"]) - double(samples[k - 1]["time"]);
+      const double difference = double(samples[k + 1]["joints"][name]) - double(samples[k - 1]["joints"][name]);
+      EXPECT_NEAR(speed, difference / step, 2e-4);
+    }
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--wrench", "Fx=1"}, {"--reactions"}, {"--joint", "arm1.A"}}) {
+    std::vector<std::string> command = {"trajectory", rrr, "--motion", data + "4-rrr-motion.toml"};
+    command.insert(command.end(), option.begin(), option.end());
+    const auto refused = pkmopt(command);
+    EXPECT_EQ(refused.exit_code, 2) << option[0];
+    EXPECT_THAT(refused.err, HasSubstr(option[0])) << refused.err;
+  }
+}
+
+TEST(CliTrajectory, RedundantDrivesFollowNoMotionThroughSingularPoses) {
+  const StudyFolder folder;
+  const std::string cables = PKM_TEST_DATA "/redundant/four-cables.toml";
+  folder.write("m.toml", "type = \"formulas\"\nduration = 1\nx = \"0.1*t\"\ny = 0\nphi = \"0.1*(t - 0.5)\"\n");
+  const auto found = pkmopt({"trajectory", cables, "--motion", "m.toml", "--samples", "11", "--json"}, folder.path());
+  EXPECT_EQ(found.exit_code, 1);
+  EXPECT_THAT(found.err, HasSubstr("the Jacobian is singular to working precision"));
+  for (const json& sample : found.json()["samples"]) EXPECT_EQ(sample["feasible"], double(sample["time"]) != 0.5);
+}
+
 TEST(CliTrajectory, TheOscillationOfTheGoldenData) {
   const StudyFolder folder;
   folder.write("m.toml", kOscillation);

@@ -33,17 +33,17 @@ struct VolumeBounds {
 
 /// Whether something holds at every pose of a box or of a motion.
 struct PosesVerdict {
-  enum class Kind { holds, fails, undecided };
+  enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
-  std::string what = {};                   ///< does not hold, or is undecided
+  std::string what = {};                   ///< does not hold, or is undecided, or why it was not examined
   std::optional<Pose<double>> where = {};  ///< a pose where it fails, or near which it is undecided
   std::optional<double> time = {};         ///< of a motion: when it is there [s]
 };
 
 struct PosesCertificate {
   PosesVerdict feasible;
-  std::optional<PosesVerdict> regular;  ///< no singularity where it is feasible; none: its Jacobian is not square
-  std::size_t boxes = 0;                ///< looked at
+  PosesVerdict regular;   ///< no singularity, parallel or serial; not examined where a pose is not feasible
+  std::size_t boxes = 0;  ///< looked at
   bool stopped = false;
 };
 

@@ -24,11 +24,17 @@ class Velocities {
                                                      const std::string& mode) const = 0;
 };
 
+/// What a list of assemblies guarantees.
+struct ForwardGuarantee {
+  bool is_complete = true;  ///< it has every isolated pose
+  std::string method = "closed form: every isolated pose";
+};
+
 class ForwardKinematics {
  public:
   virtual ~ForwardKinematics() = default;
-  /// Every assembly mode for joint values [m, rad]; empty when the joints cannot be reached, or reached in infinitely
-  /// many ways.
+  /// Assembly modes for joint values [m, rad], as `guarantee` has it every one; empty when the joints cannot be
+  /// reached, or reached in infinitely many ways.
   virtual std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
                                                const AxisVector<double>& joints) const = 0;
   /// Those that are looked for about a pose: here, too, every one.
@@ -37,6 +43,8 @@ class ForwardKinematics {
                                                     const Pose<double>& /*from*/) const {
     return assemblies(parameters, joints);
   }
+  /// Of assemblies(): overridden by mechanisms that search.
+  virtual ForwardGuarantee guarantee() const { return {}; }
   /// What an answer of theirs means.
   virtual ForwardStatus status(std::span<const double> /*parameters*/, const AxisVector<double>& /*joints*/,
                                const std::vector<AssemblyMode>& found) const {

@@ -44,6 +44,7 @@ PoseReport inspect(const Geometry<double>& g, const LinkRadii<double>& radii, co
     report.reason = out_of_reach(g, limbs);
     return report;
   }
+  report.T = schoenflies_twist(2);
   report.J = influence(limbs.arm).G;
   report.conditioning = conditioning(limbs.arm, characteristic_length(g));
   report.joints.emplace(std::size_t{4});

@@ -131,12 +131,14 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
       model.graph, inputs.size(), [](std::size_t) { return Groups{1}; }, numbers, roots);
   inputs.insert(inputs.end(), numbers.begin(), numbers.end());
   const std::span<const Node> closures = std::span(roots).first(model.closures.size());
-  std::vector<bounds::NamedMatrix> matrices = {{"the parallel singularity (det G = 0)", at.joints, {}},
-                                               {"the serial singularity (det Jq = 0)", at.joints, {}}};
+  const std::string det_G = at.joints == at.coordinates ? "det G" : "det(G^T G)";
+  std::vector<bounds::NamedMatrix> matrices = {
+      {"the parallel singularity (" + det_G + " = 0)", at.joints, at.coordinates, {}},
+      {"the serial singularity (det Jq = 0)", at.joints, at.joints, {}}};
   std::vector<Node> entries;
   for (bounds::NamedMatrix& matrix : matrices)
     for (const Node closure : closures)
-      for (std::size_t j = 0; j < at.joints; ++j) {
+      for (std::size_t j = 0; j < matrix.columns; ++j) {
         const bool by_pose = &matrix == &matrices.front();
         const Node variable = graph.input(by_pose ? at.coordinate(j) : at.joint(j));
         matrix.entries.push_back(graph::derivative(graph, closure, variable));
@@ -173,6 +175,13 @@ std::size_t put_motion(const Motion& motion, const Inputs& at, Graph& graph, std
   return time.position;
 }
 
+/// Why singularities are not examined; none: they are.
+Refusal refuse_jacobians(const Inputs& at) {
+  if (at.joints >= at.coordinates) return {};
+  return "the mechanism has fewer joints (" + std::to_string(at.joints) + ") than coordinates (" +
+         std::to_string(at.coordinates) + "), so that every pose is singular";
+}
+
 bounds::Matrices jacobians_along(const Motion& motion, const Model& model, std::vector<Interval> inputs) {
   Graph graph;
   std::vector<bounds::NamedMatrix> named = jacobians(model, graph, inputs);
@@ -197,11 +206,14 @@ PosesCertificate certify_box(const Evaluation& e, std::span<const double> parame
   const Conditions conditions(all.graph, all.all, axes, inputs);
   Graph graph;
   std::optional<bounds::Matrices> matrices;
-  if (e.model.inputs.joints == e.model.inputs.coordinates) {
+  const Refusal not_examined = refuse_jacobians(e.model.inputs);
+  if (!not_examined) {
     const auto named = jacobians(e.model, graph, inputs);
     matrices.emplace(graph, named, axes, inputs);
   }
-  return bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
+  PosesCertificate found = bounds::certify(conditions, matrices ? &*matrices : nullptr, ranges, options);
+  if (not_examined) found.regular.what = *not_examined;
+  return found;
 }
 
 PosesCertificate certify_motion(const Evaluation& e, std::span<const double> parameters, const LimitSpec& limits,
@@ -215,7 +227,8 @@ PosesCertificate certify_motion(const Evaluation& e, std::span<const double> par
   for (std::size_t i = 0; i < roots.size(); ++i) all.all[i].node = roots[i];
   const Conditions conditions(all.graph, all.all, {time}, inputs);
   std::optional<bounds::Matrices> matrices;
-  if (e.model.inputs.joints == e.model.inputs.coordinates) matrices = jacobians_along(motion, e.model, design);
+  const Refusal not_examined = refuse_jacobians(e.model.inputs);
+  if (!not_examined) matrices = jacobians_along(motion, e.model, design);
 
   const auto until = [&](double end, const bounds::Matrices* regular) {
     const std::array<double, 2> times = {0, end};
@@ -231,8 +244,9 @@ PosesCertificate certify_motion(const Evaluation& e, std::span<const double> par
     found.boxes += before.boxes;
     if (before.feasible.kind == PosesVerdict::Kind::fails) found.feasible = before.feasible;
   }
-  for (PosesVerdict* const verdict : {&found.feasible, found.regular ? &*found.regular : nullptr})
-    if (verdict && verdict->where) {
+  if (not_examined) found.regular.what = *not_examined;
+  for (PosesVerdict* const verdict : {&found.feasible, &found.regular})
+    if (verdict->where) {
       verdict->time = first(*verdict);
       verdict->where = motion.at(*verdict->time).pose;
     }

@@ -42,6 +42,15 @@ Evaluation::Evaluation(Model described) : model(std::move(described)) {
     placed.push_back(link.radius);
   }
   links = Program(graph, placed);
+  origin = Program(graph, model.origin);
+  std::vector<Node> framed(model.origin.begin(), model.origin.end());
+  for (const auto& row : model.turn) std::ranges::copy(row, std::back_inserter(framed));
+  for (const auto& axis : model.turn_axes) std::ranges::copy(axis, std::back_inserter(framed));
+  frame = Program(graph, framed);
+  std::vector<Node> of_rods;
+  for (const DescribedRod& rod : model.rods)
+    for (const auto* const end : {&rod.C, &rod.B}) std::ranges::copy(*end, std::back_inserter(of_rods));
+  rods = Program(graph, of_rods);
   if (const auto& equations = model.equations) {
     std::vector<Node> of_motion = model.joints;
     std::ranges::copy(nodes_of(model.domains), std::back_inserter(of_motion));

@@ -14,6 +14,9 @@ struct Evaluation {
   Model model;
   graph::Program conditions;  ///< of a pose: joints, domains, margins, angles
   graph::Program joints, closures, links, tests;
+  graph::Program origin;          ///< Model::origin
+  graph::Program frame;           ///< Model::origin, turn, and turn_axes by coordinate
+  graph::Program rods;            ///< C and B of each
   graph::Program motion, masses;  ///< joints, domains and EquationNodes of a state, after the design; MassCheck
   std::optional<graph::RowStage> motions;                     ///< `motion` of many states
   graph::Program size, length, radius;                        ///< of a design; without outputs: it is not described

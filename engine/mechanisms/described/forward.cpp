@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/mechanisms/described/rigid_pose.hpp"
+
 namespace pkm::described {
 namespace {
 
@@ -131,51 +133,106 @@ class Starts {
   std::vector<std::array<double, 2>> ranges_;
 };
 
-/// Adds an assembly that is not known yet.
-void add(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, Pose<double> pose,
-         std::vector<AssemblyMode>& found) {
-  for (std::size_t i = 0; i < pose.size(); ++i)
-    if (e.model.info.coordinates[i].turns()) pose[i] = wrapped(pose[i]);
-  const double size = std::fabs(*std::ranges::max_element(pose, {}, [](double x) { return std::fabs(x); }));
-  for (double& x : pose)
-    if (std::fabs(x) < 1e-14 * size) x = 0;  // rounding alone
-  const auto near = [&](const AssemblyMode& other) {
-    return std::ranges::equal(other.pose, pose, [](double x, double y) { return std::fabs(x - y) < 1e-6; });
-  };
-  if (std::ranges::any_of(found, near)) return;
-  const std::string working_mode = mode_with(e, parameters, pose, joints);
-  if (!working_mode.empty())
-    found.push_back({.pose = pose, .mode = "found " + std::to_string(found.size() + 1), .working_mode = working_mode});
-}
+/// The distinct rigid-body poses found so far.
+class Found {
+ public:
+  enum class Angles { principal, as_found };
+
+  Found(const Evaluation& e, std::span<const double> parameters, const AxisVector<double>& joints, Angles angles)
+      : e_(e), parameters_(parameters), joints_(joints), angles_(angles) {}
+
+  /// @return whether the pose has the joints in a working mode, and no earlier one is the same rigid-body pose
+  bool add(Pose<double> pose) {
+    const Model& model = e_.model;
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      if (model.turns_about[i]) pose[i] = wrapped(pose[i]);
+    std::string working_mode = mode_with(e_, parameters_, pose, joints_);
+    if (working_mode.empty()) return false;
+    const RigidPose rigid = rigid_pose(e_, inputs(pose, working_mode));
+    const auto is_same = [&](std::size_t k) {
+      return is_same_pose(model, modes_[k].pose, rigid_[k], pose, rigid, kSamePose);
+    };
+    for (std::size_t k = 0; k < modes_.size(); ++k)
+      if (is_same(k)) return false;
+    if (angles_ == Angles::principal) make_principal(pose, rigid, working_mode);
+    const double size = std::fabs(*std::ranges::max_element(pose, {}, [](double x) { return std::fabs(x); }));
+    for (double& x : pose)
+      if (std::fabs(x) < 1e-14 * size) x = 0;  // rounding alone
+    modes_.push_back(
+        {.pose = pose, .mode = "found " + std::to_string(modes_.size() + 1), .working_mode = working_mode});
+    rigid_.push_back(rigid);
+    return true;
+  }
+
+  const std::vector<AssemblyMode>& modes() const { return modes_; }
+  /// Of one of them.
+  std::optional<Pose<double>> mirrored(std::size_t k) const {
+    return mirror_image(e_, inputs(modes_[k].pose, modes_[k].working_mode));
+  }
+
+ private:
+  static constexpr double kSamePose = 1e-6;  // [m, 1], a thousand times what the method leaves
+
+  /// Of the triples of angles that are one rotation, takes that of the principal ranges.
+  void make_principal(Pose<double>& pose, const RigidPose& rigid, std::string& working_mode) const {
+    Pose<double> principal = pose;
+    set_angles(e_.model, rigid.rotation, principal);
+    const auto is_near = [](double x, double y) { return std::fabs(wrapped(x - y)) < kSamePose; };
+    if (std::ranges::equal(principal, pose, is_near)) return;
+    const std::string mode = mode_with(e_, parameters_, principal, joints_);
+    if (mode.empty() ||
+        !is_same_pose(e_.model, principal, rigid_pose(e_, inputs(principal, mode)), pose, rigid, kSamePose))
+      return;
+    pose = principal;
+    working_mode = mode;
+  }
+
+  std::vector<double> inputs(const Pose<double>& pose, const std::string& mode) const {
+    const MechanismInfo& info = e_.model.info;
+    std::vector<double> inputs = e_.inputs(parameters_, no_limits(info), number_of_mode(info, mode));
+    std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
+    return inputs;
+  }
+
+  const Evaluation& e_;
+  std::span<const double> parameters_;
+  const AxisVector<double>& joints_;
+  Angles angles_;
+  std::vector<AssemblyMode> modes_;
+  std::vector<RigidPose> rigid_;  ///< of these modes
+};
 
 }  // namespace
 
 std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const double> parameters,
                                         const AxisVector<double>& joints) {
-  constexpr std::size_t kStarts = 64, kTried = 1024;  // of a mode: those where its closures have values, of so many
   const Starts poses(e, parameters);
-  std::vector<AssemblyMode> found;
+  Found found(e, parameters, joints, Found::Angles::principal);
+  std::vector<Closures> closures;
   for (const std::size_t mode : modes_of_closures(e.model)) {
-    Closures closures(e, parameters, joints, mode);
-    std::size_t starts = 0;
-    for (std::size_t tried = 0; tried < kTried && starts < kStarts; ++tried) {
-      const Solution solution = solve_closures(closures, poses[tried]);
-      starts += solution.started;
-      if (solution.pose) add(e, parameters, joints, *solution.pose, found);
+    Closures& of_mode = closures.emplace_back(e, parameters, joints, mode);
+    std::size_t idle = 0;  // starts since the last new pose, where closures have values
+    for (std::size_t tried = 0; tried < kMostStarts && idle < kIdleStarts; ++tried) {
+      const Solution solution = solve_closures(of_mode, poses[tried]);
+      idle += solution.started;
+      if (solution.pose && found.add(*solution.pose)) idle = 0;
     }
   }
-  return found;
+  for (std::size_t k = 0; k < found.modes().size(); ++k)  // mirror images of mirror images, too
+    if (const auto start = found.mirrored(k))
+      for (Closures& of_mode : closures)
+        if (const Solution solution = solve_closures(of_mode, *start); solution.pose) found.add(*solution.pose);
+  return found.modes();
 }
 
 std::vector<AssemblyMode> assemblies_near(const Evaluation& e, std::span<const double> parameters,
                                           const AxisVector<double>& joints, const Pose<double>& from) {
-  std::vector<AssemblyMode> found;
+  Found found(e, parameters, joints, Found::Angles::as_found);
   for (const std::size_t mode : modes_of_closures(e.model)) {
     Closures closures(e, parameters, joints, mode);
-    if (const Solution solution = solve_closures(closures, from); solution.pose)
-      add(e, parameters, joints, *solution.pose, found);
+    if (const Solution solution = solve_closures(closures, from); solution.pose) found.add(*solution.pose);
   }
-  return found;
+  return found.modes();
 }
 
 }  // namespace pkm::described

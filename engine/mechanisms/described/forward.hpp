@@ -6,8 +6,11 @@
 
 namespace pkm::described {
 
-/// From some 64 poses of the description's box for each working mode that has formulas of its own, each assembly once:
-/// those that are found need not be all.
+/// A search of assemblies_of() ends after so many starts in a row that lead to no new pose, or after kMostStarts.
+inline constexpr std::size_t kIdleStarts = 64, kMostStarts = 1024;
+
+/// Distinct rigid-body poses, from starts over the description's box for each working mode that has formulas of its
+/// own, and from the mirror image of each pose found. Those that are found need not be all.
 std::vector<AssemblyMode> assemblies_of(const Evaluation& evaluation, std::span<const double> parameters,
                                         const AxisVector<double>& joints);
 

@@ -54,7 +54,7 @@ class System {
     std::vector<Node> nodes;
     const auto add = [&nodes](const Place& place) { nodes.insert(nodes.end(), place.begin(), place.end()); };
     add(*model_.wrench_point);
-    for (const Place& row : model_.jointed->turn) add(row);
+    for (const Place& row : model_.turn) add(row);
     for (const DescribedBody& body : model_.bodies) {
       add(body.centre);
       nodes.push_back(body.mass);
@@ -89,7 +89,7 @@ class System {
   void find_turn_of_platform() {
     Mat rate, second;
     for (std::size_t i = 0; i < 3; ++i) {
-      const Moving row = at(model_.jointed->turn[i]);
+      const Moving row = at(model_.turn[i]);
       for (std::size_t k = 0; k < 3; ++k) {
         R_(i, k) = row.x[k];
         rate(i, k) = row.v[k];

@@ -39,6 +39,21 @@ AxisVector<double> as_axes(std::span<const double> values) {
   return axes;
 }
 
+/// PoseReport::T. @param inputs  with the pose
+AxisMatrix<double> twist_at(const Evaluation& e, const std::vector<double>& inputs) {
+  constexpr std::size_t kAxes = 12;  // among the outputs of the frame
+  const std::size_t n = e.model.inputs.coordinates;
+  const std::vector<double> frame = outputs_of(e.frame, inputs);
+  const AxisMatrix<double> rates = derivatives(e.origin, inputs, e.model.inputs.coordinate(0), n);
+  AxisMatrix<double> T(6, n);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t j = 0; j < n; ++j) {
+      T(k, j) = rates(k, j);
+      T(3 + k, j) = frame[kAxes + 3 * j + k];
+    }
+  return T;
+}
+
 /// Inputs of a pose.
 std::vector<double> inputs_at(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                               std::size_t mode, const LimitSpec& limits) {
@@ -103,6 +118,7 @@ PoseReport inspect_pose(const Evaluation& e, std::span<const double> parameters,
 
   std::ranges::copy(*report.joints, inputs.begin() + static_cast<std::ptrdiff_t>(at.joint(0)));
   add_jacobians(e, parameters, pose, inputs, report);
+  report.T = twist_at(e, inputs);
   return report;
 }
 

@@ -148,6 +148,11 @@ class DescribedMechanism final : public Mechanism,
                                             const Pose<double>& from) const override {
     return described::assemblies_near(e_, parameters, joints, from);
   }
+  ForwardGuarantee guarantee() const override {
+    return {false, "found by Newton's method from poses over the survey's box, until " + std::to_string(kIdleStarts) +
+                       " in a row led to no new one (at most " + std::to_string(kMostStarts) +
+                       "), and from mirror images; there may be others"};
+  }
   ForwardStatus status(std::span<const double>, const AxisVector<double>&,
                        const std::vector<AssemblyMode>& found) const override {
     if (found.empty()) return {"NO_POSE", "no pose was found from any of the starting poses"};

@@ -61,6 +61,11 @@ struct CoveredFolds {
   std::optional<std::size_t> crank_range;  ///< of the same limb
 };
 
+/// The rod or telescope of a limb. For given joints C is fixed; B is fixed in the platform, or stated by a formula.
+struct DescribedRod {
+  std::array<Node, 3> C, B;
+};
+
 /// What the design's size is, for workspace-ratio.
 struct DescribedSize {
   Node node;
@@ -133,7 +138,6 @@ struct DescribedJoint {
 struct DescribedJoints {
   std::vector<DescribedSolid> solids;
   std::vector<DescribedJoint> joints;
-  std::array<std::array<Node, 3>, 3> turn;  ///< of the platform, by rows
 };
 
 /// A number that has to be positive for a design to have masses.
@@ -176,6 +180,10 @@ struct Model {
   std::vector<std::optional<Node>> middle;              ///< by coordinate: where a survey holds it
   std::vector<std::optional<std::size_t>> turns_about;  ///< by coordinate: the axis of a rotation, 0 to 2
   std::vector<std::array<Node, 3>> turn_axes;           ///< by coordinate: the same in the base's frame; 0: none
+  std::vector<std::optional<std::size_t>> moves_along;  ///< by coordinate: the axis of a translation, 0 to 2
+  std::array<Node, 3> origin;                           ///< of the platform's frame, in the base's
+  std::array<std::array<Node, 3>, 3> turn;              ///< rotation matrix of the platform, by rows
+  std::vector<DescribedRod> rods;                       ///< of the limbs that have one
   std::vector<DescribedArm> arms;
   std::vector<DescribedBody> bodies;
   std::vector<MassCheck> masses;

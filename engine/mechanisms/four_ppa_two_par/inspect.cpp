@@ -51,6 +51,7 @@ PoseReport inspect(const Geometry<double>& g, const Limits<double>& l, const Obs
     for (std::size_t j = 0; j < 2; ++j) list(kReachX + j), list(kReachZ + j);
     return report;
   }
+  report.T = schoenflies_twist(2);
   report.joints = {limb.q[0], limb.q[1], limb.q[2], limb.q[3]};
   add_velocities(g, velocity(g, pose, limb, mode), report);
   for (std::size_t j = 0; j < 2; ++j) report.angles.emplace_back("alpha_" + std::to_string(j + 1), alpha(limb, j));

@@ -28,6 +28,7 @@ void add_velocity(const Geometry<double>& g, const Pose<double>& pose, const Joi
   const VelocityEquation<double> v = velocity_equation(pose, j);
   report.Jq = v.Jq;
   report.G = v.Jx;
+  report.T = schoenflies_twist(0);
   report.det_Jq = j.n1 * j.n2 * j.n3;
   report.det_G = pose.z * (j.n1 - j.n2) * j.N2;
   report.conditioning = 0;

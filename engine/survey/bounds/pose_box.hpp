@@ -2,9 +2,12 @@
 // is decided.
 //
 // A condition that only rises or only falls along each axis, or stays, is least and greatest at corners; any other is
-// no further from its value in the middle than its slopes lead. A matrix is
-// regular over a box if, multiplied with an inverse from its middle, it is near enough to the unit matrix: its diagonal
-// outweighs the rest of each row (Levy and Desplanques).
+// no further from its value in the middle than its slopes lead. A matrix is regular over a box if, multiplied with an
+// inverse from its middle, it is an H-matrix: with weights u > 0 of the columns, its diagonal outweighs the rest of
+// each row (generalised diagonal dominance). One with more rows than columns has the full rank if the same holds with a
+// left inverse (A^T A)^-1 A^T. A pose is singular to working precision if |A v| <= kSingular |A| |v| for some v, in
+// intervals. A square matrix is singular between two poses where its determinant has two signs, if its entries are
+// continuous there.
 #pragma once
 
 #include <span>
@@ -14,10 +17,10 @@
 
 namespace pkm::bounds {
 
-/// A square matrix of formulas.
+/// A matrix of formulas, with at least as many rows as columns.
 struct NamedMatrix {
   std::string name;
-  std::size_t rows = 0;
+  std::size_t rows = 0, columns = 0;
   std::vector<graph::Node> entries;  ///< row by row
 };
 
@@ -30,11 +33,20 @@ class Matrices {
            const std::vector<Interval>& inputs);
 
   const Room& room() const { return start_; }
-  /// The first of them that may be singular somewhere in a box; null: none is.
-  const std::string* singular(const Place& place, Room& room) const;
+  std::size_t size() const { return matrices_.size(); }
+  const std::string& name(std::size_t k) const { return matrices_[k].name; }
+  /// The first of them that may lack rank somewhere in a box; none: all have the full rank everywhere.
+  std::optional<std::size_t> singular(const Place& place, Room& room) const;
+  /// Sign of the determinant of a square one at a pose; 0: unknown.
+  int sign(std::size_t k, const Place& pose, Room& room) const;
+  /// Whether it lacks rank at a pose to working precision (engine/model/singular.hpp).
+  bool is_singular_at(std::size_t k, const Place& pose, Room& room) const;
+  /// Whether its entries are continuous over a box.
+  bool is_continuous(std::size_t k, const Place& place, Room& room) const;
 
  private:
-  bool is_regular(std::span<const Interval> entries, std::size_t rows) const;
+  void enter(const Place& place, Room& room) const;
+  std::vector<Interval> entries(std::size_t k, const Room& room) const;  ///< over the box that was entered
 
   std::vector<NamedMatrix> matrices_;
   std::vector<std::size_t> axes_;
@@ -43,7 +55,7 @@ class Matrices {
 };
 
 /// @param ranges    by axis
-/// @param matrices  null: nobody asks
+/// @param matrices  null: not requested
 PosesCertificate certify(const Conditions& conditions, const Matrices* matrices,
                          std::span<const std::array<double, 2>> ranges, const BoundsOptions& options);
 

@@ -72,5 +72,28 @@ TEST(SingularJacobian, IsToldSoonWhereItIsFarFromSingularAndOnlyThere) {
   EXPECT_GT(later, 100);
 }
 
+TEST(RankDeficientJacobian, OfRedundantDrivesIsOneWithADependentColumn) {
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int k = 0; k < 200; ++k) {
+    AxisMatrix<double> J(5, 3);
+    for (double& element : J) element = uniform(engine);
+    EXPECT_FALSE(is_rank_deficient(J));
+    const double share = std::pow(10.0, -k % 18), a = uniform(engine), b = uniform(engine);
+    const std::size_t dependent = static_cast<std::size_t>(k) % 3;
+    for (std::size_t i = 0; i < 5; ++i)
+      J(i, dependent) = a * J(i, (dependent + 1) % 3) + b * J(i, (dependent + 2) % 3) + share * J(i, dependent);
+    if (share > 1e-10) {
+      EXPECT_FALSE(is_rank_deficient(J)) << share;
+    }
+    if (share < 1e-14) {
+      EXPECT_TRUE(is_rank_deficient(J)) << share;
+    }
+    for (std::size_t i = 0; i < 5; ++i) J(i, dependent) = 0;
+    EXPECT_TRUE(is_rank_deficient(J));
+  }
+  EXPECT_TRUE(is_rank_deficient(AxisMatrix<double>(2, 3)));
+}
+
 }  // namespace
 }  // namespace pkm::testing

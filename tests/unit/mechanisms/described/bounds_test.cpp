@@ -1,11 +1,13 @@
 // What intervals say of described mechanisms, beside volumes proven otherwise.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/SVD>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/random.hpp"
 #include "engine/mechanisms/all.hpp"
+#include "engine/model/singular.hpp"
 #include "engine/motion/motions.hpp"
 #include "engine/survey/survey_set.hpp"
 #include "tests/unit/contracts/everything.hpp"
@@ -184,14 +186,14 @@ TEST(CertainBounds, OfABoxOfPoses) {
   };
   const PosesCertificate inside = certified(-0.05, 0.03);
   EXPECT_EQ(inside.feasible.kind, Kind::holds);
-  ASSERT_TRUE(inside.regular);
-  EXPECT_EQ(inside.regular->kind, Kind::holds);
+  EXPECT_EQ(inside.regular.kind, Kind::holds);
 
   const PosesCertificate across = certified(-0.1, 0.12);
   ASSERT_EQ(across.feasible.kind, Kind::fails);
   const PoseReport report =
       orthoglide.inspect(defaults(info), *across.feasible.where, info.modes.front(), no_limits(info));
   EXPECT_FALSE(report.feasible);
+  EXPECT_EQ(across.regular.kind, Kind::not_examined);
 }
 
 std::shared_ptr<const Motion> straight(const AxisVector<double>& from, const AxisVector<double>& to) {
@@ -254,7 +256,7 @@ TEST(CertainBounds, OfMotionsThatEndWhereTheyMay) {
   EXPECT_EQ(leaves.feasible.what, "on its side of the pivots");
 }
 
-TEST(CertainBounds, NameASingularityThatABoxMayHold) {
+TEST(CertainBounds, FindASingularityBetweenTwoSignsOfTheDeterminant) {
   // two telescopes in a plane, singular where both are in line
   const auto legs = read(
       "[mechanism]\nname = \"legs\"\n[parameters]\nb = { default = 1, min = 0, max = 9, unit = \"m\", meaning = "
@@ -264,25 +266,131 @@ TEST(CertainBounds, NameASingularityThatABoxMayHold) {
       "\"telescope\"\nbase = [\"b\", 0, 0]\nplatform = [0, 0, 0]\n");
   const auto regular = [&](double from, double to) {
     const std::vector<std::array<double, 2>> ranges = {{0.2, 0.8}, {from, to}};
-    return *legs->bounds()
-                ->box(defaults(legs->info()), plain_plan(legs->info()), "", ranges, {.most_boxes = 2000})
-                .regular;
+    return legs->bounds()
+        ->box(defaults(legs->info()), plain_plan(legs->info()), "", ranges, {.most_boxes = 2000})
+        .regular;
   };
   EXPECT_EQ(regular(0.1, 0.9).kind, Kind::holds);
   const PosesVerdict across = regular(-0.1, 0.9);
-  EXPECT_EQ(across.kind, Kind::undecided);
+  EXPECT_EQ(across.kind, Kind::fails);
   EXPECT_THAT(across.what, ::testing::HasSubstr("parallel"));
-  EXPECT_NEAR((*across.where)[1], 0, 0.1);
+  EXPECT_NEAR((*across.where)[1], 0, 1e-12);
   const auto along = [&](double from, double to) {
-    return *legs->bounds()
-                ->motion(defaults(legs->info()), no_limits(legs->info()), "", *straight({0.4, from}, {0.6, to}),
-                         {.most_boxes = 20000})
-                .regular;
+    return legs->bounds()
+        ->motion(defaults(legs->info()), no_limits(legs->info()), "", *straight({0.4, from}, {0.6, to}),
+                 {.most_boxes = 20000})
+        .regular;
   };
   EXPECT_EQ(along(0.1, 0.9).kind, Kind::holds);
   const PosesVerdict through = along(0.5, -0.5);
-  EXPECT_EQ(through.kind, Kind::undecided);
-  EXPECT_NEAR(*through.time, 0.35, 1e-3);
+  EXPECT_EQ(through.kind, Kind::fails);
+  EXPECT_NEAR(*through.time, 0.35, 1e-9);
+}
+
+/// A file of tests/data/redundant.
+std::shared_ptr<const Mechanism> redundant(const std::string& name) {
+  std::ostringstream text;
+  text << std::ifstream(PKM_TEST_DATA "/redundant/" + name).rdbuf();
+  return read_mechanism_toml(text.str(), name);
+}
+
+using PoseRanges = std::vector<std::array<double, 2>>;
+
+PosesCertificate over(const Mechanism& mechanism, const std::vector<double>& design, const PoseRanges& box) {
+  return mechanism.bounds()->box(design, plain_plan(mechanism.info()), "", box, {.most_boxes = 20000});
+}
+
+TEST(CertainBounds, OfRedundantDrives) {
+  const auto cables = redundant("four-cables.toml");
+  std::vector<double> design = defaults(cables->info());
+  // the plate is the frame made smaller: no cable turns it at phi = 0
+  for (const double x : {-0.3, 0.2}) {
+    const PosesCertificate found = over(*cables, design, PoseRanges{{x, x + 0.1}, {-0.2, 0.1}, {0, 0}});
+    EXPECT_EQ(found.feasible.kind, Kind::holds);
+    EXPECT_EQ(found.regular.kind, Kind::fails);
+    EXPECT_EQ(found.regular.what, "the parallel singularity (det(G^T G) = 0), to working precision");
+    EXPECT_LT(found.boxes, 10u) << "any pose shows it";
+  }
+  EXPECT_EQ(over(*cables, design, PoseRanges{{-0.2, 0.2}, {-0.2, 0.2}, {0.1, 0.2}}).regular.kind, Kind::holds);
+  design[3] = 0.2;  // h: another shape
+  EXPECT_EQ(over(*cables, design, PoseRanges{{-0.2, 0.2}, {-0.2, 0.2}, {0, 0}}).regular.kind, Kind::holds);
+
+  const auto rrr = redundant("4-rrr.toml");
+  const PoseRanges box = {{0.01, 0.03}, {0.01, 0.03}, {-0.02, 0.02}};
+  const PosesCertificate regular = over(*rrr, defaults(rrr->info()), box);
+  EXPECT_EQ(regular.feasible.kind, Kind::holds);
+  EXPECT_EQ(regular.regular.kind, Kind::holds);
+}
+
+/// Verdicts on random boxes beside singular values of samples.
+TEST(CertainBounds, OfRedundantDrivesBesideSingularValues) {
+  const auto cables = redundant("four-cables.toml");
+  int holds = 0, singular = 0;
+  for (unsigned k = 0; k < 60; ++k) {
+    Stream random(5, 0, k, Stream::Use::start);
+    std::vector<double> design = defaults(cables->info());
+    for (double& p : design) p *= 0.8 + 0.4 * random.u01();
+    PoseRanges box(3);
+    for (auto& side : box) {
+      side[0] = 0.6 * (random.u01() - 0.5);
+      side[1] = side[0] + 0.2 * random.u01();
+    }
+    if (k % 3 == 0) {  // through a pose at which G is singular, by its symmetry
+      design[3] = design[2] * design[1] / design[0];
+      box[2] = {-0.1, 0.1};
+    }
+    const PosesCertificate found = over(*cables, design, box);
+    double least = 1;
+    for (int i = 0; i <= 20; ++i) {
+      Pose<double> pose(3);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        pose[axis] = box[axis][0] + (box[axis][1] - box[axis][0]) * (axis == 2 ? i / 20.0 : random.u01());
+      const auto J = *cables->inspect(design, pose, "", no_limits(cables->info())).J;
+      Eigen::MatrixXd of(J.rows(), J.cols());
+      for (std::size_t r = 0; r < J.rows(); ++r)
+        for (std::size_t c = 0; c < J.cols(); ++c)
+          of(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = J(r, c);
+      const auto values = Eigen::JacobiSVD<Eigen::MatrixXd>(of).singularValues();
+      least = std::fmin(least, values[2] / values[0]);
+    }
+    if (found.regular.kind == Kind::holds) {
+      ++holds;
+      EXPECT_GT(least, 1e-6) << k;
+    }
+    if (found.regular.kind == Kind::fails) {
+      ++singular;
+      const auto J = *cables->inspect(design, *found.regular.where, "", no_limits(cables->info())).J;
+      EXPECT_TRUE(is_rank_deficient(J)) << k;
+    }
+    if (k % 3 == 0) {
+      EXPECT_EQ(found.regular.kind, Kind::fails) << k;
+    }
+  }
+  EXPECT_GE(holds, 10);
+  EXPECT_GE(singular, 20);
+}
+
+TEST(CertainBounds, DoNotTakeAPoleForASingularity) {
+  // q = b/x^2: G = -2 b/x^3 has both signs, and no root between them
+  const auto poles = read(
+      "[mechanism]\nname = \"poles\"\n[parameters]\nb = { default = 1, min = 0, max = 9 }\n[platform]\n"
+      "coordinates = { x = \"along x\" }\n[survey]\nbox = { x = [-1, 1] }\n[[limb]]\nname = \"q\"\ndrive = "
+      "\"formula\"\njoint = \"b/x^2\"\nunit = \"m\"\n");
+  const PosesCertificate found = over(*poles, defaults(poles->info()), PoseRanges{{-0.3, 0.4}});
+  EXPECT_NE(found.regular.kind, Kind::fails);
+  EXPECT_NE(found.regular.kind, Kind::holds);
+}
+
+TEST(CertainBounds, OfMotionsOfRedundantDrives) {
+  const auto cables = redundant("four-cables.toml");
+  const auto along = [&](const AxisVector<double>& from, const AxisVector<double>& to) {
+    return cables->bounds()->motion(defaults(cables->info()), no_limits(cables->info()), "", *straight(from, to),
+                                    {.most_boxes = 20000});
+  };
+  EXPECT_EQ(along({0.1, 0.1, 0.1}, {-0.2, 0.1, 0.2}).regular.kind, Kind::holds);
+  const PosesCertificate flat = along({0.1, 0.1, 0}, {-0.2, 0.1, 0});
+  EXPECT_EQ(flat.regular.kind, Kind::fails);
+  EXPECT_TRUE(flat.regular.time);
 }
 
 }  // namespace
