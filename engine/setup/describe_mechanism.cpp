@@ -11,6 +11,7 @@
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/problem/no_conditioning.hpp"
 #include "engine/setup/mechanism_file.hpp"
 
 namespace pkm {
@@ -129,8 +130,8 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism) {
   tell(mechanism.columns(), "exact workspace by columns",
        "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
   tell(mechanism.bounds(), "certain bounds of the workspace", "pkmopt certify, by intervals", "");
-  tell(!mechanism.info().characteristic_length.empty(), "conditioning", "",
-       "[platform] characteristic_length is missing, and the freedoms are of both kinds");
+  const Refusal undefined = no_conditioning(mechanism.info());
+  tell(!undefined, "conditioning", "", undefined.value_or(""));
   tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
   tell(mechanism.forward(), "forward kinematics", "Newton's method from many poses: it need not find every assembly",
        "as many joints as coordinates are needed");
