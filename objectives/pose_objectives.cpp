@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/problem/no_conditioning.hpp"
 #include "engine/problem/pose_statistic.hpp"
 #include "objectives/list.hpp"
 
@@ -64,8 +65,8 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
       .unit = [&quantity](const EntryContext&) { return std::string(quantity.unit); },
       .refusal = [&quantity, name](const Mechanism& mechanism) -> Refusal {
         if (quantity.needs_inertia()) return refuse_without_dynamics(name, mechanism);
-        if (has_jacobian(mechanism)) return {};
-        return "objective " + name + " needs a Jacobian, and mechanism " + mechanism.info().name + " gives none";
+        const Refusal reason = no_conditioning(mechanism.info());
+        return reason ? "objective " + name + " is unavailable: " + *reason : Refusal();
       },
       .demand = [&quantity](const EntryContext& context, Demand& demand) { demand_field(quantity, context, demand); },
       .make = [&quantity, name, statistic](const EntryContext& context) -> std::unique_ptr<const Quantity> {

@@ -1,12 +1,14 @@
 #include "engine/problem/expression.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 #include <stdexcept>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/graph/formula_words.hpp"
+#include "engine/problem/no_conditioning.hpp"
 #include "engine/problem/pose_statistic.hpp"
 
 namespace pkm {
@@ -16,6 +18,28 @@ template <class S>
 struct Room {
   std::vector<S> values, thresholds, stack;
 };
+
+/// Whether a formula has the word.
+bool has_word(const std::string& formula, const std::string& word) {
+  const auto is_letter = [&](std::size_t i) {
+    return i < formula.size() && (std::isalnum(static_cast<unsigned char>(formula[i])) || formula[i] == '_');
+  };
+  for (std::size_t at = formula.find(word); at != std::string::npos; at = formula.find(word, at + 1))
+    if (!(at > 0 && is_letter(at - 1)) && !is_letter(at + word.size())) return true;
+  return false;
+}
+
+/// The expression's formula. Throws std::invalid_argument with a sentence where it names a result of the survey that
+/// the mechanism does not have.
+const std::string& formula_text(const EntryContext& context) {
+  const std::string& formula = context.options.word("expression");
+  for (const SurveyResult& result : survey_results()) {
+    if (!result.quantity || !has_word(formula, result.name)) continue;
+    if (const Refusal reason = unavailable(context.mechanism, *result.quantity))
+      throw std::invalid_argument("the formula \"" + formula + "\" names " + result.name + ", and " + *reason);
+  }
+  return formula;
+}
 
 }  // namespace
 
@@ -61,7 +85,7 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const S
     names.push_back({"size", size->unit(), size->meaning(), Origin::size, 0});
   for (std::size_t i = 0; i < survey_results().size(); ++i) {
     const auto& [name, meaning, quantity, statistic] = survey_results()[i];
-    if (!quantity || gives(mechanism, *quantity))
+    if (!quantity || !unavailable(mechanism, *quantity))
       names.push_back({name, quantity ? quantity->unit : volume_unit(info, plan), meaning, Origin::survey, i});
   }
   return names;
@@ -85,7 +109,7 @@ std::vector<OptionSpec> expression_options() {
 
 Expression::Expression(const EntryContext& context)
     : names_(expression_names(context.mechanism, context.plan)),
-      formula_(context.options.word("expression"), names_of(names_)),
+      formula_(formula_text(context), names_of(names_)),
       limits_(context.plan.limits),
       sharpness_(context.options.number("sharpness")) {
   Demand demand;

@@ -11,7 +11,9 @@
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/problem/no_conditioning.hpp"
 #include "engine/setup/mechanism_file.hpp"
+#include "engine/setup/mechanism_mobility.hpp"
 
 namespace pkm {
 namespace {
@@ -102,10 +104,8 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   for (Eigen::Index i = 0; i < J.rows(); ++i)
     for (Eigen::Index j = 0; j < J.cols(); ++j)
       J(i, j) = (*report.J)(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-  const Eigen::Index rank = J.jacobiSvd().setThreshold(1e-9).rank();
-  out << "  mobility: the joints determine " << rank << " of " << J.cols() << " freedoms there"
-      << (rank < J.cols() ? ": the platform can move while the drives stand still, or the pose is singular" : "")
-      << '\n';
+  const auto rank = static_cast<std::size_t>(J.jacobiSvd().setThreshold(1e-9).rank());
+  out << "  mobility: " << mobility_text(mechanism, parameters, nominal, rank) << '\n';
 }
 
 /// What is wrong with the masses of the default design; "": nothing.
@@ -129,8 +129,8 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
   tell(mechanism.columns(), "exact workspace by columns",
        "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
   tell(mechanism.bounds(), "certain bounds of the workspace", "pkmopt certify, by intervals", "");
-  tell(!mechanism.info().characteristic_length.empty(), "conditioning", "",
-       "[platform] characteristic_length is missing, and the freedoms are of both kinds");
+  const Refusal undefined = no_conditioning(mechanism.info());
+  tell(!undefined, "conditioning", "", undefined.value_or(""));
   tell(mechanism.velocities(), "speeds and accelerations of joints", "influence coefficients of both orders", "");
   tell(mechanism.forward(), "forward kinematics", "Newton's method from many poses: it need not find every assembly",
        "as many joints as coordinates are needed");

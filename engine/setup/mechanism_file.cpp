@@ -5,6 +5,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/mechanisms/described/mechanism.hpp"
+#include "engine/model/mixed_units.hpp"
 #include "engine/setup/mechanism_draft.hpp"
 #include "engine/setup/sections.hpp"
 
@@ -151,9 +152,8 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   }
   if (const auto radius = platform.find("characteristic_radius"))
     model.radius = draft.scope.of_design(*radius, "m", "characteristic_radius").node();
-  const auto turns = std::ranges::count_if(model.info.coordinates, &AxisInfo::turns);
-  const bool mixed = turns > 0 && turns < std::ssize(model.info.coordinates);
-  if (!mixed && model.info.characteristic_length.empty()) model.info.characteristic_length = "1";  // of no effect
+  if (!mixes_units(model.info.coordinates) && model.info.characteristic_length.empty())
+    model.info.characteristic_length = "1";  // of no effect
   if (const auto size = platform.find("size")) {
     size->expect_table("a table { formula = .., unit = .., meaning = .. }").allow({"formula", "unit", "meaning"});
     const std::string unit = si_unit(size->at("unit", "the size's unit: \"m^3\""));
@@ -161,6 +161,13 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
     model.size = {draft.scope.of_design(formula, unit, "size").node(), unit, text_of(*size, "meaning")};
   }
   read_platform_body(platform, draft);
+}
+
+/// Leaves the mechanism without a conditioning where it is undefined although there is a characteristic length.
+void forget_undefined_conditioning(described::Model& model) {
+  const bool needs_radius = mixes_units(model.info.joints) && !model.radius;
+  if (needs_radius || model.info.joints.size() < model.info.coordinates.size())
+    model.info.characteristic_length.clear();
 }
 
 }  // namespace
@@ -204,8 +211,10 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   refuse_idle_parameters(draft);
   read_bodies(root, read_links(root, draft), draft);
   read_survey(root, draft);
+  forget_undefined_conditioning(draft.model);
   draft.scope.note_domains();
   list_modes(draft);
+  refuse_changing_planes(draft);
   add_clearance(draft);
   add_joints(root, draft);
   return described::make_mechanism(std::move(draft.model));

@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/problem/no_conditioning.hpp"
 #include "engine/setup/assignments.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "engine/survey/voxel_grid.hpp"
 
 namespace pkm {
@@ -133,8 +135,12 @@ void expect_lengths(const Axes& swept, const CubeArguments& arguments) {
                       "one over two or three lengths; --cut leaves an angle at a value");
 }
 
-void expect_fields(const WorkspaceFields& workspace, const CubeArguments& arguments) {
-  least_values(workspace, arguments);
+void expect_fields(const WorkspaceFields& workspace, const MechanismInfo& info, const CubeArguments& arguments) {
+  const auto least = least_values(workspace, arguments);
+  const Refusal undefined = no_conditioning(info);
+  for (std::size_t i = 0; i < least.size(); ++i)
+    if (least[i] && undefined && workspace.fields[i].name == kConditioning.name)
+      throw ConfigError({"", 0, "--least"}, *undefined);
 }
 
 void tell_cube(const WorkspaceFields& workspace, const CubeArguments& arguments, Printout& out) {

@@ -5,9 +5,11 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
 #include "engine/math/rounding.hpp"
+#include "engine/problem/no_conditioning.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/report/workspace_export.hpp"
 #include "engine/storage/safe_file.hpp"
+#include "engine/survey/pose_quantities.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/cube.hpp"
 #include "experiments/app/grid.hpp"
@@ -142,12 +144,17 @@ void tell_workspace(const Target& target, const WorkspaceFields& workspace, Prin
   if (workspace.touches_box) out.head.push_back({"warning", "the feasible set touches the box: it may go on"});
 
   rows.clear();
+  const Refusal undefined = no_conditioning(target.info());
   for (const WorkspaceField& field : workspace.fields) {
     const auto range = range_of(field);
     json["fields"][field.name] = {{"unit", field.unit},
                                   {"least", range ? Json(range->least) : Json()},
                                   {"greatest", range ? Json(range->greatest) : Json()},
                                   {"meaning", field.meaning}};
+    if (undefined && field.name == kConditioning.name) {
+      json["fields"][field.name]["unavailable"] = *undefined;
+      rows.push_back({field.name, "none", "", *undefined});
+    }
     const std::string unit = field.unit == "mixed" ? "1" : field.unit;  // the meaning has the units
     if (range && field.name != "feasible")
       rows.push_back({field.name, position(range->least, unit), position(range->greatest, unit), field.meaning});
@@ -176,7 +183,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
     WorkspaceFields found = fields_of(target, plan, mode);
     found.touches_box = touches(found, ranges_given);
     flatten(found, target.info(), slices);
-    expect_fields(found, arguments);
+    expect_fields(found, target.info(), arguments);
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
     if (!arguments.html.empty()) {

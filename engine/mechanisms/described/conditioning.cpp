@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <Eigen/SVD>
 
+#include "engine/core/unit.hpp"
 #include "engine/mechanisms/described/eigen_matrix.hpp"
+#include "engine/mechanisms/described/lengths.hpp"
+#include "engine/model/mixed_units.hpp"
 #include "engine/survey/pose_quantities.hpp"
 
 namespace pkm::described {
@@ -58,16 +62,34 @@ S singular_ratio(const AxisMatrix<S>& A) {
   return A.rows() >= A.cols() && value_of(greatest) > 0 ? S(least / greatest) : S(0.0);
 }
 
+template <class S>
+bool is_positive(const std::optional<S>& length) {
+  return length && value_of(*length) > 0 && std::isfinite(value_of(*length));
+}
+
+template <class S>
+void check(const MechanismInfo& info, const CharacteristicLengths<S>& lengths) {
+  const auto check_one = [](const char* key, bool is_needed, const std::optional<S>& length) {
+    if (is_needed && length && !is_positive(length))
+      throw std::domain_error(std::string("the conditioning is undefined: ") + key + " is " +
+                              with_unit(value_of(*length), "m") + "; expected a positive length");
+  };
+  check_one("characteristic_length", mixes_units(info.coordinates), lengths.length);
+  check_one("characteristic_radius", mixes_units(info.joints), lengths.radius);
+}
+
 }  // namespace
+
+void check_lengths(const Evaluation& evaluation, std::span<const double> parameters) {
+  check(evaluation.model.info, characteristic_lengths(evaluation, parameters));
+}
 
 template <class S>
 std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths<S>& lengths, const Pose<S>& pose,
                                  const AxisMatrix<S>& J) {
   const MechanismInfo& info = model.info;
-  const auto turns = [](const AxisInfo& axis) { return axis.turns(); };
-  const bool mixed = std::ranges::any_of(info.coordinates, turns) && !std::ranges::all_of(info.coordinates, turns);
-  const bool mixed_drives = std::ranges::any_of(info.joints, turns) && !std::ranges::all_of(info.joints, turns);
-  if ((mixed && !lengths.length) || (mixed_drives && !lengths.radius)) return {};
+  const bool mixed = mixes_units(info.coordinates), mixed_drives = mixes_units(info.joints);
+  if ((mixed && !is_positive(lengths.length)) || (mixed_drives && !is_positive(lengths.radius))) return {};
   AxisMatrix<S> scaled = J * rates_of_turns<S>(model, pose);
   for (std::size_t i = 0; i < J.rows(); ++i)
     for (std::size_t j = 0; j < J.cols(); ++j) {
@@ -85,7 +107,9 @@ S SampleConditioning::at(const Pose<S>& pose, Room<S>& room) const {
   AxisMatrix<S> J(of.joints, of.coordinates);
   for (std::size_t i = 0; i < J.size(); ++i) J[i] = room.registers[rows_.outputs()[i]];
   const std::optional<S> found = conditioning_of<S>(e_.model, room.lengths, pose, J);
-  return found && std::isfinite(value_of(*found)) ? *found : S(kConditioning.without_value);
+  if (found && std::isfinite(value_of(*found))) return *found;
+  check(e_.model.info, room.lengths);
+  return S(kConditioning.without_value);  // J is infinite: the pose is singular
 }
 
 template std::optional<double> conditioning_of(const Model&, const CharacteristicLengths<double>&, const Pose<double>&,

@@ -9,6 +9,7 @@
 #include "engine/mechanisms/described/dynamics.hpp"
 #include "engine/mechanisms/described/inertia_rows.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/mechanisms/described/lengths.hpp"
 #include "engine/survey/cell_runs.hpp"
 #include "engine/survey/grid_surveyor.hpp"
 #include "engine/survey/pose_quantities.hpp"
@@ -61,6 +62,7 @@ class DescribedVoxels final : public GridSurveyor<DescribedVoxels> {
 
   GriddedSlices start(std::span<const double> parameters, Rooms& rooms) const {
     if (inertia_) check_masses(e_, parameters);
+    if (demand_.has(kConditioning)) check_lengths(e_, parameters);
     const VoxelGrid grid(voxels_.cells, e_.survey_box(parameters, plan_, mode_, sweep_.swept));
     Common& common = rooms.common;
     find_held_cells(

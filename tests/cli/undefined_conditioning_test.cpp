@@ -1,0 +1,118 @@
+// The conditioning where it is undefined: refused by every command that would compute with it, and never 0.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/cli/study_folder.hpp"
+
+namespace pkm::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kRadius = "so [platform] needs characteristic_radius";
+const std::string kBoth = "so [platform] needs characteristic_length and characteristic_radius";
+
+/// A folder with both robots, and the study of each.
+class UndefinedConditioning : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* name : {"crank-and-slide", "double-scara", "crank-and-slide-study", "double-scara-study"})
+      folder_.write(name + std::string(".toml"), text(name));
+  }
+  static std::string text(const std::string& name) {
+    std::ostringstream all;
+    all << std::ifstream(PKM_TEST_DATA "/robots/" + name + ".toml").rdbuf();
+    return all.str();
+  }
+  /// Writes the robot with another line behind one that it has.
+  void write_with(const std::string& robot, const std::string& after, const std::string& line) const {
+    std::string file = text(robot);
+    const std::size_t at = file.find(after);
+    ASSERT_NE(at, std::string::npos);
+    folder_.write(robot + ".toml", file.insert(file.find('\n', at) + 1, line + "\n"));
+  }
+  ProgramResult run(const std::vector<std::string>& arguments) const { return pkmopt(arguments, folder_.path()); }
+
+  StudyFolder folder_;
+};
+
+TEST_F(UndefinedConditioning, IsRefusedByStudiesAtItsLine) {
+  for (const char* command : {"check", "run", "evaluate"}) {
+    const auto slide = run({command, "crank-and-slide-study.toml"});
+    EXPECT_EQ(slide.exit_code, 2) << slide.out;
+    EXPECT_THAT(slide.err, HasSubstr("crank-and-slide-study.toml:10: objective[1].type: "));
+    EXPECT_THAT(slide.err, HasSubstr("its drives are lengths and angles, " + kRadius));
+    const auto scara = run({command, "double-scara-study.toml"});
+    EXPECT_EQ(scara.exit_code, 2) << scara.out;
+    EXPECT_THAT(scara.err, HasSubstr("double-scara-study.toml:11: objective[1].type: "));
+    EXPECT_THAT(scara.err, HasSubstr("its coordinates and its drives are lengths and angles, " + kBoth));
+  }
+}
+
+TEST_F(UndefinedConditioning, IsRefusedInFormulasAndRegions) {
+  std::string study = text("crank-and-slide-study");
+  study.replace(study.find("type = \"conditioning\""), 21,
+                "type = \"expression\"\nexpression = \"volume*conditioning_mean\"");
+  folder_.write("crank-and-slide-study.toml", study);
+  const auto found = run({"check", "crank-and-slide-study.toml"});
+  EXPECT_EQ(found.exit_code, 2) << found.out;
+  EXPECT_THAT(found.err, HasSubstr("names conditioning_mean, and the conditioning of mechanism mix is undefined"));
+  EXPECT_THAT(found.err, HasSubstr(kRadius));
+}
+
+TEST_F(UndefinedConditioning, IsAbsentFromPosesAndWorkspaces) {
+  const auto pose = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3"});
+  EXPECT_EQ(pose.exit_code, 0) << pose.err;
+  EXPECT_THAT(pose.out, HasSubstr("conditioning  none: "));
+  EXPECT_THAT(pose.out, HasSubstr(kRadius));
+  const auto json = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--json"}).json();
+  EXPECT_TRUE(json["conditioning"].is_null());
+  EXPECT_THAT(json["why_no_conditioning"], HasSubstr(kRadius));
+  EXPECT_FALSE(json["joints"]["crank"].is_null());
+
+  const auto workspace = run({"workspace", "crank-and-slide.toml", "--cells", "8", "--json"});
+  EXPECT_EQ(workspace.exit_code, 0) << workspace.err;
+  const auto field = workspace.json()["fields"]["conditioning"];
+  EXPECT_TRUE(field["least"].is_null() && field["greatest"].is_null());
+  EXPECT_THAT(field["unavailable"], HasSubstr(kRadius));
+  const auto cube = run({"workspace", "crank-and-slide.toml", "--cells", "8", "--cube", "--least", "conditioning=0.1"});
+  EXPECT_EQ(cube.exit_code, 2) << cube.out;
+  EXPECT_THAT(cube.err, HasSubstr("--least: the conditioning of mechanism mix is undefined"));
+
+  const auto check = run({"check", "crank-and-slide.toml"});
+  EXPECT_THAT(check.out.substr(check.out.find("not available, and why")), HasSubstr(kRadius));
+}
+
+/// Means over the cells of both studies, computed apart from the program (numpy: closed-form cranks, J by the closure,
+/// singular values).
+TEST_F(UndefinedConditioning, IsThatOfTheScaledJacobianWithARadius) {
+  const auto mean_of = [&](const std::string& study) {
+    const auto found = run({"evaluate", study, "--json"});
+    EXPECT_EQ(found.exit_code, 0) << found.err;
+    return found.json()["objectives"]["conditioning"].get<double>();
+  };
+  write_with("crank-and-slide", "coordinates", "characteristic_radius = \"a\"");
+  EXPECT_NEAR(mean_of("crank-and-slide-study.toml"), 0.4238662594869749, 1e-12);
+  write_with("double-scara", "characteristic_length", "characteristic_radius = \"l_a\"");
+  EXPECT_NEAR(mean_of("double-scara-study.toml"), 0.4053991262321131, 1e-12);
+}
+
+TEST_F(UndefinedConditioning, ADesignWhoseRadiusIsNotPositiveFailsWithItsReason) {
+  write_with("crank-and-slide", "coordinates", "characteristic_radius = \"0.25 - a\"");
+  const auto study = run({"evaluate", "crank-and-slide-study.toml", "--set", "a=250mm"});
+  EXPECT_THAT(study.out + study.err,
+              HasSubstr("the conditioning is undefined: characteristic_radius is 0 m; expected a positive length"));
+  const auto pose = run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--set", "a=250mm"});
+  EXPECT_EQ(pose.exit_code, 0) << pose.err;
+  EXPECT_THAT(pose.out, HasSubstr("conditioning  none: "));
+  EXPECT_THAT(run({"pose", "crank-and-slide.toml", "--at", "x=0.1,y=0.3", "--set", "a=220mm"}).out,
+              Not(HasSubstr("none: ")));
+}
+
+}  // namespace
+}  // namespace pkm::testing
