@@ -13,6 +13,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/problem/no_conditioning.hpp"
 #include "engine/setup/mechanism_file.hpp"
+#include "engine/setup/mechanism_mobility.hpp"
 
 namespace pkm {
 namespace {
@@ -103,10 +104,8 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   for (Eigen::Index i = 0; i < J.rows(); ++i)
     for (Eigen::Index j = 0; j < J.cols(); ++j)
       J(i, j) = (*report.J)(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-  const Eigen::Index rank = J.jacobiSvd().setThreshold(1e-9).rank();
-  out << "  mobility: the joints determine " << rank << " of " << J.cols() << " freedoms there"
-      << (rank < J.cols() ? ": the platform can move while the drives stand still, or the pose is singular" : "")
-      << '\n';
+  const auto rank = static_cast<std::size_t>(J.jacobiSvd().setThreshold(1e-9).rank());
+  out << "  mobility: " << mobility_text(mechanism, parameters, nominal, rank) << '\n';
 }
 
 /// What is wrong with the masses of the default design; "": nothing.

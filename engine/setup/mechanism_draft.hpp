@@ -45,6 +45,12 @@ struct NamedLimb {
   std::string end_on = "";                      ///< the body that carries its end; "": the file does not say
 };
 
+/// A limb with `across`, whose ends keep their distance along the normal at every pose.
+struct LimbInPlane {
+  ConfigValue across;
+  limbs::Vector3 A, B, normal;
+};
+
 /// A limb's own parameter in the graph.
 struct OwnParameter : LimbParameter {
   graph::Node node{};
@@ -57,6 +63,7 @@ struct MechanismDraft {
   limbs::Vector3 origin{zero(), zero(), zero()};  ///< of the platform's frame
   limbs::Rotation turn{limbs::turn_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<NamedLimb> limbs;
+  std::vector<LimbInPlane> in_planes;
   std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;  ///< by limb: x, y, z
   std::vector<std::string> sign_choices;                                          ///< by sign: "+-", the file's first
 
@@ -86,6 +93,8 @@ void read_limits(const ConfigValue& root, MechanismDraft& draft);
 void read_modes(const ConfigValue& root, MechanismDraft& draft);
 /// The limbs of the file: joints, closures, conditions, ranges, angles, links, bodies.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
+/// Refuses `across` where the pose moves the limb's end out of its plane.
+void refuse_changing_planes(MechanismDraft& draft);
 /// [[margin]] and [[design]]
 void read_margins(const ConfigValue& root, MechanismDraft& draft);
 /// Refuses signs of [modes] that double the working modes for nothing.

@@ -211,6 +211,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
   forget_undefined_conditioning(draft.model);
   draft.scope.note_domains();
   list_modes(draft);
+  refuse_changing_planes(draft);
   add_clearance(draft);
   add_joints(root, draft);
   return described::make_mechanism(std::move(draft.model));

@@ -1,4 +1,5 @@
-// The joints of a mechanism's file, for the forces in them (engine/dynamics/newton_euler.hpp).
+// The joints of a mechanism's file, for the forces in them (engine/dynamics/newton_euler.hpp) and for the mobility of
+// the platform.
 //
 // What joints carry follows from the limbs:
 //
@@ -35,6 +36,7 @@ class JointReader {
  public:
   explicit JointReader(MechanismDraft& draft) : draft_(draft), model_(draft.model) {}
 
+  /// The bodies and joints that the file describes, without masses.
   described::DescribedJoints read(const std::vector<ConfigValue>& tables) {
     for (const ConfigValue& table : tables) table.allow({"name", "bodies", "at", "about"});
     add_solid("platform", {.name = "platform", .place = nodes(draft_.origin), .with_platform = true});
@@ -45,9 +47,13 @@ class JointReader {
     }
     for (const NamedLimb& limb : draft_.limbs) add_limb(limb);
     for (const ConfigValue& table : tables) add_joint(table);
+    return {solids_, joints_, turn_of_platform()};
+  }
+  /// The same with masses, for the forces in the joints.
+  described::DescribedJoints with_masses() {
     gather_bodies();
     refuse_loose();
-    return {std::move(solids_), std::move(joints_), turn_of_platform()};
+    return {solids_, joints_, turn_of_platform()};
   }
 
  private:
@@ -240,14 +246,14 @@ class JointReader {
 
 void add_joints(const ConfigValue& root, MechanismDraft& draft) {
   const std::vector<ConfigValue> tables = tables_of(root, "joint");
-  if (draft.model.bodies.empty()) {
-    draft.model.why_no_reactions = "the file names no masses";
-    return;
-  }
+  described::Model& model = draft.model;
+  JointReader reader(draft);
   try {
-    draft.model.jointed = JointReader(draft).read(tables);
+    model.jointed = reader.read(tables);
+    if (model.bodies.empty()) throw Unsaid{"the file names no masses"};
+    model.jointed = reader.with_masses();
   } catch (const Unsaid& unsaid) {
-    draft.model.why_no_reactions = unsaid.why;
+    model.why_no_reactions = unsaid.why;
   }
 }
 

@@ -37,6 +37,10 @@ DrivenLimb slider(const LimbCopy& copy, const Ends& at, const Term& q) {
   if (along && table.has("direction")) throw along->refusal("a slide has a `direction` or, with `links`, runs `along`");
   const Vector3 e = copy.direction(along ? *along : table.at("direction", "the slide's direction [x, y, z]"));
   if (at.across) refuse_oblique(copy, e, *at.across, along ? "along" : "direction", "`across`");
+  if (const auto across = table.find("across"); across && !table.has("rod"))
+    throw across->refusal("`across` has no effect on a slide without `rod`: " +
+                          std::string(table.has("links") ? "its links move across `along`"
+                                                         : "it is where the platform's point is along `direction`"));
   if (table.has("links")) return slider_and_links(copy, at, e, q);
   if (!table.has("rod")) {
     if (const auto sign = table.find("branch")) throw sign->refusal("a slide without rod has one way to reach a pose");

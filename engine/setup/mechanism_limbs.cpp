@@ -94,7 +94,10 @@ limbs::Ends read_ends(const LimbCopy& copy) {
     return draft.origin + draft.turn * (copy.turn * draft.scope.point_of_design(platform, copy.group));
   };
   limbs::Ends ends{.A = base, .B = reached(), .across = {}};
-  if (const auto across = table.find("across")) ends.across = copy.direction(*across, on_platform(table, "across_in"));
+  if (const auto across = table.find("across")) {
+    ends.across = copy.direction(*across, on_platform(table, "across_in"));
+    draft.in_planes.push_back({*across, ends.A, ends.B, *ends.across});
+  }
   return ends;
 }
 

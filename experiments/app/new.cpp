@@ -59,6 +59,7 @@ rod      = "l_b"
 platform = ["r", 0, 0]                     # the rod's end, in the frame of the platform
 branch   = "-"                             # elbows outwards; "+": inwards
 range    = ["q_min", "q_max"]
+pair     = { spacing = "60 mm" }           # two rods side by side keep the platform from turning
 radius   = "6 mm"                          # for clearance and drawings
 
 [[design]]               # what has to hold of a design before any pose is looked at

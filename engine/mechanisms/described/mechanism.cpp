@@ -11,6 +11,7 @@
 #include "engine/mechanisms/described/forward.hpp"
 #include "engine/mechanisms/described/joints.hpp"
 #include "engine/mechanisms/described/kinematics.hpp"
+#include "engine/mechanisms/described/mobility.hpp"
 #include "engine/mechanisms/described/voxels.hpp"
 
 namespace pkm::described {
@@ -32,6 +33,8 @@ class DescribedMechanism final : public Mechanism,
  public:
   explicit DescribedMechanism(Model model)
       : e_(std::move(model)), why_no_columns_(described::why_no_columns(*this, e_)) {}
+
+  const Evaluation& evaluation() const { return e_; }
 
   const MechanismInfo& info() const override { return e_.model.info; }
   PoseReport inspect(std::span<const double> parameters, const Pose<double>& pose, const std::string& mode,
@@ -72,7 +75,7 @@ class DescribedMechanism final : public Mechanism,
   const DesignTests* design_tests() const override { return e_.model.tests.empty() ? nullptr : this; }
   const Size* size() const override { return e_.model.size ? this : nullptr; }
   const Dynamics* dynamics() const override { return e_.model.equations ? this : nullptr; }
-  const JointReactions* reactions() const override { return e_.model.jointed ? this : nullptr; }
+  const JointReactions* reactions() const override { return e_.model.why_no_reactions.empty() ? this : nullptr; }
   std::string why_no_reactions() const override { return e_.model.why_no_reactions; }
 
  private:
@@ -185,6 +188,13 @@ class DescribedMechanism final : public Mechanism,
 };
 
 }  // namespace
+
+std::optional<PlatformMobility> platform_mobility(const Mechanism& mechanism, std::span<const double> parameters,
+                                                  const Pose<double>& pose, const std::string& mode) {
+  const auto* const described = dynamic_cast<const DescribedMechanism*>(&mechanism);
+  if (!described || !described->evaluation().model.jointed) return {};
+  return mobility_at(described->evaluation(), parameters, pose, number_of_mode(mechanism.info(), mode));
+}
 
 std::shared_ptr<const Mechanism> make_mechanism(Model model) {
   if (!model.bodies.empty()) model.equations = equations_of(model);
