@@ -47,13 +47,13 @@ class JointReader {
     }
     for (const NamedLimb& limb : draft_.limbs) add_limb(limb);
     for (const ConfigValue& table : tables) add_joint(table);
-    return {solids_, joints_, turn_of_platform()};
+    return {solids_, joints_};
   }
   /// The same with masses, for the forces in the joints.
   described::DescribedJoints with_masses() {
     gather_bodies();
     refuse_loose();
-    return {solids_, joints_, turn_of_platform()};
+    return {solids_, joints_};
   }
 
  private:

@@ -50,6 +50,7 @@ class JointsAtPose {
  public:
   JointsAtPose(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
       : of_(*e.model.jointed),
+        turn_(e.model.turn),
         platform_(static_cast<std::size_t>(std::ranges::find(of_.solids, true, &DescribedSolid::with_platform) -
                                            of_.solids.begin())),
         drives_(e.model.inputs.joints) {
@@ -115,8 +116,8 @@ class JointsAtPose {
     for (std::size_t j = 0; j < values_.size(); ++j) {
       Matrix3d R, rate;
       for (std::size_t i = 0; i < 3; ++i) {
-        R.row(static_cast<Index>(i)) = value(of_.turn[i]);
-        rate.row(static_cast<Index>(i)) = rate_of(of_.turn[i], j);
+        R.row(static_cast<Index>(i)) = value(turn_[i]);
+        rate.row(static_cast<Index>(i)) = rate_of(turn_[i], j);
       }
       const Matrix3d spin = rate * R.transpose();
       const Vector3d v = rate_of(of_.solids[platform_].place, j), omega(spin(2, 1), spin(0, 2), spin(1, 0));
@@ -135,7 +136,7 @@ class JointsAtPose {
     std::vector<Node> nodes;
     const auto add = [&nodes](const Place& place) { nodes.insert(nodes.end(), place.begin(), place.end()); };
     add(of_.solids[platform_].place);
-    for (const Place& row : of_.turn) add(row);
+    for (const Place& row : turn_) add(row);
     for (const DescribedJoint& joint : of_.joints) {
       add(joint.point);
       for (const Place& axis : joint.axes) add(axis);
@@ -166,6 +167,7 @@ class JointsAtPose {
   }
 
   const DescribedJoints& of_;
+  const std::array<Place, 3>& turn_;  ///< of the platform, by rows
   std::size_t platform_, drives_;
   std::vector<std::map<Node, Taylor>> values_;  ///< by coordinate
   Vector3d origin_;

@@ -21,7 +21,7 @@ std::string rewritten(std::string text, const std::string& from, const std::stri
   return std::regex_replace(text, pattern, to);
 }
 
-std::string complaint(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   try {
     read_mechanism_toml(text, "robot.toml");
   } catch (const ConfigError& error) {
@@ -67,45 +67,45 @@ std::string plane(const std::string& coordinates, const std::string& across, con
 }
 
 TEST(Across, ARodThatLeavesItsPlaneIsRefused) {
-  const std::string message = complaint(robot("3-prs-across"));
+  const std::string message = refusal_of(robot("3-prs-across"));
   EXPECT_THAT(
       message,
       HasSubstr("robot.toml:21: limb[1].across: the component of B - A along `across` changes with the pose ("));
   EXPECT_THAT(message, HasSubstr("write the platform's dependent coordinates as formulas in `origin` or `end`"));
-  EXPECT_EQ(complaint(rewritten(robot("3-prs-across"), "across = [^\n]*\n", "")), "it is accepted");
+  EXPECT_EQ(refusal_of(rewritten(robot("3-prs-across"), "across = [^\n]*\n", "")), "it is accepted");
 }
 
 TEST(Across, OffsetsThatNoPoseChangesArePlanar) {
   const std::string point = "platform = [0.1, 0, 0]\n";
-  EXPECT_EQ(complaint(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]", point)),
+  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]", point)),
             "it is accepted");
-  EXPECT_EQ(complaint(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]",
-                            "across_in = \"platform\"\n" + point)),
+  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]",
+                             "across_in = \"platform\"\n" + point)),
             "it is accepted");
-  EXPECT_THAT(complaint(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]", point)),
+  EXPECT_THAT(refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]", point)),
               HasSubstr("limb[1].across: the component"));
   // a slide along `across` carries the end: the limb ends in its plane
-  EXPECT_EQ(complaint(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]",
-                            "end = [\"x\", \"y\", 0]\n")),
+  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]",
+                             "end = [\"x\", \"y\", 0]\n")),
             "it is accepted");
   // in no plane of the axes, with rounding
-  EXPECT_EQ(complaint(plane("{ s = \"along x\", t = \"along y\" }", "[1, 1, 1]",
-                            "end = [\"s/3\", \"t/7\", \"-s/3 - t/7\"]\n")),
+  EXPECT_EQ(refusal_of(plane("{ s = \"along x\", t = \"along y\" }", "[1, 1, 1]",
+                             "end = [\"s/3\", \"t/7\", \"-s/3 - t/7\"]\n")),
             "it is accepted");
 }
 
 TEST(Across, OtherDesignsThanTheDefaultCount) {
   const std::string tilted = "{ x = \"along x\", z = \"along z\", beta = \"about x\" }";
-  const std::string message = complaint(plane(tilted, "[0, 1, 0]", "platform = [0.1, \"h\", 0]\n"));
+  const std::string message = refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, \"h\", 0]\n"));
   EXPECT_THAT(message, HasSubstr("for another design than the default"));
-  EXPECT_EQ(complaint(plane(tilted, "[0, 1, 0]", "platform = [0.1, 0, 0]\n")), "it is accepted");
+  EXPECT_EQ(refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, 0, 0]\n")), "it is accepted");
 }
 
 TEST(Across, HasNoEffectOnASlideWithoutRod) {
   const std::string slide = rewritten(
       plane("{ x = \"along x\", y = \"along y\" }", "[0, 0, 1]", "platform = [0, 0, 0]\ndirection = [1, 0, 0]\n"),
       "telescope", "slider");
-  EXPECT_THAT(complaint(slide), HasSubstr("limb[1].across: `across` has no effect on a slide without `rod`"));
+  EXPECT_THAT(refusal_of(slide), HasSubstr("limb[1].across: `across` has no effect on a slide without `rod`"));
 }
 
 TEST(Mobility, ThreeLegsDoNotHoldTheRotations) {
