@@ -61,10 +61,17 @@ std::vector<Node> finite_parts(Graph& graph, Node condition, Groups along) {
            std::ranges::find(finite, entry.operation->name) == finite.end();
   };
   const auto is_free = [&](Node node) { return (graph[node].groups & along) == 0; };
+  const auto is_divisor = [&](Node node) {
+    return is_free(node) && !(graph[node].is_number() && graph[node].number != 0);
+  };
   std::vector<Node> parts;
-  for (const Node node : graph.reachable({&condition, 1}, is_free))
-    for (const Node operand : graph[node].operands())
+  for (const Node node : graph.reachable({&condition, 1}, is_free)) {
+    const graph::Entry entry = graph[node];
+    for (const Node operand : entry.operands())
       if (is_free(operand) && std::ranges::find(parts, operand) == parts.end()) parts.push_back(operand);
+    if (entry.operation && entry.operation->code == graph::Code::divide && is_divisor(entry.arguments[1]))
+      parts.push_back(graph.apply(*entry.operation, std::array{graph.number(1), entry.arguments[1]}));
+  }
   std::erase_if(parts, [&](Node part) {
     return std::ranges::none_of(graph.reachable({&part, 1}), [&](Node node) { return may_be_infinite(graph[node]); });
   });
