@@ -193,6 +193,7 @@ std::string usual_study(const Catalogues& catalogues, const NewArguments& argume
     description = {read_text_file(arguments.name, "a mechanism in TOML"), arguments.name};
   const Study study = read_study_toml(text, "the study", catalogues, description);
   try {
+    study.problem->workspace(study.problem->parts().parameters);  // throws where there is no box
     return study_text(catalogues, arguments, *mechanism, usual_variables(*study.problem, *mechanism));
   } catch (const std::invalid_argument& reason) {
     throw ConfigError({arguments.name, 0, ""}, reason.what());

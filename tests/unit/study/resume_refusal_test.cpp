@@ -46,7 +46,7 @@ TEST_F(RunStudy, RecordsThatAreNotThoseOfTheTextAreRefused) {
             }),
             begin + "2 stages, and a new limit of stage 0");
   EXPECT_EQ(refusal([](StudyContents& c) { c.problem.objectives[0].direction = Direction::minimise; }),
-            begin + "the objectives maximise workspace-ratio [rad/m], and minimise workspace-ratio [rad/m]");
+            begin + "the objectives maximise workspace-ratio [rad], and minimise workspace-ratio [rad]");
   EXPECT_EQ(refusal([](StudyContents& c) { c.problem.margins[0].name = "rail-length"; }),
             begin + "no constraint rail-length [m^2 rad], and one");
   EXPECT_EQ(refusal([](StudyContents& c) { c.problem.reports[0].unit = "m"; }),
