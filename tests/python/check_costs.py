@@ -46,7 +46,8 @@ def lets(n):
 
 def proof(n):
     chain = "".join("let n%d = (n%d + (x * n%d))\n" % (i, i - 1, max(i - 2, 0)) for i in range(1, n))
-    return ("pkmopt proof 1\nvolume 0 2\naxis x 0 1\nlet n0 = x\n" + chain + "condition n%d\nboxes\nn.\nend\n" % (n - 1))
+    head = "pkmopt proof 1\nvolume 0 2\naxis x 0 1\nlet n0 = x\n"
+    return head + chain + "condition n%d\nboxes\nn.\nend\n" % (n - 1)
 
 
 def cpu_seconds(command, folder):
