@@ -9,6 +9,8 @@ namespace pkm::graph {
 namespace {
 
 constexpr std::size_t kMostCoefficients = 5;  // on the way: squares of degree two
+// Formulas within formulas, and how many of them are examined: beyond, one is of another kind.
+constexpr int kMaxDepth = 500, kMaxSteps = 100'000;
 
 /// A polynomial in z by its coefficients, the lowest first; empty is 0.
 using Terms = std::vector<Term>;
@@ -42,42 +44,67 @@ std::optional<Terms> product(const Terms& p, const Terms& q) {
   return trimmed(r);
 }
 
-/// Known to be >= 0 whatever the inputs: numbers, squares, roots, and sums, products, quotients of such.
-bool is_positive(const Graph& graph, Node node) {
-  const Entry& entry = graph[node];
-  if (entry.is_number()) return entry.number >= 0;
-  if (!entry.operation) return false;
-  const auto each = [&] {
-    return std::ranges::all_of(entry.operands(), [&](Node n) { return is_positive(graph, n); });
-  };
-  switch (entry.operation->code) {
-    case Code::multiply:
-      return entry.arguments[0] == entry.arguments[1] || each();
-    case Code::add:
-    case Code::divide:
-      return each();
-    case Code::sqrt:
-    case Code::abs:
-      return true;
-    default:
-      return false;
-  }
-}
-
 class Lowering {
  public:
   Lowering(Graph& graph, Groups z, std::size_t degree, bool squares)
       : graph_(graph), z_(z), degree_(degree), squares_(squares) {}
 
-  /// f as a form; none: it is of another kind.
-  std::optional<Form> form(Node node) {
+  /// f as a form; none: it is of another kind. Each formula within it once, on a stack of its own: it may be made of
+  /// 10^5, and may use them twice.
+  std::optional<Form> form(Node root) {
+    std::vector<Node> waiting = {root};
+    while (!waiting.empty()) {
+      const Node node = waiting.back();
+      const std::vector<Node> parts = forms_.contains(node) ? std::vector<Node>() : parts_of_form(node);
+      const auto next = std::ranges::find_if(parts, [&](Node part) { return !forms_.contains(part); });
+      if (next != parts.end()) {
+        waiting.push_back(*next);
+        continue;
+      }
+      waiting.pop_back();
+      if (!forms_.contains(node)) forms_.emplace(node, form_of_parts(node));
+    }
+    return forms_.at(root);
+  }
+
+  std::optional<std::vector<Clause>> conditions(Node node) {
+    if (depth_ > kMaxDepth || ++steps_ > kMaxSteps) return {};
+    ++depth_;
+    auto found = clauses(node);
+    --depth_;
+    return found;
+  }
+
+ private:
+  using Clauses = std::optional<std::vector<Clause>>;
+
+  /// The formulas whose forms make that of a node.
+  std::vector<Node> parts_of_form(Node node) const {
+    const Entry& entry = graph_[node];
+    if ((entry.groups & z_) == 0 || !entry.operation) return {};
+    switch (entry.operation->code) {
+      case Code::add:
+      case Code::subtract:
+      case Code::multiply:
+        return {entry.arguments[0], entry.arguments[1]};
+      case Code::divide:
+        if ((graph_[entry.arguments[1]].groups & z_) != 0) return {};
+        [[fallthrough]];
+      case Code::negate:
+      case Code::sqrt:
+        return {entry.arguments[0]};
+      default:
+        return {};
+    }
+  }
+  std::optional<Form> form_of_parts(Node node) {
     const Entry entry = graph_[node];
     if ((entry.groups & z_) == 0) return Form{.A = trimmed({Term(graph_, node)}), .B = {}, .Q = {}};
     if (entry.input >= 0) return Form{.A = {Term(graph_, 0.0), Term(graph_, 1.0)}, .B = {}, .Q = {}};
     switch (entry.operation->code) {
       case Code::add:
       case Code::subtract: {
-        auto x = form(entry.arguments[0]), y = form(entry.arguments[1]);
+        auto x = forms_.at(entry.arguments[0]), y = forms_.at(entry.arguments[1]);
         if (!x || !y) return {};
         if (entry.operation->code == Code::subtract) y = Form{negative(y->A), negative(y->B), y->radicand, y->Q};
         if (!x->B.empty() && !y->B.empty() && x->radicand != y->radicand) return {};
@@ -85,23 +112,23 @@ class Lowering {
         return Form{sum(x->A, y->A), sum(x->B, y->B), rooted.radicand, rooted.Q};
       }
       case Code::negate: {
-        const auto x = form(entry.arguments[0]);
+        const auto& x = forms_.at(entry.arguments[0]);
         if (!x) return {};
         return Form{negative(x->A), negative(x->B), x->radicand, x->Q};
       }
       case Code::multiply:
-        return times(form(entry.arguments[0]), form(entry.arguments[1]));
+        return times(forms_.at(entry.arguments[0]), forms_.at(entry.arguments[1]));
       case Code::divide: {
         if ((graph_[entry.arguments[1]].groups & z_) != 0) return {};
         const Term divisor(graph_, entry.arguments[1]);
-        auto x = form(entry.arguments[0]);
+        auto x = forms_.at(entry.arguments[0]);
         if (!x) return {};
         for (Terms* p : {&x->A, &x->B})
           for (Term& c : *p) c = c / divisor;
         return x;
       }
       case Code::sqrt: {
-        const auto x = form(entry.arguments[0]);
+        const auto& x = forms_.at(entry.arguments[0]);
         if (!x || !x->B.empty()) return {};
         return Form{.A = {}, .B = {Term(graph_, 1.0)}, .radicand = entry.arguments[0], .Q = x->A};
       }
@@ -110,7 +137,7 @@ class Lowering {
     }
   }
 
-  std::optional<std::vector<Clause>> conditions(Node node) {
+  Clauses clauses(Node node) {
     const Entry entry = graph_[node];
     if ((entry.groups & z_) != 0 && entry.operation) {
       const Code code = entry.operation->code;
@@ -128,8 +155,21 @@ class Lowering {
     return squares_ ? conditions_of_squares(node) : std::nullopt;
   }
 
- private:
-  using Clauses = std::optional<std::vector<Clause>>;
+  /// Known to be >= 0 whatever the inputs: numbers, squares, roots, and sums, products, quotients of such.
+  bool is_positive(Node root) const {
+    std::vector<Node> waiting = {root};
+    for (int steps = 0; !waiting.empty(); ++steps) {
+      if (steps > kMaxSteps) return false;
+      const Entry& entry = graph_[waiting.back()];
+      waiting.pop_back();
+      const Code code = entry.operation ? entry.operation->code : Code::other;
+      if (entry.is_number() ? entry.number >= 0 : code == Code::sqrt || code == Code::abs) continue;
+      if (code == Code::multiply && entry.arguments[0] == entry.arguments[1]) continue;
+      if (code != Code::multiply && code != Code::add && code != Code::divide) return false;
+      waiting.insert(waiting.end(), entry.operands().begin(), entry.operands().end());
+    }
+    return true;
+  }
 
   Clauses conditions_of_form(Node node) {
     const auto f = form(node);
@@ -141,10 +181,10 @@ class Lowering {
     if (!BBQ) return {};
     if (f->B.size() != 1) return {};
     const Term b = f->B[0];
-    if (is_positive(graph_, (-b).node()) ||
-        (graph_[b.node()].operation == &negation() && is_positive(graph_, graph_[b.node()].arguments[0])))
+    if (is_positive((-b).node()) ||
+        (graph_[b.node()].operation == &negation() && is_positive(graph_[b.node()].arguments[0])))
       return both(one({f->A}), one({sum(*AA, negative(*BBQ))}));
-    if (is_positive(graph_, b.node())) return one({f->A, sum(*BBQ, negative(*AA))});
+    if (is_positive(b.node())) return one({f->A, sum(*BBQ, negative(*AA))});
     if (!squares_) return {};
     const Terms R = sum(*AA, negative(*BBQ));  // of unknown sign is b
     return both(both(one({f->A, f->B}), one({f->A, negative(R)})), one({f->B, R}));
@@ -172,24 +212,24 @@ class Lowering {
     bool plus;
     Node P;
   };
-  std::optional<Rooted> rooted(Node node) {
+  std::optional<Rooted> rooted(Node node, int depth = 0) {
     const Entry entry = graph_[node];
-    if (!entry.operation) return {};
+    if (!entry.operation || depth > kMaxDepth) return {};
     const Code code = entry.operation->code;
     if (code == Code::sqrt) return Rooted{Term(graph_, 0.0), true, entry.arguments[0]};
     if (code != Code::add && code != Code::subtract && code != Code::negate) return {};
     const Term x(graph_, entry.arguments[0]);
     if (code == Code::negate) {
-      const auto inner = rooted(x.node());
+      const auto inner = rooted(x.node(), depth + 1);
       return inner ? std::optional(Rooted{-inner->X, !inner->plus, inner->P}) : std::nullopt;
     }
     const Term y(graph_, entry.arguments[1]);
     const bool adds = code == Code::add;
     if (is_free(y)) {
-      const auto inner = rooted(x.node());
+      const auto inner = rooted(x.node(), depth + 1);
       return inner ? std::optional(Rooted{adds ? inner->X + y : inner->X - y, inner->plus, inner->P}) : std::nullopt;
     }
-    const auto inner = is_free(x) ? rooted(y.node()) : std::nullopt;
+    const auto inner = is_free(x) ? rooted(y.node(), depth + 1) : std::nullopt;
     return inner ? std::optional(Rooted{adds ? x + inner->X : x - inner->X, inner->plus == adds, inner->P})
                  : std::nullopt;
   }
@@ -243,12 +283,13 @@ class Lowering {
   }
 
   /// u, where the term is |u|, or |u| / d with d >= 0 (then u / d); and where z is in it.
-  std::optional<Term> inside_of_abs(const Term& term) {
+  std::optional<Term> inside_of_abs(const Term& term, int depth = 0) {
     const Entry entry = graph_[term.node()];
     if (!entry.operation || (entry.groups & z_) == 0) return {};
     if (entry.operation->code == Code::abs) return Term(graph_, entry.arguments[0]);
-    if (entry.operation->code != Code::divide || !is_positive(graph_, entry.arguments[1])) return {};
-    const auto inner = inside_of_abs(Term(graph_, entry.arguments[0]));
+    if (entry.operation->code != Code::divide || !is_positive(entry.arguments[1])) return {};
+    if (depth > kMaxDepth) return {};
+    const auto inner = inside_of_abs(Term(graph_, entry.arguments[0]), depth + 1);
     if (!inner) return {};
     return *inner / Term(graph_, entry.arguments[1]);
   }
@@ -294,6 +335,8 @@ class Lowering {
   Groups z_;
   std::size_t degree_;
   bool squares_;
+  std::unordered_map<Node, std::optional<Form>> forms_;
+  int depth_ = 0, steps_ = 0;
 };
 
 }  // namespace

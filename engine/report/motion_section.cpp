@@ -110,7 +110,8 @@ Json motions_data(const Views& views) {
   return {{"coordinates", axes_data(info.coordinates)},
           {"joints", axes_data(info.joints)},
           {"chain", chain},
-          {"motions", motions}};
+          {"motions", motions},
+          {"left_out", views.motions_left_out}};
 }
 
 }  // namespace pkm

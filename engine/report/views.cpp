@@ -56,14 +56,19 @@ std::array<double, 2> range_of(const WorkspaceAxis& held, const Views& views, co
   return range;
 }
 
+/// A motion of a study with a front takes up to 0.7 MB of the page.
+constexpr std::size_t kMaxMotions = 6;
+
 Views no_views(const Mechanism& mechanism, const SurveyPlan& plan, const std::string& mode,
                const std::vector<NamedMotion>& motions, const PageDetail& detail = {}) {
   const MechanismInfo& info = mechanism.info();
+  const std::size_t shown = std::min(motions.size(), kMaxMotions);
   return {.mechanism = mechanism,
           .plan = page_plan(info, plan, detail.cells),
           .limits = survey_limits(info, plan.limits),
           .mode = mode.empty() ? info.modes.front() : mode,
-          .motions = motions,
+          .motions = {motions.begin(), motions.begin() + static_cast<std::ptrdiff_t>(shown)},
+          .motions_left_out = motions.size() - shown,
           .designs = {},
           .detail = detail};
 }

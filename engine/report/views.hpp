@@ -42,7 +42,8 @@ struct Views {
   SurveyPlan plan;   ///< of voxels, few enough for a page
   LimitSpec limits;  ///< of poses
   std::string mode;
-  std::vector<NamedMotion> motions;
+  std::vector<NamedMotion> motions;  ///< the first ones, few enough for a page
+  std::size_t motions_left_out = 0;  ///< further ones
   std::vector<View> designs;
   PageDetail detail = {};
   bool coupling = true;  ///< whether anybody asked for what follows from inertia

@@ -79,7 +79,9 @@ TomlValue convert(const toml::node& node, Source& source) {
     for (const auto& [key, child] : entries) {
       value.keys.emplace_back(key->str());
       value.items.push_back(convert(*child, source));
+      value.order.push_back(value.order.size());
     }
+    std::ranges::sort(value.order, {}, [&value](std::size_t i) -> const std::string& { return value.keys[i]; });
   } else if (const auto* array = node.as_array()) {
     value.kind = Kind::array;
     for (const auto& element : *array) value.items.push_back(convert(element, source));
@@ -155,8 +157,9 @@ int line_too_deep(std::string_view text) {
 }  // namespace
 
 const TomlValue* TomlValue::find(const std::string& key) const {
-  const auto found = std::find(keys.begin(), keys.end(), key);
-  return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
+  const auto found =
+      std::ranges::lower_bound(order, key, {}, [this](std::size_t i) -> const std::string& { return keys[i]; });
+  return found == order.end() || keys[*found] != key ? nullptr : &items[*found];
 }
 
 TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected) {

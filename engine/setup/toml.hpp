@@ -18,10 +18,11 @@ struct TomlValue {
   std::int64_t integer = 0;
   double number = 0;
   std::string text;
-  std::vector<std::string> keys;  ///< tables: names, in the order of the file
-  std::vector<TomlValue> items;   ///< tables: one value per key; arrays: the elements
-  int line = 0;                   ///< 1-based line where the value begins
-  std::string written;            ///< the value as it stands in the file, for messages: "\"200 kg\"", "a table"
+  std::vector<std::string> keys;   ///< tables: names, in the order of the file
+  std::vector<std::size_t> order;  ///< tables: positions of the keys in alphabetical order, for the binary search
+  std::vector<TomlValue> items;    ///< tables: one value per key; arrays: the elements
+  int line = 0;                    ///< 1-based line where the value begins
+  std::string written;             ///< the value as it stands in the file, for messages: "\"200 kg\"", "a table"
 
   /// A table's value under `key`, or null.
   const TomlValue* find(const std::string& key) const;

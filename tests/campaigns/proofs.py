@@ -602,8 +602,8 @@ def mutate_steps(steps, draw):
         k = draw.randrange(len(steps))
         steps[i], steps[k] = steps[k], steps[i]
     elif kind == 6:
-        steps[i] = draw.choice(["x0 ", "h0 ", "x1 ", "h1 ", "n", "r%d " % draw.randrange(1 << 30), ".\n", "/0\n", "/1\n",
-                                "t0 0 1073741824 %d " % draw.randrange(1 << 30), "s0 0 "])
+        steps[i] = draw.choice(["x0 ", "h0 ", "x1 ", "h1 ", "n", "s0 0 ", ".\n", "/0\n", "/1\n",
+                                "r%d " % draw.randrange(1 << 30), "t0 0 1073741824 %d " % draw.randrange(1 << 30)])
     elif steps[i][0] in "xh":
         steps[i] = ("h" if steps[i][0] == "x" else "x") + steps[i][1:]
     elif steps[i][0] == "/":  # the whole tree below it
@@ -787,9 +787,9 @@ def main():
             campaign.judge(proof.text(), options.cells, 1e-3)
             if campaign.counts["false", 0] + campaign.counts["false", 1] or not campaign.counts["valid boxes"]:
                 campaign.fail("%s as it was written" % name, text)
-            print("%-13s %5d steps  volume %s" % (name, len(proof.steps), proof.lines[1].partition(" ")[2]
-                  ) + ("; the evaluator: %.6g to %.6g" % tuple(map(float, bounds[0])) if bounds else "; unknown"),
-                  flush=True)
+            volume = proof.lines[1].partition(" ")[2]
+            found = "%.6g to %.6g" % tuple(map(float, bounds[0])) if bounds else "unknown"
+            print("%-13s %5d steps  volume %s; the evaluator: %s" % (name, len(proof.steps), volume, found), flush=True)
         for number in range(options.mutations):
             campaign.judge(mutant(proofs, draw), options.cells, 1e-3)
             if number % 1000 == 999:

@@ -304,7 +304,7 @@ TEST_F(Certify, FalseProofsAreRefused) {
          for (int i = 0; i < 300; ++i) boxes += "n/0\n";
          return boxes;
        }(),
-       "cannot be halved"},
+       "the boxes are halved too often"},
   };
   for (const Case& one : cases) {
     folder_.write("false.proof",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -55,6 +56,46 @@ std::vector<Node> nodes_of(const std::vector<DescribedLink>& links) {
     nodes.push_back(link.radius);
   }
   return nodes;
+}
+
+/// Sweep and prune: links in the order of the lower ends of their bounding boxes along the axis of greatest extent,
+/// each with those behind it that are not beyond the least distance so far. Of equal distances, that of the first pair.
+/// @param pairs  ascending
+Nearest<double> nearest_pair(const std::vector<Capsule<double>>& links, const std::vector<LinkPair>& pairs) {
+  Nearest<double> nearest{std::numeric_limits<double>::infinity()};
+  if (pairs.empty()) return nearest;
+  std::vector<Bounds<double>> box;
+  double widest = 0;
+  for (const Capsule<double>& link : links) {
+    box.push_back(bounds_of(link.axis));
+    widest = std::max(widest, link.radius);
+  }
+  const auto extent = [&](std::size_t axis) {
+    const auto lower = [axis](const Bounds<double>& each) { return each.lower[axis]; };
+    const auto [least, greatest] = std::ranges::minmax(box, {}, lower);
+    return lower(greatest) - lower(least);
+  };
+  std::size_t axis = 0;
+  for (const std::size_t other : {1, 2})
+    if (extent(other) > extent(axis)) axis = other;
+  std::vector<std::size_t> order(links.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return box[i].lower[axis]; });
+  const auto ends = [](const LinkPair& pair) { return std::pair(pair.first, pair.second); };
+  for (auto i = order.begin(); i != order.end(); ++i)
+    for (auto k = i + 1; k != order.end(); ++k) {
+      if (box[*k].lower[axis] - box[*i].upper[axis] - (links[*i].radius + widest) > nearest.clearance) break;
+      const LinkPair pair{std::min(*i, *k), std::max(*i, *k)};
+      // not nearer than their boxes are
+      const double radii = links[pair.first].radius + links[pair.second].radius;
+      if (distance_of_bounds(box[pair.first], box[pair.second]) - radii > nearest.clearance) continue;
+      if (!std::ranges::binary_search(pairs, ends(pair), {}, ends)) continue;
+      const double found = capsule_distance(links[pair.first], links[pair.second]);
+      const bool is_first = ends(pair) < std::pair(nearest.first, nearest.second);
+      if (found < nearest.clearance || (found == nearest.clearance && is_first))
+        nearest = {found, pair.first, pair.second};
+    }
+  return nearest;
 }
 
 }  // namespace
@@ -118,16 +159,7 @@ std::optional<NearestBodies> nearest_bodies(const Evaluation& e, const std::vect
   if (model.link_pairs.empty() && (obstacles.empty() || model.moving_links.empty())) return {};
   const std::vector<Capsule<double>> links = capsules_at(e, inputs);
   if (links.empty()) return NearestBodies{std::nan(""), "", ""};
-  std::vector<Bounds<double>> box;
-  for (const Capsule<double>& link : links) box.push_back(bounds_of(link.axis));
-  Nearest<double> nearest{std::numeric_limits<double>::infinity()};
-  for (const auto& [first, second] : model.link_pairs) {
-    // not nearer than their boxes are
-    const double radii = links[first].radius + links[second].radius;
-    if (distance_of_bounds(box[first], box[second]) - radii > nearest.clearance) continue;
-    const double found = capsule_distance(links[first], links[second]);
-    if (found < nearest.clearance) nearest = {found, first, second};
-  }
+  const Nearest<double> nearest = nearest_pair(links, model.link_pairs);
   const Nearest<double> other = nearest_obstacle<double>(links, model.moving_links, obstacles);
   if (other.clearance < nearest.clearance)
     return NearestBodies{other.clearance, model.links[other.first].name, obstacles[other.second].name};

@@ -203,7 +203,9 @@ function showMechanism(study, section) {
       "p",
       "lead",
       `Drawn to scale in working mode ${mode}. The sliders step through stored poses` +
-        (all.some((design) => design.motions.length) ? ", the player along the motions" : "") +
+        (all.some((design) => design.motions.length)
+          ? ", the player along the " + (study.motions?.left_out ? `first ${all[0].motions.length} ` : "") + "motions"
+          : "") +
         (goes ? "; blue is where the platform can go" + (turning ? " at this rotation" : "") : "") +
         ".",
     ),

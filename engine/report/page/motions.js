@@ -151,6 +151,17 @@ function showMotions(study, section) {
         ". The best design in solid lines, the baseline dashed.",
     ),
   );
+  if (study.motions.left_out)
+    section.append(
+      element(
+        "p",
+        "lead",
+        `The page has the first ${motions.length} of the study's ${motions.length + study.motions.left_out} motions. ` +
+          "“pkmopt trajectory --from " +
+          (study.file || "FILE.h5") +
+          " --motion NAME --csv NAME.csv” computes each of the others.",
+      ),
+    );
   const controls = element("div", "controls"),
     grid = element("div", "grid"),
     notes = element("div");

@@ -236,6 +236,29 @@ TEST(PageData, TheAuxiliaryChainTurnsAlongAMotion) {
   EXPECT_TRUE(none["motions"][0]["designs"][0]["chain"].is_null());
 }
 
+TEST(PageData, OfManyMotionsTheFirstOnesAreEmbedded) {
+  const auto mechanism = mechanism_called("3crr-r-cru");
+  const MechanismInfo& info = mechanism->info();
+  const auto formula = [](const std::string& text) { return Formula(text, time_name()); };
+  const auto rest = formulas_of_time({formula("0.15"), formula("0.2"), formula("0.21"), formula("0.1*sin(t)")}, 5);
+  const auto page_of = [&](std::size_t count) {
+    std::vector<NamedMotion> motions;
+    for (std::size_t i = 0; i < count; ++i) motions.push_back({"motion " + std::to_string(i + 1), rest});
+    return page_data(
+        views_of(*mechanism, test::voxels(info, 6), info.modes.front(), motions, {"nominal", test::nominal(info)}),
+        "pkmopt");
+  };
+  const std::string few = page_of(3), many = page_of(100);
+  const json of_few = json::parse(few)["studies"][0], of_many = json::parse(many)["studies"][0];
+  EXPECT_EQ(of_few["motions"]["motions"].size(), 3u);
+  EXPECT_EQ(of_few["motions"]["left_out"], 0);
+  const std::size_t shown = of_many["motions"]["motions"].size();
+  EXPECT_EQ(of_many["motions"]["left_out"], 100 - shown);
+  EXPECT_EQ(of_many["motions"]["motions"][0]["name"], "motion 1");
+  EXPECT_EQ(of_many["mechanism"]["designs"][0]["motions"].size(), shown);
+  EXPECT_LT(many.size(), 3 * few.size());
+}
+
 TEST(PageData, ADesignThatIsNoneIsSaidSo) {
   const auto mechanism = mechanism_called("4ppa-2par");
   std::vector<double> parameters(mechanism->info().parameters.size(), 0.0);

@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+"""Growth of costs with the size of a file.
+
+check_costs.py PROGRAM CHECKER
+
+Each command runs on a file of n and on one of 2 n entries; the ratio of the CPU times, which hardly depends on the
+machine, shows the order: 2 is linear, 4 quadratic, 16 of fourth order. Pairs of links are quadratic by their number.
+Exit code 1 where a ratio exceeds its limit.
+"""
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+HEAD = """[mechanism]
+name = "many"
+[parameters]
+w = { default = 0.5, min = 0.1, max = 3, unit = "m" }
+[platform]
+coordinates = { x = "along x", y = "along y" }
+[survey]
+sweep = ["x", "y"]
+box = { x = [0, 1], y = [0, 1] }
+"""
+LIMB = """[[limb]]
+name = "a"
+drive = "formula"
+joints = { p = "x", q = "y" }
+unit = "m"
+"""
+LINK = '[[link]]\nname = "l%d"\nfrom = ["x", %d, 0]\nto = ["x + 1", %d, 0]\nradius = 0.1\ngroup = "g%d"\nmass = 1\n'
+MARGIN = '[[margin]]\nname = "m"\nformula = "%s"\nunit = "1"\n'
+
+
+def links(n):
+    return HEAD + LIMB + MARGIN % "x" + "".join(LINK % (i, i, i, i // 2) for i in range(n))
+
+
+def lets(n):
+    """A chain of names, each used twice, so that a proof names it, too."""
+    chain = "".join('a%d = "a%d + %d*y*a%d"\n' % (i, i - 1, i, max(i - 2, 0)) for i in range(1, n))
+    return HEAD + '[let]\na0 = "x"\n' + chain + LIMB + MARGIN % ("min(a%d, x - 0.5)" % (n - 1))
+
+
+def proof(n):
+    chain = "".join("let n%d = (n%d + (x * n%d))\n" % (i, i - 1, max(i - 2, 0)) for i in range(1, n))
+    head = "pkmopt proof 1\nvolume 0 2\naxis x 0 1\nlet n0 = x\n"
+    return head + chain + "condition n%d\nboxes\nn.\nend\n" % (n - 1)
+
+
+def cpu_seconds(command, folder):
+    least = None
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if done.returncode != 0:
+            sys.exit("%s: exit code %d: %s" % (" ".join(command), done.returncode, done.stdout[-2000:]))
+        spent = after.ru_utime - before.ru_utime
+        least = spent if least is None else min(least, spent)
+    return least
+
+
+def main():
+    program, checker = (os.path.abspath(path) for path in sys.argv[1:3])
+    cases = [
+        ("check, links", links, 300, 6, [program, "check"]),
+        ("check, [let]", lets, 20000, 3, [program, "check"]),
+        ("certify --proof, [let]", lets, 5000, 3,
+         [program, "certify", "--boxes", "1", "--gap", "1.99", "--proof", "a.proof", "--force", "--threads", "1"]),
+        ("check of a proof", proof, 20000, 3, [checker]),
+    ]
+    wrong = False
+    print("%-24s %8s  CPU seconds, and of twice as many  ratio  limit" % ("command", "entries"))
+    with tempfile.TemporaryDirectory() as folder:
+        for name, make, n, limit, command in cases:
+            seconds = []
+            for count in (n, 2 * n):
+                path = os.path.join(folder, "input.toml" if command[0] == program else "input.proof")
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write(make(count))
+                seconds.append(cpu_seconds([*command, path], folder))
+            ratio = seconds[1] / max(seconds[0], 1e-3)
+            wrong = wrong or ratio > limit
+            print("%-24s %8d  %11.3f  %20.3f  %5.1f  %5.1f" % (name, n, *seconds, ratio, limit), flush=True)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
