@@ -186,13 +186,38 @@ std::string DesignProblem::why_failed(const DesignReport& report) const {
   return "an objective or a margin is not a finite number";
 }
 
-DesignReport DesignProblem::report(std::span<const double> parameters) const {
+DesignReport DesignProblem::empty_report(std::span<const double> parameters) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   DesignReport report;
   report.parameters.assign(parameters.begin(), parameters.end());
   report.objectives.assign(objectives_.size(), nan);
   report.margins.assign(margins_.size(), nan);
   report.reports.assign(reports_.size(), nan);
+  return report;
+}
+
+std::string DesignProblem::why_failed(std::span<const double> design, Detail detail) const {
+  DesignReport report = empty_report(parameters(design));
+  std::vector<double> slopes(shape(detail).slopes());
+  try {
+    Scratch scratch;
+    const Status status = compute(report.parameters, scratch,
+                                  {report.objectives, report.margins, report.reports, report.status, detail, slopes});
+    if (status != Status::failed) return "of a reason that this program does not find again";
+    if (auto& surveys = scratch.get<Room>().surveys; !surveys.empty()) report.survey = surveys.front();
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    if (std::ranges::all_of(report.margins, is_finite) && std::ranges::all_of(report.objectives, is_finite))
+      return "a derivative is not a finite number";
+    return why_failed(report);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return message_of(error);
+  }
+}
+
+DesignReport DesignProblem::report(std::span<const double> parameters) const {
+  DesignReport report = empty_report(parameters);
   try {
     Scratch scratch;
     report.status = compute(parameters, scratch,

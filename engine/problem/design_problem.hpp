@@ -68,6 +68,8 @@ class DesignProblem final : public Problem {
   /// Evaluates a full parameter vector (a baseline may lie outside the variables' bounds). Computes what it can even
   /// where a design-level margin is violated.
   DesignReport report(std::span<const double> parameters) const;
+  /// Why a design failed that was evaluated in that detail: the first thing without a finite value, and its reason.
+  std::string why_failed(std::span<const double> design, Detail detail) const;
   /// Slopes of objectives and margins by any parameters, fixed ones included, laid out as in EvaluationShape::slopes.
   /// @param by  indices of parameters
   std::vector<double> slopes(std::span<const double> parameters, std::span<const std::size_t> by) const;
@@ -80,6 +82,7 @@ class DesignProblem final : public Problem {
   struct Room;  ///< what evaluations overwrite
 
   Status compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const;
+  DesignReport empty_report(std::span<const double> parameters) const;
   std::string why_failed(const DesignReport& report) const;
   /// Fills `slopes`; the surveys of the scratch receive the values.
   void differentiate(std::span<const double> parameters, std::span<const std::size_t> by, std::span<double> slopes,

@@ -25,11 +25,23 @@ std::optional<DesignRecord> best_so_far(const StudyContents& contents) {
   return record;
 }
 
-std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignProblem* problem) {
-  if (contents.state != StudyState::finished) return {};
+namespace {
+
+std::vector<const EvaluationTable*> tables_of(const StudyContents& contents) {
   std::vector<const EvaluationTable*> tables;
   for (const StageRecord& stage : contents.stages) tables.push_back(&stage.table);
-  return verdict_on(tables, contents.problem.objectives, contents.problem.margins, problem);
+  return tables;
+}
+
+}  // namespace
+
+std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignProblem* problem) {
+  if (contents.state != StudyState::finished) return {};
+  return verdict_on(tables_of(contents), contents.problem.objectives, contents.problem.margins, problem);
+}
+
+Failures failures_in(const StudyContents& contents, const DesignProblem* problem) {
+  return failures_in(tables_of(contents), problem);
 }
 
 std::string name_of_best(const StudyContents& contents) {

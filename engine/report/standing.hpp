@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/problem/failures.hpp"
 #include "engine/problem/verdict.hpp"
 #include "engine/storage/study_contents.hpp"
 
@@ -27,6 +28,10 @@ std::optional<DesignRecord> best_so_far(const StudyContents& contents);
 /// Why a study that has ended found nothing; none: it found something, or has not ended.
 /// @param problem  what it optimises; null where this program cannot read its text: less is known then
 std::optional<Verdict> verdict_on(const StudyContents& contents, const DesignProblem* problem);
+
+/// The failed evaluations of all stages, and reasons.
+/// @param problem  as above; null: no reason is known
+Failures failures_in(const StudyContents& contents, const DesignProblem* problem);
 
 /// What the best evaluation is called: "best", "best so far" before the study's end, "compromise" where there are
 /// several objectives; "least bad" where nothing was feasible, "as good as any" where no objective says anything.

@@ -97,12 +97,14 @@ Json origin(const PageStudy& page) {
 
 Json summary_data(const PageStudy& page) {
   const StudyContents& contents = page.contents;
+  const DesignProblem* const problem = page.study ? page.study->problem.get() : nullptr;
   Json json = {{"state", words(contents.state)},
                {"seconds", contents.seconds},
                {"evaluations", contents.evaluations()},
                {"reproducible", contents.reproducible()},
                {"notes", contents.notes},
-               {"verdict", verdict_json(verdict_on(contents, page.study ? page.study->problem.get() : nullptr))},
+               {"verdict", verdict_json(verdict_on(contents, problem))},
+               {"failures", failures_text(failures_in(contents, problem))},
                {"unreadable", page.unreadable},
                {"table", table(page)},
                {"stages", stages(contents)},

@@ -77,7 +77,7 @@ void show(const ShowArguments& arguments, const Session& session) {
   }
   const auto verdict = verdict_on(contents, study.problem.get());
   if (arguments.json)
-    print_json(summary_json(contents, verdict));
+    print_json(summary_json(contents, verdict, failures_in(contents, study.problem.get())));
   else
     std::cout << summary_text(contents, study, verdict) << history(contents) << note << state;
 }

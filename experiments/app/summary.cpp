@@ -5,6 +5,7 @@
 #include "engine/core/printable.hpp"
 #include "engine/report/design_table.hpp"
 #include "engine/report/json_text.hpp"
+#include "engine/report/standing.hpp"
 #include "engine/study/progress.hpp"
 #include "experiments/app/stage_summary.hpp"
 
@@ -67,6 +68,13 @@ Json design_json(const ProblemRecord& problem, const DesignRecord& record) {
   return object;
 }
 
+Json failures_json(const Failures& failures) {
+  Json reasons = Json::array();
+  for (const FailureReason& reason : failures.reasons)
+    reasons.push_back({{"count", reason.count}, {"example", reason.example}});
+  return {{"failed", failures.failed}, {"examined", failures.examined}, {"reasons", reasons}};
+}
+
 }  // namespace
 
 std::string reasons_text(const std::vector<Reason>& reasons) {
@@ -90,6 +98,8 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
     out << stage.table.size() << " evaluations" << (stage.stop.empty() ? "" : ", ended: " + stage.stop) << '\n'
         << starts_text(contents.problem, stage) << front_text(contents.problem, stage);
   }
+  if (const std::string text = failures_text(failures_in(contents, study.problem.get())); !text.empty())
+    out << printable(text) << '\n';
   for (const std::string& note : contents.notes) out << "note: " << printable(note) << '\n';
   if (!contents.reproducible())
     out << "note: the clock ended a start, so another run with this seed may end elsewhere\n";
@@ -138,7 +148,7 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   return out.str();
 }
 
-Json summary_json(const StudyContents& contents, const std::optional<Verdict>& verdict) {
+Json summary_json(const StudyContents& contents, const std::optional<Verdict>& verdict, const Failures& failures) {
   Json object = {{"name", contents.name},
                  {"mechanism", contents.problem.mechanism},
                  {"state", words(contents.state)},
@@ -162,6 +172,7 @@ Json summary_json(const StudyContents& contents, const std::optional<Verdict>& v
   object["notes"] = contents.notes;
   object["stop"] = contents.stages.empty() ? "" : contents.stages.back().stop;
   object["verdict"] = verdict_json(verdict);
+  object["failures"] = failures_json(failures);
   object["best"] = nullptr;
   if (contents.best.row >= 0) {
     const StageRecord& stage = contents.best_stage();

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "engine/problem/failures.hpp"
 #include "engine/problem/verdict.hpp"
 #include "engine/setup/study.hpp"
 #include "engine/storage/study_contents.hpp"
@@ -17,6 +18,6 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
 std::string reasons_text(const std::vector<Reason>& reasons);
 
 /// The object of `pkmopt show --json`.
-Json summary_json(const StudyContents& contents, const std::optional<Verdict>& verdict);
+Json summary_json(const StudyContents& contents, const std::optional<Verdict>& verdict, const Failures& failures);
 
 }  // namespace pkm

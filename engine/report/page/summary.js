@@ -166,6 +166,7 @@ function remarks(study) {
       "This program cannot read the study's text, so what would have to be evaluated again is left out: " +
         summary.unreadable,
     ]);
+  if (summary.failures) list.push(["", summary.failures + "."]);
   for (const note of summary.notes) list.push(["", note]);
   return list.map(([kind, text, ...reasons]) =>
     element(
