@@ -11,6 +11,7 @@ ConstraintEntry clearance();
 ConstraintEntry workspace_shape();
 ConstraintEntry rail_length();
 ConstraintEntry task_workspace();
+ConstraintEntry motion_constraint();
 ConstraintEntry linear();
 ConstraintEntry expression_constraint();
 

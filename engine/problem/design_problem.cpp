@@ -83,18 +83,22 @@ void DesignProblem::survey(std::span<const S> parameters, bool all, Scratch& scr
 Status DesignProblem::compute(std::span<const double> parameters, Scratch& scratch, EvaluationSlot result) const {
   Surveys<double>& surveys = scratch.get<Room>().surveys;
   DesignView<double> view{*parts_.mechanism, parameters, nullptr, scratch};
-  bool holds = true, usable = true;
+  bool holds = true, usable = true, is_broken = false;
   const auto put = [&](double& place, double value) {
     place = value;
     usable = usable && std::isfinite(value);
     return value;
   };
   std::size_t margin = 0;
-  for (const auto& q : parts_.design_margins)
-    holds = put(result.margins[margin++], margin_of(q, q.quantity->value(view))) >= 0 && holds;
-  if (!usable) return Status::failed;
+  for (const auto& q : parts_.design_margins) {
+    const double value = put(result.margins[margin++], margin_of(q, q.quantity->value(view)));
+    holds = value >= 0 && holds;
+    is_broken = is_broken || (std::isfinite(value) && value < 0);
+  }
+  // Margins without a value beside it, of a motion out of reach, for example, do not matter then.
+  if (is_broken && result.detail == Detail::enough) return Status::rejected;
+  if (!usable && !(is_broken && result.detail == Detail::complete)) return Status::failed;
   const bool rejected = !holds;
-  if (rejected && result.detail == Detail::enough) return Status::rejected;
 
   if (result.detail == Detail::derivatives) {
     differentiate(parameters, parts_.varies, result.slopes, scratch);
@@ -223,7 +227,12 @@ DesignReport DesignProblem::report(std::span<const double> parameters) const {
     report.status = compute(parameters, scratch,
                             {report.objectives, report.margins, report.reports, report.status, Detail::complete});
     if (auto& surveys = scratch.get<Room>().surveys; !surveys.empty()) report.survey = std::move(surveys.front());
-    if (report.status == Status::failed) report.reason = why_failed(report);
+    if (report.status == Status::failed) {
+      report.reason = why_failed(report);
+      const auto design_margins = std::span(report.margins).first(parts_.design_margins.size());
+      if (std::ranges::any_of(design_margins, [](double margin) { return std::isfinite(margin) && margin < 0; }))
+        report.status = Status::rejected;
+    }
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -24,6 +24,13 @@ struct NamedQuantity {
   std::optional<double> least, greatest;
 };
 
+/// A motion along which a constraint keeps every limit of a pose.
+struct FollowedMotion {
+  std::string name;
+  std::shared_ptr<const Motion> motion;
+  std::string mode;  ///< one of MechanismInfo::modes
+};
+
 struct ProblemParts {
   std::shared_ptr<const Mechanism> mechanism;
   std::vector<double> parameters;  ///< every parameter; those that vary are overwritten
@@ -36,6 +43,7 @@ struct ProblemParts {
   std::vector<NamedQuantity> design_margins;  ///< need no survey: computed first
   std::vector<NamedQuantity> survey_margins;  ///< the others
   std::vector<NamedQuantity> reports;
+  std::vector<FollowedMotion> followed;
 };
 
 /// All that is known of one design, for the command line and /final.
@@ -43,7 +51,7 @@ struct DesignReport {
   std::vector<double> parameters;
   std::vector<double> objectives, margins, reports;  ///< NaN where not computed
   Status status = Status::failed;
-  std::string reason;  ///< why it failed; "" otherwise
+  std::string reason;  ///< why a number is missing, also of a rejected design; "" otherwise
   Survey<double> survey;
 };
 

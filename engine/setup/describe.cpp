@@ -201,7 +201,9 @@ std::string describe(const Study& study) {
   for (const Region& region : parts.regions) out << titled("region " + region.name, survey_rows(info, region.plan));
   std::vector<Row> motions;
   for (const NamedMotion& named : study.motions)
-    motions.push_back({named.name, "takes " + with_unit(named.motion->duration(), "s")});
+    motions.push_back(
+        {named.name, "takes " + with_unit(named.motion->duration(), "s"),
+         contains(study.unfollowed_motions, named.name) ? "may leave limits of a pose (follow = false)" : ""});
   if (!motions.empty()) out << titled("motions", motions);
   if (const Obstacles& obstacles = parts.plan.limits.obstacles; !obstacles.empty())
     out << titled("obstacles, of which all links that move keep clear", obstacle_rows(obstacles));

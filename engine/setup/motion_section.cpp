@@ -232,7 +232,10 @@ std::shared_ptr<const Motion> load_motion_toml(const std::string& path, const Mo
 void read_motions(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& table : tables_of(root, "motion")) {
     const std::string name = new_name(table, "motion", draft.study.motions, "a name for objectives to refer to");
-    draft.study.motions.push_back({name, read_motion(table, motion_names(*draft.parts.mechanism), {"name"})});
+    auto motion = read_motion(table, motion_names(*draft.parts.mechanism), {"name", "follow"});
+    draft.study.motions.push_back({name, std::move(motion)});
+    if (const auto follow = table.find("follow"); follow && !follow->flag())
+      draft.study.unfollowed_motions.push_back(name);
   }
 }
 

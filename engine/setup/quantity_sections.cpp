@@ -1,9 +1,12 @@
 // [[objective]], [[constraint]], [[report]]: entries of the catalogues become named quantities of the problem.
 
 #include <algorithm>
+#include <map>
 
 #include "engine/core/unit.hpp"
 #include "engine/problem/design_test.hpp"
+#include "engine/problem/motion_options.hpp"
+#include "engine/problem/pose_options.hpp"
 #include "engine/setup/sections.hpp"
 
 namespace pkm {
@@ -11,12 +14,13 @@ namespace {
 
 std::string in_unit(const std::string& unit) { return unit == "1" ? "dimensionless" : "in " + unit; }
 
+constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+
 /// The name of an entry within its kind: `name = `, else its type. Names are keys of the study file and of JSON.
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
   std::string name = given ? given->text("text") : type;
   if (!given) std::ranges::replace(name, ' ', '-');  // of a described mechanism's tests
-  constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
     throw given->error("a name of letters, digits, '-', '_' and '.'");
   if (find_named(before, name))
@@ -141,6 +145,8 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
     specs = with_entry_unit(std::move(specs), made.unit);
     options = read_options(table, specs);
     made.quantity = entry.make(context);
+    if (entry.name == kMotionConstraint)
+      draft.parts.followed.push_back({motion_of(context).name, motion_of(context).motion, mode_of(context)});
     made.meaning = entry.detail ? entry.detail(context) : entry.meaning;
     made.reads_survey = entry.needs_survey && entry.needs_survey(context);
     Demand own;
@@ -149,6 +155,58 @@ void read_margin_constraint(const ConfigValue& table, const ConstraintEntry& ent
   });
   draft.study.constraints.push_back({entry.name, made.name, "margin >= 0, " + in_unit(made.unit), specs, options});
   (made.reads_survey ? draft.parts.survey_margins : draft.parts.design_margins).push_back(std::move(made));
+}
+
+/// "motion-cycle" for a motion called cycle; letters that names of constraints cannot have are dashes.
+std::string implied_name(const std::string& motion, const std::vector<StudyEntry>& before) {
+  std::string name = std::string(kMotionConstraint) + "-" + motion;
+  for (char& letter : name)
+    if (std::string(kLetters).find(letter) == std::string::npos) letter = '-';
+  while (find_named(before, name)) name += "-2";
+  return name;
+}
+
+/// Adds the constraint that a motion keeps every limit of a pose: once per motion that entries name, and per working
+/// mode; not where the study has it already or does not want it.
+void add_motion_constraints(StudyDraft& draft) {
+  const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, kMotionConstraint);
+  if (!entry || draft.implied == ImpliedConstraints::left_out) return;
+  struct Use {
+    std::int64_t samples = 0;  ///< the most that an entry looks at
+    std::vector<std::string> names;
+  };
+  Study& study = draft.study;
+  for (const NamedMotion& named : study.motions) {
+    std::map<std::string, Use> by_mode;
+    bool is_stated = contains(study.unfollowed_motions, named.name);
+    for (const auto* const list : {&study.objectives, &study.constraints, &study.reports})
+      for (const StudyEntry& user : *list) {
+        if (!user.options.has("motion") || user.options.word("motion") != named.name) continue;
+        is_stated = is_stated || user.type == kMotionConstraint;
+        const std::string mode = user.options.has("mode") ? user.options.word("mode") : draft.info().modes.front();
+        Use& use = by_mode[mode];
+        use.samples = std::max(use.samples, user.options.integer("samples"));
+        if (!contains(use.names, user.name)) use.names.push_back(user.name);
+      }
+    if (is_stated) continue;
+    for (const auto& [mode, use] : by_mode) {
+      auto specs = entry->options(draft.info());
+      Options options = default_options(specs);
+      options.set("motion", named.name);
+      options.set("samples", use.samples);
+      if (mode != draft.info().modes.front()) options.set("mode", mode);
+      const EntryContext context{*draft.parts.mechanism, draft.parts.plan, options, draft.parts.regions, study.motions};
+      NamedQuantity made{.name = implied_name(named.name, study.constraints),
+                         .unit = entry->unit(context),
+                         .meaning = entry->detail(context),
+                         .quantity = entry->make(context),
+                         .reads_survey = false};
+      const std::string role = "margin >= 0, " + in_unit(made.unit) + ", because of " + join(use.names, " and ");
+      study.constraints.push_back({entry->name, made.name, role, std::move(specs), options});
+      draft.parts.design_margins.push_back(std::move(made));
+      draft.parts.followed.push_back({named.name, named.motion, mode});
+    }
+  }
 }
 
 void read_pose_constraint(const ConfigValue& table, const ConstraintEntry& entry, StudyDraft& draft) {
@@ -218,6 +276,7 @@ void read_quantities(const ConfigValue& root, StudyDraft& draft) {
   for (const auto& table : tables_of(root, "objective")) read_objective(table, draft, true);
   read_constraints(root, draft, false);
   for (const auto& table : tables_of(root, "report")) read_objective(table, draft, false);
+  add_motion_constraints(draft);
 }
 
 }  // namespace pkm

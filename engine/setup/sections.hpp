@@ -21,6 +21,7 @@ struct StudyDraft {
   ProblemParts parts;
   std::vector<LimbParameter> limb_parameters = {};  ///< that the study names, or the command line
   std::vector<StudyChanges> changes = {};           ///< the text's own, then what the command line says now
+  ImpliedConstraints implied = ImpliedConstraints::added;
 
   const MechanismInfo& info() const { return parts.mechanism->info(); }
 };
@@ -50,7 +51,7 @@ void read_obstacles(const ConfigValue& root, StudyDraft& draft);
 void read_regions(const ConfigValue& root, StudyDraft& draft);
 /// [[motion]]
 void read_motions(const ConfigValue& root, StudyDraft& draft);
-/// [[objective]], the other [[constraint]]s and [[report]]
+/// [[objective]], the other [[constraint]]s and [[report]], and the constraints that their motions imply
 void read_quantities(const ConfigValue& root, StudyDraft& draft);
 /// [[reference]]
 void read_references(const ConfigValue& root, StudyDraft& draft);

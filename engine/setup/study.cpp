@@ -120,7 +120,8 @@ bool describes_mechanism(const TomlValue& document) {
 using FindDescription = std::function<SourceText(const ConfigValue& file)>;
 
 Study read_document(const TomlValue& document, const SourceText& source, const Catalogues& catalogues,
-                    const FindDescription& find_description, const StudyChanges& changes) {
+                    const FindDescription& find_description, const StudyChanges& changes,
+                    ImpliedConstraints implied = ImpliedConstraints::added) {
   const std::string& file_name = source.file_name;
   if (document.keys.empty())
     throw ConfigError({file_name, 0, ""}, "an empty file", "a study in TOML, with [mechanism] and [[stage]] at least");
@@ -132,7 +133,8 @@ Study read_document(const TomlValue& document, const SourceText& source, const C
               "report", "reference", "drive_train", "obstacle", "stage", "checkpoint", "final", "override"},
              "section");
 
-  StudyDraft draft{catalogues, find_description, {}, {}};
+  StudyDraft draft{
+      .catalogues = catalogues, .description = find_description, .study = {}, .parts = {}, .implied = implied};
   draft.study.text = changes.empty() ? source.text : with_changes(source.text, changes);
   draft.study.file_name = file_name;
   read_overrides(root, draft);
@@ -206,12 +208,13 @@ std::vector<OptionSpec> with_entry_unit(std::vector<OptionSpec> specs, const std
 }
 
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
-                      const std::optional<SourceText>& description, const StudyChanges& changes) {
+                      const std::optional<SourceText>& description, const StudyChanges& changes,
+                      ImpliedConstraints implied) {
   const auto known = [&](const ConfigValue& file) {
     if (!description) throw file.refusal("what the mechanism's file holds is not known here");
     return *description;
   };
-  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, known, changes);
+  return read_document(parse_toml(text, file_name), {text, file_name}, catalogues, known, changes, implied);
 }
 
 Study load_study_toml(const std::string& path, const Catalogues& catalogues, const StudyChanges& changes) {

@@ -72,7 +72,8 @@ struct Study {
   std::vector<std::string> warnings;       ///< sentences for the user; nothing that stops a run
 
   std::vector<Reference> references;
-  std::vector<NamedMotion> motions;  ///< [[motion]]: what objectives refer to by name
+  std::vector<NamedMotion> motions;             ///< [[motion]]: what objectives refer to by name
+  std::vector<std::string> unfollowed_motions;  ///< those with follow = false
 
   std::vector<StudyEntry> objectives, constraints, reports;
   std::vector<std::string> limit_origins;  ///< per limit of the mechanism: where it was set; "" when it was not
@@ -81,10 +82,14 @@ struct Study {
   std::string output_file() const;
 };
 
+/// Whether a study gets the constraints that follow from its motions. Those that earlier programs stored have none.
+enum class ImpliedConstraints { added, left_out };
+
 /// Builds a study from a TOML document. `file_name` is named in messages. Opens no file: where [mechanism] names one,
 /// `description` is what was in it. Throws ConfigError.
 Study read_study_toml(const std::string& text, const std::string& file_name, const Catalogues& catalogues,
-                      const std::optional<SourceText>& description = {}, const StudyChanges& changes = {});
+                      const std::optional<SourceText>& description = {}, const StudyChanges& changes = {},
+                      ImpliedConstraints implied = ImpliedConstraints::added);
 
 /// Reads the file at `path`, and the mechanism's that it may name, and builds its study. Throws ConfigError, also when
 /// a file cannot be read.

@@ -8,6 +8,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/study/design_record.hpp"
 #include "engine/study/exact_values.hpp"
+#include "engine/study/stop_request.hpp"
 #include "engine/survey/picture_plan.hpp"
 #include "engine/survey/survey_set.hpp"
 
@@ -15,6 +16,8 @@ namespace pkm {
 namespace {
 
 constexpr const char* kWideBounds = "certain bounds of the ";
+constexpr const char* kAlong = "along the motion ";
+constexpr std::size_t kMotionBoxes = 200'000;  // time intervals examined per motion: seconds
 
 /// Cells of the map that a study by columns stores.
 constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
@@ -54,6 +57,35 @@ std::vector<std::string> active_sentences(const DesignProblem& problem, const De
   return sentences;
 }
 
+/// Whether a feasible design certainly keeps every limit of a pose along the motions that it has to follow, also
+/// between their samples. A design that does not has failed; the other answers are notes.
+void certify_motions(const ProblemParts& parts, const std::string& name, DesignRecord& design,
+                     std::vector<std::string>& notes) {
+  using Kind = PosesVerdict::Kind;
+  for (const FollowedMotion& along : parts.followed) {
+    if (design.status != Status::feasible) return;
+    const std::string begin = kAlong + along.name + " the " + name + " ";
+    try {
+      const PosesCertificate found = parts.mechanism->bounds()->motion(
+          design.parameters, parts.plan.limits, along.mode, *along.motion,
+          {.most_boxes = kMotionBoxes, .stop = [] { return StopRequest::signal() != 0; }});
+      const PosesVerdict& verdict = found.feasible;
+      const std::string when = verdict.time ? "t = " + with_unit(*verdict.time, "s") : "";
+      if (verdict.kind == Kind::holds)
+        notes.push_back(begin + "certainly keeps every limit of a pose, at every instant");
+      else if (verdict.kind == Kind::undecided)
+        notes.push_back(begin + "may break " + verdict.what + " near " + when + ": undecided");
+      else {
+        design.status = Status::failed;
+        design.reason =
+            kAlong + along.name + ", " + verdict.what + " does not hold at " + when + ", between its samples";
+      }
+    } catch (const std::invalid_argument& reason) {
+      notes.push_back(begin + "is certain of nothing: " + reason.what());
+    }
+  }
+}
+
 }  // namespace
 
 double rounded_to(double value, double step) {
@@ -68,7 +100,7 @@ FinalRecord final_record(const Study& study, StudyContents& contents) {
   const DesignProblem& problem = *study.problem;
   const ProblemParts& parts = problem.parts();
   std::erase_if(contents.notes, [](const std::string& note) {
-    return note.starts_with(ExactValues::kNone) || note.starts_with(kWideBounds);
+    return note.starts_with(ExactValues::kNone) || note.starts_with(kWideBounds) || note.starts_with(kAlong);
   });
   const ExactValues exact(parts);
   const std::optional<double> certain = parts.plan.columns() ? parts.plan.columns()->certain : std::nullopt;
@@ -82,12 +114,14 @@ FinalRecord final_record(const Study& study, StudyContents& contents) {
   if (study.baseline) {
     f.baseline = evaluated(problem, *study.baseline, certain);
     note_gap("baseline", f.baseline->certain);
+    if (certain) certify_motions(parts, "baseline", *f.baseline, contents.notes);
     f.baseline_exact = exact.of("baseline", *study.baseline, contents.notes);
   }
   if (contents.best.row < 0) return f;
   const auto best = problem.parameters(contents.best_design());
   f.best = evaluated(problem, best, certain);
   note_gap("best design", f.best->certain);
+  if (certain) certify_motions(parts, "best design", *f.best, contents.notes);
   f.best_exact = exact.of("best design", best, contents.notes);
   f.active = active_sentences(problem, *f.best);
   if (study.round) {
@@ -95,6 +129,7 @@ FinalRecord final_record(const Study& study, StudyContents& contents) {
     for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
     f.rounded = evaluated_rounded(problem, rounded, certain);
     note_gap("rounded design", f.rounded->certain);
+    if (certain) certify_motions(parts, "rounded design", *f.rounded, contents.notes);
   }
   f.map = map_of(parts, best);
   return f;

@@ -6,9 +6,12 @@
 #include "engine/core/error.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/study/machine.hpp"
+#include "engine/study/run_outcome.hpp"
 
 namespace pkm {
 namespace {
+
+constexpr std::int64_t kImplyMotions = 6;  // the first version whose studies have constraints because of motions
 
 ProblemRecord problem_record(const Study& study) {
   const ProblemParts& parts = study.problem->parts();
@@ -58,6 +61,7 @@ StudyContents new_contents(const Study& study) {
   c.toml_file = study.file_name;
   c.description = study.description;
   c.seed = study.seed;
+  c.algorithms = kAlgorithms;
   c.machine = describe_machine();
   c.created = c.updated = utc_now();
   c.problem = problem_record(study);
@@ -65,7 +69,8 @@ StudyContents new_contents(const Study& study) {
 }
 
 Study study_of(const StudyContents& contents, const Catalogues& catalogues, const StudyChanges& changes) {
-  Study study = read_study_toml(contents.toml, contents.toml_file, catalogues, contents.description, changes);
+  const auto implied = contents.algorithms >= kImplyMotions ? ImpliedConstraints::added : ImpliedConstraints::left_out;
+  Study study = read_study_toml(contents.toml, contents.toml_file, catalogues, contents.description, changes, implied);
   if (const Refusal difference = text_against_record(study, contents))
     throw StorageError("the study's text and what is recorded of it disagree: " + *difference);
   study.seed = contents.seed;

@@ -14,7 +14,7 @@ namespace pkm {
 
 /// Version of the behaviour of optimisers and surveys: a study is continued only by a program of the same one. Raise it
 /// with every change that changes the evaluations that a seed leads to.
-inline constexpr std::int64_t kAlgorithms = 5;
+inline constexpr std::int64_t kAlgorithms = 6;
 
 struct ProgramVersion {
   std::string version, revision;

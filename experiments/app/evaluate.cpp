@@ -109,7 +109,8 @@ std::string verdict(const DesignProblem& problem, const DesignReport& report) {
   std::vector<std::string> broken;
   for (std::size_t i = 0; i < report.margins.size(); ++i)
     if (report.margins[i] < 0) broken.push_back(problem.margins()[i].name);
-  return "no: " + (report.status == Status::failed ? report.reason : join(broken) + " violated");
+  const std::string reason = report.reason.empty() ? "" : "; " + report.reason;
+  return "no: " + (report.status == Status::failed ? report.reason : join(broken) + " violated" + reason);
 }
 
 std::string evaluate(const Catalogues& catalogues, const Target& target, const EvaluateArguments& arguments,
@@ -157,7 +158,8 @@ std::string evaluate(const Catalogues& catalogues, const Target& target, const E
   tell("constraints", "constraints (margins: >= 0 holds)", problem->margins(), report.margins,
        [](const MarginInfo&, double margin) { return margin >= 0 ? "holds" : "violated"; });
   tell("reports", "reports", problem->reports(), report.reports, nothing);
-  if (!failed) with_team(arguments.threads, [&] { tell_sensitivities(*problem, report, arguments, out); });
+  if (report.reason.empty())
+    with_team(arguments.threads, [&] { tell_sensitivities(*problem, report, arguments, out); });
   out.json["feasible"] = report.status == Status::feasible;
   const NamedValues facts = target.mechanism->facts(report.parameters, problem->parts().plan.limits);
   out.json["facts"] = values_by_name(facts);

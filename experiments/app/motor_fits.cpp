@@ -48,7 +48,8 @@ void tell_motors(const Target& target, const std::string& mode, const Trajectory
   const DriveTrains& trains = *mechanism.drive_trains();
   const auto& joints = target.info().joints;
   const auto loads = loads_of(trains, trajectory);
-  std::vector<Row> rows = {{"", "does it", "reserve", "bounded by", "coupling index"}};
+  const bool follows = trajectory.summary.infeasible == 0;
+  std::vector<Row> rows = {{"", "does it", "reserve", "bounded by", "coupling index", "follows the motion"}};
   out.json["motors"] = Json::array();
   for (const Motor& motor : load_motors_toml(file)) {
     MotorFit worst;
@@ -67,12 +68,13 @@ void tell_motors(const Target& target, const std::string& mode, const Trajectory
     }
     const double coupling = coupling_with(motor, mechanism, target.parameters, mode, trajectory);
     rows.push_back({motor.name, worst.reserve >= 1 ? "yes" : "no", number(worst.reserve),
-                    worst.bounded_by + " of " + where, number(coupling)});
+                    worst.bounded_by + " of " + where, number(coupling), follows ? "yes" : "no"});
     out.json["motors"].push_back({{"name", motor.name},
                                   {"does_it", worst.reserve >= 1},
                                   {"reserve", worst.reserve},
                                   {"joints", reserves},
-                                  {"dci", coupling}});
+                                  {"dci", coupling},
+                                  {"follows_the_motion", follows}});
   }
   out.section("motors: what they can over what the motion asks, and the mean largest coupling index", rows);
 }

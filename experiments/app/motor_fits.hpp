@@ -8,7 +8,8 @@
 
 namespace pkm {
 
-/// Tells which motors do the motion at every joint, and their reserve.
+/// Prints which motors do the motion at every joint, their reserve, and whether the mechanism keeps its limits along
+/// the motion.
 /// @param file  with the table of motors
 void tell_motors(const Target& target, const std::string& mode, const Trajectory& trajectory, const std::string& file,
                  Printout& out);

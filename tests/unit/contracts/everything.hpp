@@ -26,6 +26,8 @@ inline Options some_options(const std::vector<OptionSpec>& specs, const Mechanis
       options.set(spec.name, NamedNumbers{{info.parameters[0].name, 0.7}, {info.parameters[1].name, -1.3}});
     if (spec.name == "expression") options.set(spec.name, expression);
     if (spec.name == "region") options.set(spec.name, std::string("task"));
+    if (spec.name == "motion") options.set(spec.name, std::string("swing"));
+    if (spec.name == "samples") options.set(spec.name, std::int64_t{5});
   }
   return options;
 }
@@ -92,7 +94,8 @@ inline DesignProblem everything(const std::shared_ptr<const Mechanism>& mechanis
     if (entry.pose_level() || entry.refusal(*mechanism)) continue;
     const Options options = some_options(entry.options(info), info, "1 - " + product);
     const std::vector<Region> regions = {task(info, centre)};
-    const EntryContext context{*mechanism, plan, options, regions};
+    const std::vector<NamedMotion> swing = motions(*mechanism);
+    const EntryContext context{*mechanism, plan, options, regions, swing};
     NamedQuantity margin;
     margin.name = entry.name;
     margin.quantity = entry.make(context);
