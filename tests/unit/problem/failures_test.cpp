@@ -64,7 +64,7 @@ TEST(Failures, ReasonsThatDifferInNumbersAreOne) {
 type = "3crr-r-cru"
 [variables]
 l_11 = { min = 0.01, max = 0.5 }
-rho_max = { min = 0.1, max = 0.5 }
+l_12 = { min = 0.01, max = 0.5 }
 [[motion]]
 name = "turn"
 follow = false
@@ -76,7 +76,7 @@ motion = "turn"
 [[stage]]
 optimiser = "ga"
 )");
-  const EvaluationTable table = evaluated(of, {{0.02, 0.4}, {0.03, 0.4}, {0.25, 0.4}, {0.04, 0.4}});
+  const EvaluationTable table = evaluated(of, {{0.02, 0.02}, {0.03, 0.03}, {0.17, 0.225}, {0.04, 0.04}});
   const Failures found = failures_in({&table}, of.problem.get());
   ASSERT_EQ(found.failed, 3u);
   ASSERT_EQ(found.reasons.size(), 1u);

@@ -165,7 +165,7 @@ std::string formula(const std::string& text) { return "expression\"\nexpression 
 
 TEST(Verdict, ObjectivesThatDoNotDependOnTheWorkspaceAreFound) {
   const std::string voxels = "[workspace]\nmethod = \"voxels\"\ncells = { x = 4, z = 4, theta = 4 }\n";
-  for (const std::string& method : {std::string(), voxels})
+  for (const std::string& method : {std::string("[workspace]\n"), voxels})
     for (const std::string text : {"a", "a + b", "3", "0", "a - a"}) {
       EXPECT_FALSE(verdict(study(method, formula(text)))) << method << text;
       EXPECT_FALSE(verdict(study(method + "limits = { h_min = 3 }\n", formula(text)))) << method << text;

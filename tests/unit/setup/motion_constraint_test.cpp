@@ -44,6 +44,7 @@ const std::string kStage = "[[stage]]\noptimiser = \"ga\"\n";
 std::string entry(const std::string& role, const std::string& type, const std::string& more) {
   return "[[" + role + "]]\ntype = \"" + type + "\"\n" + more + "\n";
 }
+const std::string kVolume = entry("objective", "workspace-volume", "");
 const std::string kForce = entry("objective", "peak-force", "motion = \"cycle\"");
 
 Study study(const std::string& entries, const std::string& of_motion = "") {
@@ -52,9 +53,10 @@ Study study(const std::string& entries, const std::string& of_motion = "") {
 std::vector<std::string> margins(const Study& of) { return names_of(of.problem->margins()); }
 
 TEST(MotionConstraint, StudiesHaveItForEveryMotionThatTheirEntriesName) {
-  EXPECT_THAT(margins(study(entry("objective", "workspace-volume", ""))), IsEmpty());
+  EXPECT_THAT(margins(study(kVolume)), IsEmpty());
   EXPECT_THAT(margins(study(kForce)), ElementsAre("motion-cycle"));
-  EXPECT_THAT(margins(study(entry("report", "peak-power", "motion = \"cycle\""))), ElementsAre("motion-cycle"));
+  EXPECT_THAT(margins(study(kVolume + entry("report", "peak-power", "motion = \"cycle\""))),
+              ElementsAre("motion-cycle"));
   const Study bounded =
       study(kForce + entry("constraint", "peak-power", "motion = \"cycle\"\nmax = 100\nsamples = 401"));
   EXPECT_THAT(margins(bounded), ElementsAre("peak-power", "motion-cycle"));
@@ -144,7 +146,7 @@ TEST(MotionConstraint, FinalDesignsAreCertifiedBetweenTheSamples) {
 
 /// A margin is negative where a sample of the trajectory leaves a limit, and there alone.
 TEST(MotionConstraint, AgreesWithTheTrajectory) {
-  const Study of = study(kForce, "[workspace]\nlimits = { s_min = 0.2, c_min = 0.1 }\n");
+  const Study of = study(kForce, "[workspace]\nlimits = { s_min = 0.01 }\n");
   const ProblemParts& parts = of.problem->parts();
   int kept = 0, left = 0;
   for (double l_11 = 0.12; l_11 <= 0.4; l_11 += 0.04)
@@ -164,13 +166,15 @@ TEST(MotionConstraint, AgreesWithTheTrajectory) {
 /// Of designs that cannot assemble along the motion, those that come nearer to it have a larger margin; they are
 /// rejected by it, not failed.
 TEST(MotionConstraint, OrdersDesignsThatDoNotReachTheMotion) {
-  const Study of = study(kForce + entry("constraint", "peak-power", "motion = \"cycle\"\nmax = 100"));
+  std::string text = kHead + kForce + entry("constraint", "peak-power", "motion = \"cycle\"\nmax = 100") + kStage;
+  text.insert(text.find("[variables]"), "parameters = { l_12 = 0.05 }\n");
+  const Study of = read_real(text);
   Scratch scratch;
   double before = -1e9;
-  for (const double l_11 : {0.10, 0.11, 0.12, 0.13}) {
+  for (const double l_11 : {0.05, 0.06, 0.07, 0.08}) {
     EvaluationTable table(of.problem->shape());
     table.extend(1);
-    table.design(0)[0] = l_11 / 2;
+    table.design(0)[0] = l_11;
     table.design(0)[1] = 0.4;
     of.problem->evaluate(table.design(0), scratch, table.slot(0));
     EXPECT_EQ(table.status[0], Status::rejected);
