@@ -346,8 +346,9 @@ TEST(CliTrajectory, SaysWhichMotorsDoTheMotion) {
   own.write(
       "m.toml",
       "[[motor]]\nname = \"M\"\npeak_torque = \"900 N mm\"\ncontinuous_torque = 1\nspeed = 100\nrotor_inertia = 0\n");
-  EXPECT_THAT(run(own.path() + "/m.toml").err,
-              HasSubstr("m.toml:3: motor[1].peak_torque: found 900 N mm; expected at least continuous_torque = 1 N m"));
+  EXPECT_THAT(
+      run(own.path() + "/m.toml").err,
+      HasSubstr("m.toml:3: motor[1].peak_torque: found \"900 N mm\"; expected at least continuous_torque = 1 N m"));
   own.write("m.toml", kOscillation);
   const auto bare = pkmopt({"trajectory", "3crr-r-cru", "--motion", "m.toml", "--motors", "m.toml"}, own.path());
   EXPECT_EQ(bare.exit_code, 2);
