@@ -67,9 +67,9 @@ void certify_motions(const ProblemParts& parts, const std::string& name, DesignR
     if (design.status != Status::feasible) return;
     const std::string begin = kAlong + along.name + " the " + name + " ";
     try {
-      const PosesCertificate found = parts.mechanism->bounds()->motion(
-          design.parameters, parts.plan.limits, along.mode, *along.motion,
-          {.most_boxes = kMotionBoxes, .stop = [] { return stop_requested(); }});
+      const PosesCertificate found =
+          parts.mechanism->bounds()->motion(design.parameters, parts.plan.limits, along.mode, *along.motion,
+                                            {.most_boxes = kMotionBoxes, .stop = [] { return stop_requested(); }});
       check_stop();
       const PosesVerdict& verdict = found.feasible;
       const std::string when = verdict.time ? "t = " + with_unit(*verdict.time, "s") : "";
