@@ -121,7 +121,7 @@ TEST(MotionSection, Messages) {
        "m.toml:2: points[2].time: the time follows from the peak acceleration; give one of them"},
       {points + "{ xx = 1, time = 1 }]",
        "m.toml:2: points[2].xx: found an unknown key; expected one of x, y, z, phi, wait, time, acceleration, "
-       "angular_acceleration; did you mean 'x'?"},
+       "angular_acceleration, speed, angular_speed; did you mean 'x'?"},
       {"type = \"formulas\"\nx = 1", "m.toml:1: duration: found nothing; expected a number > 0 s"},
       {"type = \"formulas\"\nduration = 1\nx = 1\ny = 1\nz = 1",
        "m.toml:1: phi: found nothing; expected a formula of the time t [s], such as \"0.1*sin(2*pi*t)\", or a number "
