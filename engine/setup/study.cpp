@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <new>
 
+#include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/verdict.hpp"
 #include "engine/setup/mechanism_file.hpp"
@@ -74,8 +75,13 @@ void warn_of_empty_workspace(Study& study) {
       design[parts.varies[v]] = parts.space.nearest(v, (parts.space[v].lower + parts.space[v].upper) / 2);
   }
   if (parts.mechanism->refuse(design)) return;
+  constexpr double kLongest = 1;  // s
+  const StopScope limit(kLongest);
   try {
     if (study.problem->workspace(design).volume > 0) return;
+  } catch (const Stopped&) {
+    if (limit.is_requested_outside()) throw;
+    return;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {

@@ -15,7 +15,7 @@ namespace pkm {
 struct RunCost {
   double plain = 0, with_derivatives = 0, final_steps = 0;
 
-  static constexpr double kLongest = 10;  ///< of an evaluation: measuring ends there
+  static constexpr double kLongest = 2;  ///< of an evaluation: measuring ends there
 };
 
 /// Measures it: an evaluation in the middle of the design space, and of the baseline, the longer one. Exact values that

@@ -60,8 +60,8 @@ STUDIES = {
 }
 
 # Differ from run to run: clocks, the machine, the study's text where the interval of checkpoints is part of it.
-UNREPEATED = {"seconds", "toml", "toml_file", "created", "updated", "machine", "program_version", "program_revision",
-              "notes", "reproducible"}
+UNREPEATED = {"seconds", "toml", "toml_file", "text_digest", "created", "updated", "machine", "program_version",
+              "program_revision", "notes", "reproducible"}
 
 
 def digest(path):

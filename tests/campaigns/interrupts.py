@@ -26,6 +26,7 @@ STOPS = os.path.join(ROOT, "tests/data/stops")
 MECHANISMS = os.path.join(ROOT, "experiments/mechanisms")
 LONGEST = 3  # s: later interrupts of a command without end show nothing new
 STOPPED = 3  # exit code
+GOUGH_LEGS = "left1=1.15,left2=1.38,left3=1.38,right1=1.43,right2=1.57,right3=1.42"  # m
 
 
 class Failed(Exception):
@@ -60,7 +61,7 @@ def commands():
                 endless=True),
         Command("certify, box", ["certify", gough, "--box", "x=-0.2:0.2,y=-0.2:0.2,z=0.8:1.2"], endless=True),
         Command("workspace", ["workspace", gough, "--cells", "x=100,y=100,z=100"], endless=True),
-        Command("forward", ["forward", gough, "--at", "x=0,y=0,z=1"]),
+        Command("forward", ["forward", gough, "--joints", GOUGH_LEGS]),
         Command("report", ["report", "file.h5", "--force", "--output", "page.html"], file="page.html"),
         Command("export", ["export", "file.h5", "--csv", "tables", "--force"]),
         Command("show", ["show", "file.h5"]),

@@ -47,7 +47,7 @@ TEST_F(SlowSteps, ExactValuesAreGivenUpAndTheResultIsThere) {
   EXPECT_EQ(found.state, StudyState::finished);
   ASSERT_TRUE(found.final && found.final->best && found.final->map);
   EXPECT_FALSE(found.final->best_exact);
-  EXPECT_NEAR(found.final->best->volume, 0.151095, 2e-6);
+  EXPECT_NEAR(found.final->best->volume, 0.2275, 1e-9);
   const std::string note = "no exact values of the best design: they take longer than 300 ms ([workspace] exact)";
   EXPECT_THAT(found.notes, ElementsAre(note));
   EXPECT_THAT(output_, HasSubstr("note: " + note));
@@ -87,13 +87,13 @@ TEST_F(SlowSteps, ResultsAreStoredBeforeExactValuesAndSignalsStopThese) {
     EXPECT_EQ(code, 3) << child.output();
     const StudyContents left = read("study.h5");
     EXPECT_EQ(left.state, StudyState::interrupted);
-    EXPECT_NEAR(left.final.value().best.value().volume, 0.151095, 2e-6);
+    EXPECT_NEAR(left.final.value().best.value().volume, 0.2275, 1e-9);
     fs::remove(path("study.h5"));
   }
   ChildProcess killed(command({"run", "study.toml"}), folder_);
   int code = 0;
   stop_in_final_step(killed, "study.h5", SIGKILL, code);
-  EXPECT_NEAR(read("study.h5").final.value().best.value().volume, 0.151095, 2e-6);
+  EXPECT_NEAR(read("study.h5").final.value().best.value().volume, 0.2275, 1e-9);
   const auto begin = Clock::now();
   EXPECT_EQ(run({"resume", "study.h5", "--time", "0.5 s"}), 3) << output_;
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 0.5 + 2 * kSoon);

@@ -46,10 +46,10 @@ std::array<S, kMargins> margins(const Geometry<S>& g, const Limits<S>& l, const 
   }
   m[kStroke] = min(min(limb.q[0], limb.q[2]), S(g.L0 - max(limb.q[1], limb.q[3])));
   S* const limit = &m[kFirstLimit];
-  limit[kAlphaMin] = min(alpha(limb, 0), alpha(limb, 1)) - asin(l.sin_alpha_min);               // eq 17
-  limit[kBetaMin] = min(lean(limb, 0), lean(limb, 1)) - asin(l.sin_beta_min);                   // eq 17
-  limit[kBetaMax] = atan2(l.sin_beta_max, l.cos_beta_max) - max(lean(limb, 0), lean(limb, 1));  // eq 20
-  limit[kHMin] = min(limb.h[0], limb.h[1]) - l.h_min;                                           // eq 19
+  limit[kAlphaMin] = min(alpha(limb, 0), alpha(limb, 1)) - atan2(l.sin_alpha_min, l.cos_alpha_min);  // eq 17
+  limit[kBetaMin] = min(lean(limb, 0), lean(limb, 1)) - atan2(l.sin_beta_min, l.cos_beta_min);       // eq 17
+  limit[kBetaMax] = atan2(l.sin_beta_max, l.cos_beta_max) - max(lean(limb, 0), lean(limb, 1));       // eq 20
+  limit[kHMin] = min(limb.h[0], limb.h[1]) - l.h_min;                                                // eq 19
   const S sum = beta(limb, 0, mode[0]) + beta(limb, 1, mode[1]);
   limit[kSinParMin] = magnitude(sincos(sum).sin) - l.sin_par_min;  // eq 15
   limit[kCosThetaMin] = cos_theta - l.cos_theta_min;

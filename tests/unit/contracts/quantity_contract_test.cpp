@@ -18,7 +18,7 @@ namespace {
 
 using test::best_plan;
 using test::nominal;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// A mechanism that can do nothing beyond being surveyed, with the parameters and coordinates of another.
 class Bare final : public Mechanism {

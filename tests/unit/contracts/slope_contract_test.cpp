@@ -85,7 +85,11 @@ TEST_P(SlopeContract, AreFiniteEverywhereAndZeroWithoutAWorkspace) {
     const DesignProblem problem =
         test::everything(GetParam(), p, k % 50 == 0 ? test::Of::inertia : test::Of::kinematics);
     const std::vector<double> slopes = problem.slopes(design, problem.parts().varies);
-    for (const double slope : slopes) ASSERT_TRUE(std::isfinite(slope));
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      const std::size_t row = i / (1 + design.size()), objectives = problem.objectives().size();
+      ASSERT_TRUE(std::isfinite(slopes[i]))
+          << (row < objectives ? problem.objectives()[row].name : problem.margins()[row - objectives].name);
+    }
     const bool none = test::survey(*GetParam(), design, p).volume == 0;
     ++(none ? empty : usable);
     if (none) {

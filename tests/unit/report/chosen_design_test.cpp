@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 Study study(const std::string& baseline = "[baseline]\na = 0.22\n") {
   const std::string text = "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.1, max = 0.3 }\n" + baseline +

@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// 2 x 3 x 4 cells; values count the cells.
 WorkspaceFields sample() {

@@ -13,7 +13,7 @@
 namespace pkm {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 struct Case {
   std::string fragments;  ///< as they stand: "a | b"

@@ -11,7 +11,7 @@ namespace pkm {
 namespace {
 
 using test::Folder;
-using testing::EndsWith;
+using ::testing::EndsWith;
 
 class ContainedReading : public testing::Test {
  protected:

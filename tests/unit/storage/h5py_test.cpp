@@ -15,7 +15,7 @@ namespace pkm {
 namespace {
 
 using test::bits;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class H5py : public testing::Test {
  protected:

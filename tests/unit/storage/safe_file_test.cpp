@@ -17,7 +17,7 @@ using test::Folder;
 using test::slurp;
 using test::spill;
 using test::storage_error;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 mode_t mode_of(const std::string& path) {
   struct stat status {};

@@ -15,7 +15,7 @@ using test::Folder;
 using test::slurp;
 using test::spill;
 using test::storage_error;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(StudyFileRefuses, MissingFile) {
   const Folder folder;

@@ -18,7 +18,7 @@ namespace {
 using test::Folder;
 using test::slurp;
 using test::storage_error;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 template <class T>
 bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {

@@ -10,7 +10,7 @@
 namespace pkm {
 namespace {
 
-Study study(const std::string& stages) {
+Study study_of_text(const std::string& stages) {
   return read_study_toml(
       "[mechanism]\ntype = \"4ppa-2par\"\n[variables]\na = { min = 0.2, max = 0.3 }\nb = { min = 0.8, max = 1.0 }\n"
       "[[objective]]\ntype = \"workspace-volume\"\n" +
@@ -22,7 +22,7 @@ const std::string kSolver = "[[stage]]\noptimiser = \"nlopt\"\nstart = \"none\"\
 
 TEST(TimeLeft, CountsLaterStagesAndFinalSteps) {
   const RunCost cost{.plain = 0.01, .with_derivatives = 0.1, .final_steps = 7};
-  const Study s = study(kSearch + kSolver);
+  const Study s = study_of_text(kSearch + kSolver);
   const std::int64_t limit = s.stages[1].optimiser->evaluation_limit(*s.problem);
   TimeLeft left(s, cost, 1);
   EXPECT_FALSE(left.after(0, 990, 10, 0.1));  // the rate of the first moments says nothing
@@ -32,7 +32,7 @@ TEST(TimeLeft, CountsLaterStagesAndFinalSteps) {
 }
 
 TEST(TimeLeft, IsWithinAFactorOfTwoWhereEvaluationsGetSlower) {
-  TimeLeft left(study(kSearch), {.plain = 1e-3, .with_derivatives = 0, .final_steps = 3}, 1);
+  TimeLeft left(study_of_text(kSearch), {.plain = 1e-3, .with_derivatives = 0, .final_steps = 3}, 1);
   double seconds = 0;
   std::vector<double> at(1001);
   for (int i = 1; i <= 1000; ++i) at[static_cast<std::size_t>(i)] = seconds += i < 300 ? 0.01 : 0.018;
@@ -49,7 +49,7 @@ TEST(TimeLeft, IsWithinAFactorOfTwoWhereEvaluationsGetSlower) {
 
 TEST(TimeLeft, OfASolverNeverGrows) {
   const RunCost cost{.plain = 1e-3, .with_derivatives = 1e-3, .final_steps = 0.1};
-  TimeLeft left(study(kSolver), cost, 1);
+  TimeLeft left(study_of_text(kSolver), cost, 1);
   double seconds = 0, last = 1e30;
   for (int made = 1; made <= 300; ++made) {
     seconds += made < 120 ? 0.02 : 0.06;  // it gets slower
@@ -62,7 +62,7 @@ TEST(TimeLeft, OfASolverNeverGrows) {
 }
 
 TEST(TimeLeft, DoesNotCountWhatIsReplayed) {
-  TimeLeft left(study(kSearch), {}, 1);
+  TimeLeft left(study_of_text(kSearch), {}, 1);
   for (int i = 1; i <= 50; ++i) EXPECT_FALSE(left.after(0, 1000 - 10 * i, 0, 0.1 * i));  // 5 s of replay
   left.after(0, 490, 10, 6);
   const auto found = left.after(0, 480, 20, 7);

@@ -6,7 +6,8 @@
 namespace pkm::described {
 namespace {
 
-constexpr int kMostGuesses = 18;  // then it is halved
+constexpr int kMostGuesses = 18;           // then it is halved
+constexpr std::size_t kMostChanged = 100;  // keys, and marks of them: pairs are many, and bisection is as good then
 
 }  // namespace
 
@@ -24,15 +25,22 @@ void ChangeGuess::start(bool go_on) {
 
 /// What the two sides do not have in common.
 void ChangeGuess::compare() {
-  const auto count = [](const Marks& marks, std::uint64_t key) {
-    return std::ranges::count_if(marks, [&](const Mark& mark) { return mark.bounds && mark.key == key; });
+  for (std::size_t i = 0; i < 2; ++i) {
+    keys_[i].clear();
+    for (const Mark& mark : sides_[i].marks)
+      if (mark.bounds) keys_[i].push_back(mark.key);
+    std::ranges::sort(keys_[i]);
+  }
+  const auto count = [&](std::size_t side, std::uint64_t key) {
+    return std::ranges::equal_range(keys_[side], key).size();
   };
   changed_.clear();
   for (const Side& side : sides_)
     for (const Mark& mark : side.marks)
-      if (mark.bounds && std::ranges::find(changed_, mark.key) == changed_.end() &&
-          count(sides_[0].marks, mark.key) != count(sides_[1].marks, mark.key))
+      if (mark.bounds && count(0, mark.key) != count(1, mark.key) && !has_changed(mark)) {
         changed_.push_back(mark.key);
+        if (changed_.size() > kMostChanged) return;
+      }
 }
 
 bool ChangeGuess::has_changed(const Mark& mark) const {
@@ -52,6 +60,13 @@ bool ChangeGuess::take(bool is_upper, Structure structure, const Marks& marks) {
     compare();
     for (Side& each : sides_) each.count = 0;
   }
+  if (changed_.size() > kMostChanged) return false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    changed_marks_[i].clear();
+    for (const Mark& mark : sides_[i].marks)
+      if (has_changed(mark)) changed_marks_[i].push_back(mark);
+    if (changed_marks_[i].size() > kMostChanged) return false;
+  }
   return true;
 }
 
@@ -62,18 +77,18 @@ void ChangeGuess::see_size(double at, bool is_upper, double size) {
 }
 
 /// The least distance of two of the marks that the other side has not. Of two ends it has a sign, wherever they are.
-double ChangeGuess::distance_of_two(const Marks& marks) {
+double ChangeGuess::distance_of_two() {
+  const Marks& marks = changed_marks_[is_upper_];
   const bool are_two = changed_.size() == 2;
   double least = kUnknown, size = least;
   for (std::size_t i = 0; i < marks.size(); ++i) {
     const Mark& x = marks[i];
-    if (!has_changed(x)) continue;
     for (std::size_t j = i + 1; j < marks.size(); ++j) {
       const Mark& y = marks[j];
       const bool bound = x.bounds && y.bounds, like_root = x.of == y.of;
       const bool may_meet =
           go_on_ ? like_root ? bound : x.key != y.key && (bound || are_two) : !like_root || x.key == y.key;
-      if (!may_meet || !has_changed(y)) continue;
+      if (!may_meet) continue;
       const double distance = std::hypot(x.t - y.t, x.s - y.s);
       if (!(distance > 0 && distance < least)) continue;
       least = distance;

@@ -32,10 +32,10 @@ class ChangeGuess {
   template <class Distance>
   void see(double at, bool is_upper, Structure structure, const Marks& marks, const Distance& distance) {
     if (!take(is_upper, structure, marks)) return;
-    double size = distance_of_two(marks);
-    for (const Mark& mark : marks)
-      for (const Mark& other : sides_[!is_upper].marks)
-        if (mark.bounds && has_changed(mark) && has_changed(other)) size = nearer(size, distance(mark, other));
+    double size = distance_of_two();
+    for (const Mark& mark : changed_marks_[is_upper])
+      for (const Mark& other : changed_marks_[!is_upper])
+        if (mark.bounds) size = nearer(size, distance(mark, other));
     if (size < kUnknown) add(sides_[is_upper], {at, size});
   }
   /// What has one sign on the lower side and the other on the upper one.
@@ -60,13 +60,15 @@ class ChangeGuess {
   bool take(bool is_upper, Structure structure, const Marks& marks);
   void compare();
   bool has_changed(const Mark& mark) const;
-  double distance_of_two(const Marks& marks);
+  double distance_of_two();
   double nearer(double size, double other);
   void add(Side& side, Point point);
   std::optional<double> zero_between(double low, double high, bool is_upper);
 
   std::array<Side, 2> sides_;
-  std::vector<std::uint64_t> changed_;  ///< keys that one side has and the other has not, or not as often
+  std::vector<std::uint64_t> changed_;              ///< keys that one side has and the other has not, or not as often
+  std::array<Marks, 2> changed_marks_;              ///< of the sides: those with such keys
+  std::array<std::vector<std::uint64_t>, 2> keys_;  ///< of the sides, in order
   bool go_on_ = false, is_root_ = false, is_signed_ = false, is_upper_ = false;
   std::optional<double> last_;  ///< guess
   double leap_ = 0;             ///< away from it

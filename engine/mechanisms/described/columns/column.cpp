@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/core/stop.hpp"
 #include "engine/math/hash.hpp"
 #include "engine/mechanisms/described/columns/polynomial.hpp"
 #include "engine/mechanisms/described/columns/section_motion.hpp"
@@ -130,10 +131,12 @@ void Column::settle(std::span<const double> registers, double tie, ColumnRoom& r
     } else {
       ++i;
     }
-  for (ColumnRoom::Piece& piece : pieces)
+  for (ColumnRoom::Piece& piece : pieces) {
+    if (is_long(room)) check_stop();
     for (auto* const end : {&piece.lower, &piece.upper})
       for (const auto& other : room.ends)
         if (other.second < end->second && are_one(*end, other)) *end = other;
+  }
 }
 
 double Column::measure(std::span<double> registers, ColumnRoom& room) const {

@@ -27,6 +27,9 @@ struct ColumnRoom {
   long most_halvings = std::numeric_limits<long>::max();  ///< then TooManyHalvings
 };
 
+/// Whether a column has so many ends that it takes much longer than a microsecond.
+inline bool is_long(const ColumnRoom& room) { return room.ends.size() > 64; }
+
 /// Thrown by measure().
 struct TooManyHalvings {};
 

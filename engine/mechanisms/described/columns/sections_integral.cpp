@@ -72,7 +72,7 @@ Slice SectionsIntegral::inside(std::size_t level, IntegralRoom& room) const {
     if (!is_satisfied(room.registers[plain[i]])) return {.broken = static_cast<std::uint32_t>(i + 1)};
   if (level < levels()) return integrate(level, room);
   constexpr long kColumnsPerCheck = 16;  // a column takes a microsecond
-  if (!ends_in_lines() || room.sections % kColumnsPerCheck == 0) check_stop();
+  if (!ends_in_lines() || room.sections % kColumnsPerCheck == 0 || is_long(room.column)) check_stop();
   ++room.sections;
   const auto measured = [&](const auto& innermost, auto& own) {
     const double measure = innermost.measure(room.registers, own);
