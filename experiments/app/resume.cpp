@@ -34,7 +34,7 @@ void resume(const ResumeArguments& arguments, Session& session) {
   }
   if (!arguments.common.quiet) {
     const StopScope stop([] { return StopRequest::signal() != 0; });
-    options.cost = measured_cost(study_of(held.contents, session.catalogues), session);
+    options.cost = measured_cost(study_to_continue(held.contents, arguments.file, session.catalogues), session);
   }
   const auto progress = make_progress(arguments.common);
   const RunEnd end = end_of_run([&] { return resume_study(held, session.catalogues, extension, options, *progress); });

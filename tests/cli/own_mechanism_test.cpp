@@ -29,8 +29,7 @@ TEST(OwnMechanism, WithMoreDrivesThanCoordinatesHasNoForcesOfItsDrives) {
     std::string lacks;
   } cases[] = {{{"coupling", "three-ropes"}, "coupling indices"},
                {{"dynamics", "three-ropes", "--at", at}, "dynamics"},
-               {{"simulate", "three-ropes", "--at", at, "--duration", "1s", "--step", "1ms"}, "dynamics"},
-               {{"trajectory", "three-ropes", "--motion", "circle.toml"}, "forces of its drives"}};
+               {{"simulate", "three-ropes", "--at", at, "--duration", "1s", "--step", "1ms"}, "dynamics"}};
   for (const auto& [arguments, lacks] : cases) {
     SCOPED_TRACE(arguments[0]);
     const auto [exit_code, said] = run(arguments);
