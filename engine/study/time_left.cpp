@@ -51,8 +51,8 @@ double seconds_of_one(const Study& study, Detail detail) {
   return longest;
 }
 
-/// Exact values of the final designs [s].
-double seconds_of_exact(const Study& study) {
+/// Exact values of the final designs [s]; none where they take long.
+std::optional<double> seconds_of_exact(const Study& study) {
   constexpr double kTried = 0.3;  // s
   const double designs = study.baseline ? 2 : 1;
   const EvaluationTable table = samples_of(study, Detail::complete);
@@ -66,7 +66,7 @@ double seconds_of_exact(const Study& study) {
     return std::min(study.exact_seconds, prepared + designs * (since(begin) - prepared));
   } catch (const Stopped&) {
     if (limit.is_requested_outside()) throw;
-    return study.exact_seconds;
+    return {};
   }
 }
 
@@ -82,7 +82,10 @@ RunCost cost_of_run(const Study& study) {
   if (has(Detail::enough) || has(Detail::complete) || cost.with_derivatives == 0) cost.plain = complete;
   const double designs = 1.0 + (study.baseline ? 1 : 0) + (study.round ? 1 : 0);
   cost.final_steps = (designs + 1) * complete;  // the map is about another one
-  if (has_exact_step(study)) cost.final_steps += seconds_of_exact(study);
+  if (has_exact_step(study)) {
+    const std::optional<double> exact = seconds_of_exact(study);
+    (exact ? cost.final_steps : cost.exact_limit) += exact.value_or(study.exact_seconds);
+  }
   return cost;
 }
 
@@ -102,7 +105,8 @@ double seconds_of_stages(const Study& study, const RunCost& cost, int threads) {
   });
 }
 
-TimeLeft::TimeLeft(const Study& study, const RunCost& cost, int threads) : final_steps_(cost.final_steps) {
+TimeLeft::TimeLeft(const Study& study, const RunCost& cost, int threads)
+    : final_steps_(cost.final_steps + cost.exact_limit) {
   for (const Stage& stage : study.stages) {
     stages_.push_back(seconds_of_stage(stage, study, cost, threads));
     is_bound_.push_back(stage.entry->capabilities(stage.options).starts);

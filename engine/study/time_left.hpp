@@ -14,12 +14,13 @@ namespace pkm {
 /// What a study's evaluations take, each on one thread, and its final steps [s]; 0: unknown.
 struct RunCost {
   double plain = 0, with_derivatives = 0, final_steps = 0;
+  double exact_limit = 0;  ///< s, of exact values of the final designs that were not measured to their end; 0: were
 
   static constexpr double kLongest = 2;  ///< of an evaluation: measuring ends there
 };
 
 /// Measures it: an evaluation in the middle of the design space, and of the baseline, the longer one. Exact values that
-/// take longer than some tenths of a second are assumed to take as long as they may.
+/// take longer than some tenths of a second are only known by their limit.
 RunCost cost_of_run(const Study& study);
 
 /// What the stages of a study take at most, by their limits of evaluations [s].
@@ -45,7 +46,7 @@ class TimeLeft {
 
   std::vector<double> stages_;   ///< s, of whole stages
   std::vector<bool> is_bound_;   ///< of stages: their limits are seldom reached
-  double final_steps_;           ///< s
+  double final_steps_;           ///< s, exact values that were not measured at their limit
   std::size_t stage_ = 0;        ///< at work
   Sample begin_ = {0, 0};        ///< of the stage at work
   std::deque<Sample> samples_;   ///< its last ones

@@ -36,7 +36,11 @@ void print_estimate(const Study& study, const RunCost& cost, int seeds, int thre
   if (seeds > 1) std::cout << ", for each of " << seeds << " seeds";
   std::cout << ", together " << (more ? "more than " : "about ") << duration_text(together * seeds) << " on "
             << (ranks > 1 ? std::to_string(ranks) + " ranks x " : "") << threads_of_rank
-            << (threads_of_rank == 1 ? " thread" : " threads") << std::endl;  // at once, also into a pipe
+            << (threads_of_rank == 1 ? " thread" : " threads")
+            << (cost.exact_limit > 0
+                    ? ", then exact values of the final designs in at most " + duration_text(cost.exact_limit)
+                    : "")
+            << std::endl;  // at once, also into a pipe
 }
 
 }  // namespace pkm

@@ -43,6 +43,7 @@ class SlowSteps : public StudyProgram {
 TEST_F(SlowSteps, ExactValuesAreGivenUpAndTheResultIsThere) {
   set_exact("\"0.3 s\"");
   ASSERT_EQ(run({"run", "study.toml"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr(", then exact values of the final designs in at most 300 ms\n"));
   const StudyContents found = read("study.h5");
   EXPECT_EQ(found.state, StudyState::finished);
   ASSERT_TRUE(found.final && found.final->best && found.final->map);

@@ -32,7 +32,8 @@ void ChangeGuess::compare() {
     std::ranges::sort(keys_[i]);
   }
   const auto count = [&](std::size_t side, std::uint64_t key) {
-    return std::ranges::equal_range(keys_[side], key).size();
+    const auto [first, last] = std::equal_range(keys_[side].begin(), keys_[side].end(), key);
+    return last - first;
   };
   changed_.clear();
   for (const Side& side : sides_)

@@ -8,11 +8,12 @@
 namespace pkm::described {
 namespace {
 
-constexpr double kNear = 1e-15;         // of the range: how well breaks are known
-constexpr double kNearInLines = 1e-11;  // the same where sections are lines: measures go on where structures change
-constexpr double kFar = 1e-3;           // of the range: slices that are further from a break may differ in small parts
-constexpr double kNextTo = 1e-8;        // of the range: breaks that are one
-constexpr double kCloseBy = 64;         // steps from a break to the next one: where rounding may decide
+// Of the range: how well breaks are known. Slices grow like roots from some breaks, and a derivative lacks what a slice
+// measures at the break: 1e-15 of the range is 3e-8 of the slice.
+constexpr double kNear = 1e-15;
+constexpr double kFar = 1e-3;     // of the range: slices that are further from a break may differ in small parts
+constexpr double kNextTo = 1e-8;  // of the range: breaks that are one
+constexpr double kCloseBy = 64;   // steps from a break to the next one: where rounding may decide
 
 /// Takes two breaks that are next to each other as one: where conics touch, labels change once more a little later,
 /// when rounding no longer hides that they cross. It is at the one where the measure begins to behave like a root,
@@ -95,7 +96,7 @@ void SectionsIntegral::find_marks(std::size_t level, Marks& marks, const Integra
 
 void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, bool guesses,
                                 IntegralRoom& room) const {
-  const double range = whole + std::fabs(low.at), near = (ends_in_lines() ? kNearInLines : kNear) * range;
+  const double range = whole + std::fabs(low.at), near = kNear * range;
   IntegralRoom::Level& own = room.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
              are_sections = is_innermost && !ends_in_lines();
@@ -140,9 +141,8 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     own.guess.start(are_columns);
     stays = {};
   };
-  while (high.at - low.at > near || (jumps(low, high, level, room) && high.at - low.at > kNear * range)) {
-    const double wanted = high.at - low.at > near ? near : kNear * range;
-    const double at = guesses ? own.guess.next(low.at, high.at, wanted) : 0.5 * (low.at + high.at);
+  while (high.at - low.at > near) {
+    const double at = guesses ? own.guess.next(low.at, high.at, near) : 0.5 * (low.at + high.at);
     if (at <= low.at || at >= high.at) break;
     if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;
     const Slice next = look(at);
