@@ -55,8 +55,8 @@ Dual4 SectionsIntegral::moving_end(std::size_t level, const SlicePart& part, boo
   if (may_jump(level, part, upper, room)) {  // by the mean over the points that come or go
     Components<4> motion;
     double all = 0;
-    for (const double inwards : {-1.0, 1.0})
-      visit_lost(level, at, inwards, room, [&](double weight, double slope) {
+    for (const double side : {-1.0, 1.0})
+      visit_lost(level, part, upper, side, room, [&](double weight, double slope) {
         motion = motion + motion_of(room.own, room.moving) * (-weight / slope);
         all += weight;
       });

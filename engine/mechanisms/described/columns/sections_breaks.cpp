@@ -8,9 +8,10 @@
 namespace pkm::described {
 namespace {
 
-// Of the range: how well breaks are known. Slices grow like roots from some breaks, and a derivative lacks what a slice
-// measures at the break: 1e-15 of the range is 3e-8 of the slice.
-constexpr double kNear = 1e-15;
+// Of the range: how well breaks are known. Slices grow like roots from some breaks, and derivatives lack what a slice
+// measures at the break: 3e-8 of it at 1e-15 of the range. Volumes lack the power 3/2: where sections are lines, 1e-11
+// will do for them.
+constexpr double kNear = 1e-15, kNearInLines = 1e-11;
 constexpr double kFar = 1e-3;     // of the range: slices that are further from a break may differ in small parts
 constexpr double kNextTo = 1e-8;  // of the range: breaks that are one
 constexpr double kCloseBy = 64;   // steps from a break to the next one: where rounding may decide
@@ -96,7 +97,7 @@ void SectionsIntegral::find_marks(std::size_t level, Marks& marks, const Integra
 
 void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, bool guesses,
                                 IntegralRoom& room) const {
-  const double range = whole + std::fabs(low.at), near = kNear * range;
+  const double range = whole + std::fabs(low.at);
   IntegralRoom::Level& own = room.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
              are_sections = is_innermost && !ends_in_lines();
@@ -141,7 +142,10 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     own.guess.start(are_columns);
     stays = {};
   };
-  while (high.at - low.at > near) {
+  const bool is_near_enough = ends_in_lines() && !room.for_slopes;
+  while (true) {
+    const double near = (is_near_enough && !jumps(low, high, level, room) ? kNearInLines : kNear) * range;
+    if (!(high.at - low.at > near)) break;
     const double at = guesses ? own.guess.next(low.at, high.at, near) : 0.5 * (low.at + high.at);
     if (at <= low.at || at >= high.at) break;
     if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;

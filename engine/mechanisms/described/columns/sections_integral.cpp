@@ -38,6 +38,17 @@ SectionsIntegral::SectionsIntegral(SectionPlan plan, double tolerance)
 }
 
 Integral<double> SectionsIntegral::measure(std::span<const double> inputs, IntegralRoom& room, long most) const {
+  room.for_slopes = room.keeps = false;
+  return start(inputs, room, most);
+}
+
+Integral<double> SectionsIntegral::measure_for_slopes(std::span<const double> inputs, IntegralRoom& room) const {
+  room.for_slopes = true;
+  room.keeps = levels() == 2;
+  return start(inputs, room, 0);
+}
+
+Integral<double> SectionsIntegral::start(std::span<const double> inputs, IntegralRoom& room, long most) const {
   const graph::Program& program = plan().program;
   room.registers.resize(program.registers());
   room.levels.resize(levels() + 1);
@@ -51,13 +62,6 @@ Integral<double> SectionsIntegral::measure(std::span<const double> inputs, Integ
   const Slice all = inside(0, room);
   room.measured = true;
   return {all.measure, all.error, room.sections};
-}
-
-Integral<double> SectionsIntegral::measure_for_slopes(std::span<const double> inputs, IntegralRoom& room) const {
-  room.keeps = levels() == 2;
-  const Integral<double> found = measure(inputs, room);
-  room.keeps = false;
-  return found;
 }
 
 void SectionsIntegral::set(std::size_t level, double at, IntegralRoom& room) const {

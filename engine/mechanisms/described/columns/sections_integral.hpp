@@ -88,7 +88,7 @@ struct IntegralRoom {
   bool measured = false;     ///< then what is looked at changes nothing
   /// Parts of the coordinate within the outermost one at its nodes, where derivatives will be asked for.
   std::vector<std::vector<SlicePart>> kept;
-  bool keeps = false;
+  bool for_slopes = false, keeps = false;
   std::unique_ptr<IntegralRoom> other;  ///< of the other side of a break
   long sections = 0;
   long most = 0;  ///< sections, after which what is not known counts as error
@@ -105,9 +105,9 @@ class SectionsIntegral {
   /// @param inputs  of the graph, with held coordinates
   /// @param most    sections, after which what is not known counts as error; 0: more than are usually of use
   Integral<double> measure(std::span<const double> inputs, IntegralRoom& room, long most = 0) const;
-  /// The same, and what makes add_slopes() faster.
+  /// The same with breaks that are known well enough for derivatives, and with what makes add_slopes() faster.
   Integral<double> measure_for_slopes(std::span<const double> inputs, IntegralRoom& room) const;
-  /// Adds derivatives of measure(), after it, by the graph's inputs.
+  /// Adds derivatives of the measure, after measure_for_slopes(), by the graph's inputs.
   void add_slopes(std::span<double> by_input, IntegralRoom& room) const;
   /// Calls visit(place of the outer coordinates, v, z, weight) with nodes inside the columns, after measure(). S is
   /// double or Dual4: nodes move along with their columns, so that sums over them have derivatives.
@@ -124,6 +124,7 @@ class SectionsIntegral {
 
   std::size_t levels() const { return plan().order.outer.size(); }
   bool ends_in_lines() const { return std::holds_alternative<Column>(innermost_); }
+  Integral<double> start(std::span<const double> inputs, IntegralRoom& room, long most) const;
   void set(std::size_t level, double at, IntegralRoom& room) const;
   /// With the coordinates before `level` set.
   Slice inside(std::size_t level, IntegralRoom& room) const;
@@ -162,9 +163,10 @@ class SectionsIntegral {
   /// the coordinate; room.own: with the registers.
   using LostVisitor = std::function<void(double, double)>;
   static bool may_jump(std::size_t level, const SlicePart& part, bool upper, const IntegralRoom& room);
-  /// Visits quadrature nodes in what is feasible on one side of a break alone, if the measure jumps there.
-  /// @param inwards  1 or -1: on which side
-  void visit_lost(std::size_t level, double at, double inwards, IntegralRoom& room, const LostVisitor& visit) const;
+  /// Visits quadrature nodes in what is feasible on one side of an end of a part alone, if the measure jumps there.
+  /// @param side  1: above the end, -1: below it
+  void visit_lost(std::size_t level, const SlicePart& part, bool upper, double side, IntegralRoom& room,
+                  const LostVisitor& visit) const;
   void visit_lost(std::size_t level, double weight, bool in_is_empty, bool out_is_empty, const Lost& lost) const;
   void visit_columns(const std::vector<std::array<double, 2>>& columns, double v, double weight,
                      const Lost& lost) const;

@@ -54,6 +54,11 @@ std::vector<Piece<double>> divided(const std::vector<Piece<double>>& pieces, std
   return all;
 }
 
+/// The measure just above an end of a part less that just below it.
+double step_at(const SlicePart& part, bool upper) {
+  return upper ? part.beyond_upper - part.above.measure : part.below.measure - part.beyond_lower;
+}
+
 }  // namespace
 
 /// The points that are feasible on the side `in` of a break and infeasible on the side `out`.
@@ -65,12 +70,10 @@ struct SectionsIntegral::Lost {
 
 bool SectionsIntegral::may_jump(std::size_t level, const SlicePart& part, bool upper, const IntegralRoom& room) {
   if ((upper ? part.upper : part.lower) != kChange) return false;
-  const double inside = (upper ? part.above : part.below).measure,
-               beyond = upper ? part.beyond_upper : part.beyond_lower;
-  return std::fabs(inside - beyond) > kJump * room.levels[level].greatest;
+  return std::fabs(step_at(part, upper)) > kJump * room.levels[level].greatest;
 }
 
-void SectionsIntegral::visit_lost(std::size_t level, double at, double inwards, IntegralRoom& room,
+void SectionsIntegral::visit_lost(std::size_t level, const SlicePart& part, bool upper, double side, IntegralRoom& room,
                                   const LostVisitor& visit) const {
   if (!room.other) room.other = std::make_unique<IntegralRoom>();
   IntegralRoom& out = *room.other;
@@ -81,12 +84,14 @@ void SectionsIntegral::visit_lost(std::size_t level, double at, double inwards, 
     out.levels[i].seen_count = 0;
   }
   out.measured = true;
+  out.for_slopes = room.for_slopes;
   out.has_hints = room.has_hints;
   if (room.has_hints) out.search = room.search;
   out.sections = 0;
   out.most = room.most;
   const auto [from, to] = plan().range[level];
-  const double step = inwards * kBeside * (room.registers[to] - room.registers[from]);
+  const double at = upper ? part.piece.upper : part.piece.lower;
+  const double step = side * kBeside * (room.registers[to] - room.registers[from]);
   const double greatest = room.levels[level].greatest;
   std::array<Slice, 2> inside, outside;
   std::array<double, 2> lost{};
@@ -101,7 +106,10 @@ void SectionsIntegral::visit_lost(std::size_t level, double at, double inwards, 
   // What grows like a root from the break is no jump: lost = jump + c sqrt(distance).
   const double root = std::sqrt(kFarther);
   const bool like_root = std::fabs(lost[1] - lost[0]) > kJump * greatest;
-  if (std::fabs(like_root ? (root * lost[0] - lost[1]) / (root - 1) : lost[0]) <= kNegligible * greatest) return;
+  const double jump = like_root ? (root * lost[0] - lost[1]) / (root - 1) : lost[0];
+  if (std::fabs(jump) <= kNegligible * greatest) return;
+  // Next to another break, the root may begin elsewhere; a jump is there right beside the break, too.
+  if (!(side * step_at(part, upper) / jump > 0.5)) return;
   const Lost set{level, room, out, visit};
   visit_lost(level + 1, like_root ? root / (root - 1) : 1, inside[0].hash == 0, outside[0].hash == 0, set);
   if (!like_root) return;

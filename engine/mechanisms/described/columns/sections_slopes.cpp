@@ -45,7 +45,7 @@ void SectionsIntegral::add_side(std::size_t level, const SlicePart& part, bool u
   const double at = upper ? part.piece.upper : part.piece.lower, sign = upper ? factor : -factor;
   if (closing == kChange) {
     if (may_jump(level, part, upper, room))
-      visit_lost(level, at, upper ? -1 : 1, room, [&](double weight, double slope) {
+      visit_lost(level, part, upper, upper ? -1 : 1, room, [&](double weight, double slope) {
         for (std::size_t i = 0; i < room.own.size(); ++i) room.adjoints[i] -= sign * weight / slope * room.own[i];
       });
     return;
