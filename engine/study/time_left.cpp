@@ -83,8 +83,10 @@ RunCost cost_of_run(const Study& study) {
   const double designs = 1.0 + (study.baseline ? 1 : 0) + (study.round ? 1 : 0);
   cost.final_steps = (designs + 1) * complete;  // the map is about another one
   if (has_exact_step(study)) {
-    const std::optional<double> exact = seconds_of_exact(study);
-    (exact ? cost.final_steps : cost.exact_limit) += exact.value_or(study.exact_seconds);
+    if (const std::optional<double> exact = seconds_of_exact(study))
+      cost.final_steps += *exact;
+    else
+      cost.exact_limit = study.exact_seconds;
   }
   return cost;
 }

@@ -97,7 +97,8 @@ void SectionsIntegral::find_marks(std::size_t level, Marks& marks, const Integra
 
 void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, double whole, bool guesses,
                                 IntegralRoom& room) const {
-  const double range = whole + std::fabs(low.at);
+  const double range = whole + std::fabs(low.at),
+               near = (ends_in_lines() && !room.for_slopes ? kNearInLines : kNear) * range;
   IntegralRoom::Level& own = room.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
              are_sections = is_innermost && !ends_in_lines();
@@ -142,11 +143,9 @@ void SectionsIntegral::close_in(std::size_t level, Slice& low, Slice& high, doub
     own.guess.start(are_columns);
     stays = {};
   };
-  const bool is_near_enough = ends_in_lines() && !room.for_slopes;
-  while (true) {
-    const double near = (is_near_enough && !jumps(low, high, level, room) ? kNearInLines : kNear) * range;
-    if (!(high.at - low.at > near)) break;
-    const double at = guesses ? own.guess.next(low.at, high.at, near) : 0.5 * (low.at + high.at);
+  while (high.at - low.at > near || (jumps(low, high, level, room) && high.at - low.at > kNear * range)) {
+    const double wanted = high.at - low.at > near ? near : kNear * range;
+    const double at = guesses ? own.guess.next(low.at, high.at, wanted) : 0.5 * (low.at + high.at);
     if (at <= low.at || at >= high.at) break;
     if (level == 0) room.is_scanning = high.at - low.at > kFar * whole;
     const Slice next = look(at);

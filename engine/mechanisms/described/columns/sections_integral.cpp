@@ -38,17 +38,16 @@ SectionsIntegral::SectionsIntegral(SectionPlan plan, double tolerance)
 }
 
 Integral<double> SectionsIntegral::measure(std::span<const double> inputs, IntegralRoom& room, long most) const {
-  room.for_slopes = room.keeps = false;
-  return start(inputs, room, most);
+  room.for_slopes = false;
+  return measure_all(inputs, room, most);
 }
 
 Integral<double> SectionsIntegral::measure_for_slopes(std::span<const double> inputs, IntegralRoom& room) const {
   room.for_slopes = true;
-  room.keeps = levels() == 2;
-  return start(inputs, room, 0);
+  return measure_all(inputs, room, 0);
 }
 
-Integral<double> SectionsIntegral::start(std::span<const double> inputs, IntegralRoom& room, long most) const {
+Integral<double> SectionsIntegral::measure_all(std::span<const double> inputs, IntegralRoom& room, long most) const {
   const graph::Program& program = plan().program;
   room.registers.resize(program.registers());
   room.levels.resize(levels() + 1);
@@ -206,7 +205,7 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
     jacobians[i] = jacobian;
   }
   std::array<Slice, NestedRule::kNodes> slices;
-  if (room.keeps && level == 0) {
+  if (room.for_slopes && level == 0 && levels() == 2) {
     part.kept = room.kept.size();
     for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
       slices[i] = slice(level, part.at[i], room);

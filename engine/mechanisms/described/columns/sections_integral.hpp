@@ -86,9 +86,9 @@ struct IntegralRoom {
   bool has_hints = false;    ///< boxes of the search tell the inner coordinates where something may be
   bool is_scanning = false;  ///< the outermost coordinate is looked at first
   bool measured = false;     ///< then what is looked at changes nothing
-  /// Parts of the coordinate within the outermost one at its nodes, where derivatives will be asked for.
+  bool for_slopes = false;   ///< derivatives will be asked for
+  /// Then, where there are two outer coordinates: parts of the inner one at the nodes of the outermost one.
   std::vector<std::vector<SlicePart>> kept;
-  bool for_slopes = false, keeps = false;
   std::unique_ptr<IntegralRoom> other;  ///< of the other side of a break
   long sections = 0;
   long most = 0;  ///< sections, after which what is not known counts as error
@@ -124,7 +124,7 @@ class SectionsIntegral {
 
   std::size_t levels() const { return plan().order.outer.size(); }
   bool ends_in_lines() const { return std::holds_alternative<Column>(innermost_); }
-  Integral<double> start(std::span<const double> inputs, IntegralRoom& room, long most) const;
+  Integral<double> measure_all(std::span<const double> inputs, IntegralRoom& room, long most) const;
   void set(std::size_t level, double at, IntegralRoom& room) const;
   /// With the coordinates before `level` set.
   Slice inside(std::size_t level, IntegralRoom& room) const;

@@ -190,5 +190,74 @@ TEST(RandomSlopes, ContainTheTermsOfConstraintsThatAreConstantAlongColumns) {
   EXPECT_NEAR(slope("l"), 0.22212, 1e-5);
 }
 
+/// A stretched crank ends slices like a root: derivatives lack what a slice measures where the break is taken
+/// to be. Found by the random mechanisms.
+TEST(RandomSlopes, BreaksOfLinesAreKnownWellEnough) {
+  const auto mechanism = read_mechanism_toml(R"(
+[mechanism]
+name = "cranks"
+[parameters]
+w = { default = "0.47497 m", min = "0.0001 m", max = "10 m" }
+h = { default = "0.38345 m", min = "0.0001 m", max = "10 m" }
+R = { default = "0.35423 m", min = "0.0001 m", max = "10 m" }
+r = { default = "0.11818 m", min = "0.0001 m", max = "10 m" }
+limb2_a_l = { default = "0.2198 m", min = "0.0001 m", max = "10 m" }
+limb2_b_l = { default = "0.61691 m", min = "0.0001 m", max = "10 m" }
+limb2_low = { default = "-1.4788 rad", min = "-20 rad", max = "10 rad" }
+limb2_high = { default = "1.3204 rad", min = "-20 rad", max = "10 rad" }
+limb3_a = { default = "0.035935 m", min = "-10 m", max = "10 m" }
+limb3_a_l = { default = "0.37202 m", min = "0.0001 m", max = "10 m" }
+limb3_b_l = { default = "0.72956 m", min = "0.0001 m", max = "10 m" }
+[platform]
+coordinates = { x = "along x", y = "along y", z = "along z" }
+characteristic_radius = "0.1 m"
+[survey]
+sweep = ["x", "z"]
+box = { x = ["-w", "w"], y = ["-w", "w"], z = ["h - 0.4*w", "h + 0.4*w"] }
+[[limb]]
+name = "limb1"
+base = ["-0.0075317*R", "-0.99997*R", "0"]
+platform = ["-0.0075317*r", "-0.99997*r", 0]
+drive = "telescope"
+[[limb]]
+name = "limb2"
+base = ["-0.60697*R", "-0.79473*R", "0"]
+platform = ["-0.60697*r", "-0.79473*r", 0]
+drive = "crank"
+crank = "limb2_a_l"
+rod = "limb2_b_l"
+branch = "+"
+axis = [0.79473, -0.60697, 0]
+zero = [-0.60697, -0.79473, 0]
+range = ["limb2_low", "limb2_high"]
+[[limb]]
+name = "limb3"
+base = ["0.085645*R", "0.99633*R", "limb3_a"]
+platform = ["0.085645*r", "0.99633*r", 0]
+drive = "crank"
+crank = "limb3_a_l"
+rod = "limb3_b_l"
+branch = "+"
+axis = [-0.99633, 0.085645, 0]
+zero = [0.085645, 0.99633, 0]
+)",
+                                             "cranks.toml");
+  const SurveyPlan plan = test::columns(mechanism->info(), {.tolerance = 1e-10});
+  Volume volume(*mechanism, plan);
+  std::vector<double> design = test::nominal(mechanism->info());
+  constexpr std::size_t kRadius = 2;
+  for (const double radius : {0.32, 0.33, 0.34, 0.35, 0.36, 0.37}) {
+    design[kRadius] = radius;
+    const double slope = volume.slopes(design)[kRadius], h = 2e-5;
+    const auto moved = [&](double by) {
+      std::vector<double> other = design;
+      other[kRadius] += by;
+      return volume(other);
+    };
+    const double differences = (8 * (moved(h / 2) - moved(-h / 2)) - (moved(h) - moved(-h))) / (6 * h);
+    EXPECT_NEAR(slope, differences, 1e-9) << radius;
+  }
+}
+
 }  // namespace
 }  // namespace pkm
