@@ -33,7 +33,8 @@ bool join(SliceBreak& first, const SliceBreak& second, double whole) {
 
 }  // namespace
 
-/// Measures go on where structures change, some like roots; if not, something was overlooked on one side.
+/// Measures go on where structures change, some like roots; if not, a condition that holds on one side alone explains
+/// it, or something was overlooked there.
 bool SectionsIntegral::jumps(const Slice& low, const Slice& high, std::size_t level, const IntegralRoom& room) const {
   return ends_in_lines() && low.broken == 0 && high.broken == 0 &&
          std::fabs(low.measure - high.measure) > kJump * room.levels[level].greatest;
@@ -71,7 +72,7 @@ void SectionsIntegral::find_breaks(std::size_t level, Slice from, Slice& to, dou
     const Slice after = beyond < to.at ? slice(level, beyond, room) : to;
     SliceBreak found{high.at, true, low, after};
     if (level + 1 < levels() && jumps(low, high, level, room))
-      found.overlooked = std::fabs(low.measure - high.measure) * whole / kPlacesInLines;
+      found.overlooked = unexplained(level, found, room) * whole / kPlacesInLines;
     if (ends_in_lines() || breaks.empty() || !join(breaks.back(), found, whole)) breaks.push_back(found);
     from = after;
   }

@@ -15,6 +15,41 @@ constexpr double kNarrow = 1e-12;  // of the range: parts that are not looked at
 constexpr double kBlurred = 1e-6;  // of the range: parts whose structures rounding may mix
 constexpr double kBlurredInLines = 1e-4;
 constexpr std::size_t kMostParts = 3000;
+constexpr double kEndsMeet = 1e-7;  // of the greatest slice: where derivatives will be asked for
+
+/// The value of the polynomial through the nodes of kronrod_rule() at t in [0, 1], by the barycentric formula.
+double through_nodes(const std::array<Slice, NestedRule::kNodes>& slices, double t) {
+  static const std::array<double, NestedRule::kNodes> kWeights = [] {
+    std::array<double, NestedRule::kNodes> weights;
+    const auto& node = kronrod_rule().node;
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      double product = 1;
+      for (std::size_t j = 0; j < node.size(); ++j)
+        if (j != i) product *= 4 * (node[i] - node[j]);
+      weights[i] = 1 / product;
+    }
+    return weights;
+  }();
+  double above = 0, below = 0;
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
+    const double term = kWeights[i] / (t - kronrod_rule().node[i]);
+    above += term * slices[i].measure;
+    below += term;
+  }
+  return above / below;
+}
+
+/// How far the polynomial through the nodes of a part misses the slices next to its ends. A root that begins just
+/// outside the part hardly changes the integral, but its derivative: that of sqrt(t^2 + e) by e is as large as
+/// 1/sqrt(e) between 0 and the first node.
+double missed_at_ends(const SlicePart& part, const std::array<Slice, NestedRule::kNodes>& slices) {
+  const auto& piece = part.piece;
+  const double width = piece.upper - piece.lower, both = piece.root_lower && piece.root_upper ? 3 : 1;
+  const double from = (part.below.at - piece.lower) / width, to = (piece.upper - part.above.at) / width;
+  const double at_lower = through_nodes(slices, piece.root_lower ? std::sqrt(from / both) : from);
+  const double at_upper = through_nodes(slices, 1 - (piece.root_upper ? std::sqrt(to / both) : to));
+  return std::max(std::fabs(at_lower - part.below.measure), std::fabs(at_upper - part.above.measure));
+}
 
 }  // namespace
 
@@ -159,6 +194,9 @@ Slice SectionsIntegral::integrate(std::size_t level, IntegralRoom& room) const {
     sum.error += part.error + part.unresolved;
     if (part.below.hash != last) hash.add(part.below.hash);
     last = part.below.hash;
+    // What bounds a part may change, and the measure jump, while the parts stay the same.
+    for (const Closing closing : {part.lower, part.upper})
+      if (closing != kChange) hash.add(closing);
   }
   if (!own.parts.empty()) {
     sum.hash = hash.value() | 1U;
@@ -242,6 +280,7 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
     spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
   part.error = sharpened_error(std::fabs(part.value - less), spread);
+  if (room.for_slopes && same) part.missed = missed_at_ends(part, slices);
   if (!same) {
     const auto [least, greatest] = std::ranges::minmax(slices, {}, &Slice::measure);
     part.unresolved += width * (greatest.measure - least.measure);
@@ -249,25 +288,28 @@ void SectionsIntegral::add_part(std::size_t level, SlicePart part, double whole,
   own.parts.push_back(part);
 }
 
-/// Halves the part with the greatest error until the sum is small enough.
+/// Halves the part with the greatest error until the sum is small enough, then those that miss their ends.
 void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& room) const {
   IntegralRoom::Level& own = room.levels[level];
   // An inner integral need not be better than what the greatest one allows.
   const double share = level == 0 ? 1 : ends_in_lines() ? 0.5 : 0.1;
   const double least = level == 0 ? 0 : share * tolerance_ * room.levels[level - 1].greatest;
-  const auto less = [](const SlicePart& x, const SlicePart& y) { return x.error < y.error; };
-  std::make_heap(own.parts.begin(), own.parts.end(), less);
+  const double may_miss = std::max(kEndsMeet, 10 * tolerance_) * own.greatest;
+  const auto misses = [&](const SlicePart& part) {
+    return part.missed > may_miss && part.piece.upper - part.piece.lower > kNarrow * whole;
+  };
   while (own.parts.size() < kMostParts && room.sections < room.most) {
     double value = 0, error = 0;
     for (const SlicePart& part : own.parts) {
       value += part.value;
       error += part.error;
     }
-    if (!(error > std::max({least, share * tolerance_ * value, 1e-15 * value}))) return;
-    std::pop_heap(own.parts.begin(), own.parts.end(), less);
-    const SlicePart part = own.parts.back();
-    own.parts.pop_back();
-    const std::size_t known = own.parts.size();
+    const bool is_vague = error > std::max({least, share * tolerance_ * value, 1e-15 * value});
+    const auto at =
+        is_vague ? std::ranges::max_element(own.parts, {}, &SlicePart::error) : std::ranges::find_if(own.parts, misses);
+    if (at == own.parts.end()) return;
+    const SlicePart part = *at;
+    own.parts.erase(at);
     const auto [first, second] = halves(part.piece);
     const Slice middle = slice(level, first.upper, room);
     SlicePart low{.piece = first, .below = part.below, .above = middle, .lower = part.lower};
@@ -278,8 +320,6 @@ void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& roo
     high.beyond_upper = part.beyond_upper;
     add_part(level, low, whole, 0, room);
     add_part(level, high, whole, 0, room);
-    for (std::size_t i = known + 1; i <= own.parts.size(); ++i)
-      std::push_heap(own.parts.begin(), own.parts.begin() + static_cast<std::ptrdiff_t>(i), less);
   }
 }
 

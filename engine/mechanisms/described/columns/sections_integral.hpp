@@ -47,6 +47,7 @@ struct SlicePart {
   std::array<double, NestedRule::kNodes> at{}, weight{};
   double value = 0, error = 0;
   double unresolved = 0;  ///< error that smaller parts do not mend
+  double missed = 0;      ///< by the polynomial through its nodes, at its ends; where derivatives will be asked for
   std::size_t kept = 0;   ///< of what is kept of its nodes, the first
 };
 
@@ -167,6 +168,8 @@ class SectionsIntegral {
   /// @param side  1: above the end, -1: below it
   void visit_lost(std::size_t level, const SlicePart& part, bool upper, double side, IntegralRoom& room,
                   const LostVisitor& visit) const;
+  /// How much of a jump of the measure is of points that violate no condition on the other side.
+  double unexplained(std::size_t level, const SliceBreak& at, IntegralRoom& room) const;
   void visit_lost(std::size_t level, double weight, bool in_is_empty, bool out_is_empty, const Lost& lost) const;
   void visit_columns(const std::vector<std::array<double, 2>>& columns, double v, double weight,
                      const Lost& lost) const;

@@ -80,8 +80,10 @@ void SectionsIntegral::visit_lost(std::size_t level, const SlicePart& part, bool
   out.registers = room.registers;
   out.levels.resize(room.levels.size());
   for (std::size_t i = 0; i < out.levels.size(); ++i) {
-    out.levels[i].greatest = room.levels[i].greatest;
-    out.levels[i].seen_count = 0;
+    const IntegralRoom::Level& own = room.levels[i];
+    out.levels[i].greatest = own.greatest;
+    out.levels[i].seen_count = own.seen_count;  // where small parts are
+    out.levels[i].seen.assign(own.seen.begin(), own.seen.begin() + static_cast<std::ptrdiff_t>(own.seen_count));
   }
   out.measured = true;
   out.for_slopes = room.for_slopes;
@@ -115,6 +117,14 @@ void SectionsIntegral::visit_lost(std::size_t level, const SlicePart& part, bool
   if (!like_root) return;
   measure(1);
   visit_lost(level + 1, -1 / (root - 1), inside[1].hash == 0, outside[1].hash == 0, set);
+}
+
+double SectionsIntegral::unexplained(std::size_t level, const SliceBreak& at, IntegralRoom& room) const {
+  const double jump = at.above.measure - at.below.measure;
+  const SlicePart below{.piece = {at.at, at.at}, .above = at.below, .beyond_upper = at.above.measure};
+  double explained = 0;
+  visit_lost(level, below, true, jump > 0 ? 1 : -1, room, [&](double weight, double) { explained += weight; });
+  return std::max(0.0, std::fabs(jump) - explained);
 }
 
 /// After inside(level) on both sides.

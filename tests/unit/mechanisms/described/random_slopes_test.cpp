@@ -141,8 +141,9 @@ TEST(RandomSlopes, EqualDifferencesForRandomMechanisms) {
       ++empty;
       continue;
     }
-    if (!(volume->error() < 1e-7)) {
+    if (!(volume->error() < 2e-8)) {
       ++vague;
+      if (is_campaign) std::cout << "design " << k << ": error estimate " << volume->error() << '\n';
       continue;
     }
     ++compared;
@@ -166,7 +167,8 @@ TEST(RandomSlopes, EqualDifferencesForRandomMechanisms) {
   }
   std::cout << compared << " designs, " << slopes << " derivatives: " << wrong << " wrong, " << kinks << " at kinks, "
             << rough << " where differences do not agree; " << empty << " without a workspace, " << vague
-            << " with an error estimate above 1e-7, " << lengthy << " that take too long, " << refused << " refused\n";
+            << " whose error estimate misses the tolerance, " << lengthy << " that take too long, " << refused
+            << " refused\n";
   if (is_campaign)
     for (const auto& [reason, count] : reasons) std::cout << count << ": " << reason << '\n';
   EXPECT_EQ(compared, designs);
@@ -190,10 +192,7 @@ TEST(RandomSlopes, ContainTheTermsOfConstraintsThatAreConstantAlongColumns) {
   EXPECT_NEAR(slope("l"), 0.22212, 1e-5);
 }
 
-/// A stretched crank ends slices like a root: derivatives lack what a slice measures where the break is taken
-/// to be. Found by the random mechanisms.
-TEST(RandomSlopes, BreaksOfLinesAreKnownWellEnough) {
-  const auto mechanism = read_mechanism_toml(R"(
+constexpr const char* kCranks = R"(
 [mechanism]
 name = "cranks"
 [parameters]
@@ -240,22 +239,88 @@ rod = "limb3_b_l"
 branch = "+"
 axis = [-0.99633, 0.085645, 0]
 zero = [0.085645, 0.99633, 0]
-)",
-                                             "cranks.toml");
-  const SurveyPlan plan = test::columns(mechanism->info(), {.tolerance = 1e-10});
-  Volume volume(*mechanism, plan);
+)";
+
+double central_difference(Volume& volume, std::vector<double> design, std::size_t parameter) {
+  const double at = design[parameter], h = 2e-5;
+  const auto moved = [&](double by) {
+    design[parameter] = at + by;
+    return volume(design);
+  };
+  return (8 * (moved(h / 2) - moved(-h / 2)) - (moved(h) - moved(-h))) / (6 * h);
+}
+
+/// A stretched crank ends slices like a root: derivatives lack what a slice measures where the break is taken
+/// to be. Found by the random mechanisms.
+TEST(RandomSlopes, BreaksOfLinesAreKnownWellEnough) {
+  const auto mechanism = read_mechanism_toml(kCranks, "cranks.toml");
+  Volume volume(*mechanism, test::columns(mechanism->info(), {.tolerance = 1e-10}));
   std::vector<double> design = test::nominal(mechanism->info());
   constexpr std::size_t kRadius = 2;
   for (const double radius : {0.32, 0.33, 0.34, 0.35, 0.36, 0.37}) {
     design[kRadius] = radius;
-    const double slope = volume.slopes(design)[kRadius], h = 2e-5;
-    const auto moved = [&](double by) {
-      std::vector<double> other = design;
-      other[kRadius] += by;
-      return volume(other);
-    };
-    const double differences = (8 * (moved(h / 2) - moved(-h / 2)) - (moved(h) - moved(-h))) / (6 * h);
-    EXPECT_NEAR(slope, differences, 1e-9) << radius;
+    EXPECT_NEAR(volume.slopes(design)[kRadius], central_difference(volume, design, kRadius), 1e-9) << radius;
+  }
+}
+
+/// At y = 0.05 m such a root begins 1e-9 of the range beyond the end of the slices: the volume hardly notices, its
+/// derivative by R was off by 4e-5. Found by the random mechanisms.
+TEST(RandomSlopes, RootsThatBeginJustOutsideAPartCount) {
+  const auto mechanism = read_mechanism_toml(kCranks, "cranks.toml");
+  SurveyPlan plan = test::columns(mechanism->info(), {.tolerance = 1e-8});
+  plan.held.at(0) = {plan.held.at(0).coordinate, HeldCoordinate::Kind::value, 0.05};
+  Volume volume(*mechanism, plan);
+  const std::vector<double> design = test::nominal(mechanism->info()), slopes = volume.slopes(design);
+  for (std::size_t i = 0; i < design.size(); ++i)
+    EXPECT_NEAR(slopes[i], central_difference(volume, design, i), 2e-7) << mechanism->info().parameters[i].name;
+}
+
+/// Beyond x = -m the margin bounds y in place of the box: the number of parts stays, the area jumps. Without a break
+/// there, the derivative by m was 0. Found by the random mechanisms.
+TEST(RandomSlopes, AreaJumpsWhereAnotherConditionBoundsAPart) {
+  const auto mechanism = read_mechanism_toml(R"toml(
+[mechanism]
+name = "jump"
+[parameters]
+w = { default = "0.39119 m", min = "0.0001 m", max = "10 m" }
+h = { default = "0.5069 m", min = "0.0001 m", max = "10 m" }
+R = { default = "0.30792 m", min = "0.0001 m", max = "10 m" }
+r = { default = "0.053924 m", min = "0.0001 m", max = "10 m" }
+crank = { default = "0.22797 m", min = "0.0001 m", max = "10 m" }
+rod = { default = "0.48358 m", min = "0.0001 m", max = "10 m" }
+m = { default = "0.1 m", min = "-10 m", max = "10 m" }
+[platform]
+coordinates = { x = "along x", y = "along y", z = "along z" }
+characteristic_radius = "0.1 m"
+[survey]
+sweep = ["y", "x", "z"]
+box = { x = ["-w", "w"], y = ["-w", "w"], z = ["h - 0.4*w", "h + 0.4*w"] }
+[[limb]]
+name = "arm"
+copies = { number = 3, about = "z" }
+base = ["0.98007*R", "0.19867*R", 0]
+platform = ["0.98007*r", "0.19867*r", 0]
+drive = "crank"
+crank = "crank"
+rod = "rod"
+branch = "+"
+axis = [-0.19867, 0.98007, 0]
+zero = [0.98007, 0.19867, 0]
+range = [-1.2739, 0.674]
+[[margin]]
+name = "corner"
+formula = "max(x + m, y - 0.05)"
+unit = "m"
+)toml",
+                                             "jump.toml");
+  Volume volume(*mechanism, test::columns(mechanism->info(), {.tolerance = 1e-8}));
+  std::vector<double> design = test::nominal(mechanism->info());
+  constexpr std::size_t kCorner = 6;
+  for (const double m : {0.05, 0.1, 0.15}) {  // at 0.15 m, near the end of the workspace, the area jumps by 2e-5 m^2
+    design[kCorner] = m;
+    volume(design);
+    EXPECT_LT(volume.error(), 2e-8) << "a jump that a margin explains is nothing overlooked";
+    EXPECT_NEAR(volume.slopes(design)[kCorner], central_difference(volume, design, kCorner), 1e-8) << m;
   }
 }
 
