@@ -15,6 +15,7 @@ constexpr double kNarrow = 1e-12;  // of the range: parts that are not looked at
 constexpr double kBlurred = 1e-6;  // of the range: parts whose structures rounding may mix
 constexpr double kBlurredInLines = 1e-4;
 constexpr std::size_t kMostParts = 3000;
+constexpr int kTold = 5;            // halvings in a row that leave nearly all of a change in one half: it is a jump
 constexpr double kEndsMeet = 1e-7;  // of the greatest slice: where derivatives will be asked for
 
 /// The value of the polynomial through the nodes of kronrod_rule() at t in [0, 1], by the barycentric formula.
@@ -49,6 +50,12 @@ double missed_at_ends(const SlicePart& part, const std::array<Slice, NestedRule:
   const double at_lower = through_nodes(slices, piece.root_lower ? std::sqrt(from / both) : from);
   const double at_upper = through_nodes(slices, 1 - (piece.root_upper ? std::sqrt(to / both) : to));
   return std::max(std::fabs(at_lower - part.below.measure), std::fabs(at_upper - part.above.measure));
+}
+
+/// Whether nearly all of a change is in one half, as that of a jump is; of a root it is 71 %.
+bool is_one_sided(const Slice& below, const Slice& middle, const Slice& above) {
+  const double first = std::fabs(middle.measure - below.measure), second = std::fabs(above.measure - middle.measure);
+  return std::max(first, second) > 0.95 * (first + second);
 }
 
 }  // namespace
@@ -312,10 +319,14 @@ void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& roo
     own.parts.erase(at);
     const auto [first, second] = halves(part.piece);
     const Slice middle = slice(level, first.upper, room);
-    SlicePart low{.piece = first, .below = part.below, .above = middle, .lower = part.lower};
+    const double change = std::fabs(part.above.measure - part.below.measure);
+    const bool may_be_jump = level + 1 < levels() && change > kJump * own.greatest;
+    const int one_sided = may_be_jump && is_one_sided(part.below, middle, part.above) ? part.one_sided + 1 : 0;
+    if (one_sided == kTold) own.unresolved += change * whole / kPlacesInLines;
+    SlicePart low{.piece = first, .below = part.below, .above = middle, .lower = part.lower, .one_sided = one_sided};
     low.beyond_lower = part.beyond_lower;
     low.beyond_upper = middle.measure;
-    SlicePart high{.piece = second, .below = middle, .above = part.above, .upper = part.upper};
+    SlicePart high{.piece = second, .below = middle, .above = part.above, .upper = part.upper, .one_sided = one_sided};
     high.beyond_lower = middle.measure;
     high.beyond_upper = part.beyond_upper;
     add_part(level, low, whole, 0, room);

@@ -48,6 +48,7 @@ struct SlicePart {
   double value = 0, error = 0;
   double unresolved = 0;  ///< error that smaller parts do not mend
   double missed = 0;      ///< by the polynomial through its nodes, at its ends; where derivatives will be asked for
+  int one_sided = 0;      ///< halvings in a row that left nearly all of a change of the slices in this half
   std::size_t kept = 0;   ///< of what is kept of its nodes, the first
 };
 

@@ -33,7 +33,8 @@ class Volume {
     surveyor_->survey(design, scratch_, survey_);
     return survey_.volume;
   }
-  double error() const { return survey_.error; }  ///< of the last volume, relative
+  double error() const { return survey_.error; }            ///< of the last volume, relative
+  double error_of_sloped() const { return sloped_.error; }  ///< of the last one with slopes
   std::vector<double> slopes(const std::vector<double>& design) {
     std::vector<double> all;
     for (std::size_t first = 0; first < design.size(); first += 4) {
@@ -112,17 +113,19 @@ TEST(RandomSlopes, EqualDifferencesForRandomMechanisms) {
     std::optional<Volume> volume;
     double measure = 0;
     std::vector<double> design;
+    std::string held_at;
     try {
       mechanism = read_mechanism_toml(text, "random.toml");
       SurveyPlan plan = test::columns(mechanism->info(), {.tolerance = 1e-8});
       for (HeldCoordinate& held : plan.held) {
         const double at = 0.1 * (random.u01() - 0.5);
-        const bool is_height = mechanism->info().coordinates[static_cast<std::size_t>(held.coordinate)].name == "z";
-        if (is_height) continue;  // in its middle, which moves with the design
+        const std::string& name = mechanism->info().coordinates[static_cast<std::size_t>(held.coordinate)].name;
+        if (name == "z") continue;  // in its middle, which moves with the design
         if (plan.held.size() == 1 && mechanism->info().coordinates.size() == 3 && random.chance(0.5))
           held.kind = HeldCoordinate::Kind::integrated;
         else
           held = {held.coordinate, HeldCoordinate::Kind::value, at};
+        held_at += ", " + name + (held.value == at ? " = " + std::to_string(at) : " integrated");
       }
       design = test::nominal(mechanism->info());
       const CostLimit limit(most_checks);
@@ -136,18 +139,19 @@ TEST(RandomSlopes, EqualDifferencesForRandomMechanisms) {
       ++reasons[problem.what()];
       continue;
     }
-    SCOPED_TRACE("design " + std::to_string(k) + "\n" + text);
+    SCOPED_TRACE("design " + std::to_string(k) + held_at + "\n" + text);
     if (!(measure > 1e-6)) {
       ++empty;
       continue;
     }
-    if (!(volume->error() < 2e-8)) {
+    const std::vector<double> exact = volume->slopes(design);
+    // The one with slopes looks closer at ends of parts.
+    if (const double error = std::max(volume->error(), volume->error_of_sloped()); !(error < 2e-8)) {
       ++vague;
-      if (is_campaign) std::cout << "design " << k << ": error estimate " << volume->error() << '\n';
+      if (is_campaign) std::cout << "design " << k << ": error estimate " << error << '\n';
       continue;
     }
     ++compared;
-    const std::vector<double> exact = volume->slopes(design);
     double scale = 0.1 * measure;
     for (const double slope : exact) scale = std::max(scale, std::fabs(slope));
     for (std::size_t i = 0; i < exact.size(); ++i) {
