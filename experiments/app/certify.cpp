@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 #include "engine/core/team.hpp"
@@ -135,7 +134,7 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
   out.json["parameters"] = values_by_name(info.parameters, target.parameters);
 
   const StopRequest stop;
-  std::ostringstream proof;
+  std::string proof;
   const BoundsOptions options{.gap = gap,
                               .most_boxes = static_cast<std::size_t>(arguments.boxes),
                               .proof = arguments.proof.empty() ? nullptr : &proof,
@@ -164,7 +163,7 @@ std::string certify(const Target& target, const CertifyArguments& arguments, Pri
     throw ConfigError({"", 0, info.name}, reason.what());
   }
   if (arguments.proof.empty()) return wrong;
-  write_file(arguments.proof, proof.str(), existing);
+  write_file(arguments.proof, proof, existing);
   out.json["proof"] = arguments.proof;
   out.text += "wrote " + arguments.proof + '\n';
   return wrong;

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <functional>
-#include <iosfwd>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,7 +16,7 @@ namespace pkm {
 struct BoundsOptions {
   double gap = 1e-2;                 ///< wanted: greatest less least volume, relative to their mean
   std::size_t most_boxes = 4000000;  ///< where bounds end in any case
-  std::ostream* proof = nullptr;     ///< where the proof is written; null: nowhere
+  std::string* proof = nullptr;      ///< what the text of a proof is given to; null: there is none
   std::function<bool()> stop = {};   ///< called often, by any thread of the team: whether to stop
 };
 

@@ -115,7 +115,7 @@ VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& e, std::
     statement.input_names[e.model.inputs.limit(i)] = "limit " + info.limits[i].name;
   for (std::size_t i = 0; i < info.coordinates.size(); ++i)
     statement.input_names[e.model.inputs.coordinate(i)] = info.coordinates[i].name;
-  bounds::write_proof(statement, found, tree, *options.proof);
+  *options.proof = bounds::proof_text(statement, found, tree);
   return found;
 }
 

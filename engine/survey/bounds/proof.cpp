@@ -2,7 +2,7 @@
 
 #include <charconv>
 #include <cmath>
-#include <ostream>
+#include <sstream>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
@@ -100,12 +100,13 @@ class Formulas {
 
 }  // namespace
 
-void write_proof(const Statement& statement, const VolumeBounds& bounds, const ProofTree& tree, std::ostream& to) {
+std::string proof_text(const Statement& statement, const VolumeBounds& bounds, const ProofTree& tree) {
   if (tree.bytes() > kMostBytes)
     throw std::runtime_error("the proof has " + std::to_string(tree.bytes() / 1'000'000) +
                              " MB, more than 100: ask for a greater gap");
   // Those who check it may round once more at the last digit.
   const double slack = (1e-12 + 1e-15 * static_cast<double>(bounds.boxes)) * bounds.upper;
+  std::ostringstream to;
   to << "pkmopt proof 1\n# " << statement.title << "\nvolume " << text_of(std::max(0.0, bounds.lower - slack)) << ' '
      << text_of(bounds.upper + slack) << '\n';
   for (std::size_t axis = 0; axis < statement.axes.size(); ++axis)
@@ -115,8 +116,10 @@ void write_proof(const Statement& statement, const VolumeBounds& bounds, const P
   for (std::size_t k = 0; k < statement.conditions.size(); ++k)
     to << "condition " << formulas.name(statement.conditions.node(k)) << ' ' << statement.conditions.name(k) << '\n';
   to << "boxes\n";
-  tree.write(to);
-  to << "end\n";
+  std::string text = std::move(to).str();
+  text.reserve(text.size() + tree.bytes() + 4);
+  tree.append_to(text);
+  return text += "end\n";
 }
 
 }  // namespace pkm::bounds

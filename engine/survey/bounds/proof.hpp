@@ -2,7 +2,6 @@
 // conditions as formulas, the bounds, and what was found of each box. experiments/checker/README.md has the format.
 #pragma once
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -23,6 +22,6 @@ struct Statement {
 };
 
 /// Throws std::runtime_error where the text would be longer than 100 MB.
-void write_proof(const Statement& statement, const VolumeBounds& bounds, const ProofTree& tree, std::ostream& to);
+std::string proof_text(const Statement& statement, const VolumeBounds& bounds, const ProofTree& tree);
 
 }  // namespace pkm::bounds

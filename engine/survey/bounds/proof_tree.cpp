@@ -1,7 +1,5 @@
 #include "engine/survey/bounds/proof_tree.hpp"
 
-#include <ostream>
-
 namespace pkm::bounds {
 
 void ProofTree::split(std::size_t node, std::size_t axis, std::size_t first_child) {
@@ -32,16 +30,16 @@ std::size_t ProofTree::bytes() const {
   return bytes;
 }
 
-void ProofTree::write(std::ostream& to) const {
+void ProofTree::append_to(std::string& text) const {
   std::vector<std::size_t> left = {0};
   while (!left.empty()) {
     const Node& node = nodes_[left.back()];
     left.pop_back();
-    to << node.text;
+    text += node.text;
     if (node.first_child == 0) {
-      to << ".\n";
+      text += ".\n";
     } else {
-      to << '/' << node.axis << '\n';
+      text += '/' + std::to_string(node.axis) + '\n';
       left.push_back(node.first_child + 1);
       left.push_back(node.first_child);
     }

@@ -1,7 +1,6 @@
 // What was found of each box, in the order of their halving: the greater part of a proof.
 #pragma once
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -18,7 +17,7 @@ class ProofTree {
   std::size_t size() const { return nodes_.size(); }
   void note(std::size_t node, const std::vector<Step>& steps);
   std::size_t bytes() const;
-  void write(std::ostream& to) const;
+  void append_to(std::string& text) const;
 
  private:
   struct Node {
