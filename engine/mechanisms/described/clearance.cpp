@@ -109,6 +109,7 @@ std::vector<LinkPair> pairs_to_keep_clear(const Graph& graph, const std::vector<
   std::vector<bool> still;
   for (const DescribedLink& link : links) still.push_back(stands_still(graph, link));
   std::vector<LinkPair> pairs;
+  pairs.reserve(links.size() * links.size() / 2);
   for (std::size_t i = 0; i < links.size(); ++i)
     for (std::size_t k = i + 1; k < links.size(); ++k)
       if (!(still[i] && still[k]) && !overlap(groups[i], groups[k]) && !share_a_joint(links[i], links[k]))

@@ -65,16 +65,24 @@ std::vector<Node> finite_parts(Graph& graph, Node condition, Groups along) {
     return is_free(node) && !(graph[node].is_number() && graph[node].number != 0);
   };
   std::vector<Node> parts;
+  std::vector<bool> is_part(graph.size());
   for (const Node node : graph.reachable({&condition, 1}, is_free)) {
     const graph::Entry entry = graph[node];
-    for (const Node operand : entry.operands())
-      if (is_free(operand) && std::ranges::find(parts, operand) == parts.end()) parts.push_back(operand);
+    for (const Node operand : entry.operands()) {
+      if (!is_free(operand) || is_part[static_cast<std::size_t>(operand)]) continue;
+      is_part[static_cast<std::size_t>(operand)] = true;
+      parts.push_back(operand);
+    }
     if (entry.operation && entry.operation->code == graph::Code::divide && is_divisor(entry.arguments[1]))
       parts.push_back(graph.apply(*entry.operation, std::array{graph.number(1), entry.arguments[1]}));
   }
-  std::erase_if(parts, [&](Node part) {
-    return std::ranges::none_of(graph.reachable({&part, 1}), [&](Node node) { return may_be_infinite(graph[node]); });
-  });
+  std::vector<bool> is_infinite(graph.size());  // maybe
+  for (const Node node : graph.reachable(parts))
+    is_infinite[static_cast<std::size_t>(node)] =
+        may_be_infinite(graph[node]) || std::ranges::any_of(graph[node].operands(), [&](Node operand) {
+          return is_infinite[static_cast<std::size_t>(operand)];
+        });
+  std::erase_if(parts, [&](Node part) { return !is_infinite[static_cast<std::size_t>(part)]; });
   for (Node& part : parts) part = graph.apply(graph::operation("*"), std::array{part, graph.number(0)});
   return parts;
 }
