@@ -317,7 +317,7 @@ std::vector<ObjectiveEntry> peak_objectives() {
       load_entry(Load::motor_torque, "motor torque", "torque of the motors along a motion, with drive trains",
                  torque_options(), [](const EntryContext&) { return std::string("N m"); }),
       load_entry(Load::motor_speed, "motor speed", "greatest speed of the motors along a motion, with drive trains",
-                 load_options({"worst"}), [](const EntryContext&) { return std::string("rad/s"); }),
+                 load_options({"worst"}, false), [](const EntryContext&) { return std::string("rad/s"); }),
       load_entry(Load::joint_speed, "joint speed", "greatest speed of the joints along a motion",
                  load_options({"worst"}, false), speed_unit),
       load_entry(Load::joint_acceleration, "joint acceleration", "greatest acceleration of the joints along a motion",

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/dynamics/coupling.hpp"
-#include "engine/setup/motor_table.hpp"
 #include "experiments/app/axes.hpp"
 
 namespace pkm {
@@ -42,8 +41,8 @@ double coupling_with(const Motor& motor, const Mechanism& mechanism, std::span<c
 
 }  // namespace
 
-void tell_motors(const Target& target, const std::string& mode, const Trajectory& trajectory, const std::string& file,
-                 Printout& out) {
+void tell_motors(const Target& target, const std::string& mode, const Trajectory& trajectory,
+                 const std::vector<Motor>& motors, Printout& out) {
   const Mechanism& mechanism = *target.mechanism;
   const DriveTrains& trains = *mechanism.drive_trains();
   const auto& joints = target.info().joints;
@@ -51,7 +50,7 @@ void tell_motors(const Target& target, const std::string& mode, const Trajectory
   const bool follows = trajectory.summary.infeasible == 0;
   std::vector<Row> rows = {{"", "does it", "reserve", "bounded by", "coupling index", "follows the motion"}};
   out.json["motors"] = Json::array();
-  for (const Motor& motor : load_motors_toml(file)) {
+  for (const Motor& motor : motors) {
     MotorFit worst;
     std::string where;
     Json reserves = Json::object();

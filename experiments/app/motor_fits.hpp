@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "engine/dynamics/motor.hpp"
 #include "engine/mechanism/trajectory.hpp"
 #include "experiments/app/target.hpp"
 
@@ -10,8 +12,7 @@ namespace pkm {
 
 /// Prints which motors do the motion at every joint, their reserve, and whether the mechanism keeps its limits along
 /// the motion.
-/// @param file  with the table of motors
-void tell_motors(const Target& target, const std::string& mode, const Trajectory& trajectory, const std::string& file,
-                 Printout& out);
+void tell_motors(const Target& target, const std::string& mode, const Trajectory& trajectory,
+                 const std::vector<Motor>& motors, Printout& out);
 
 }  // namespace pkm

@@ -91,7 +91,10 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
     out << "stage " << i + 1 << ": " << stage.optimiser << ", ";
-    if (stage.starts.empty())
+    const bool has_starts =  // also where it was interrupted before the first of them ended
+        !stage.starts.empty() ||
+        (i < study.stages.size() && study.stages[i].entry->capabilities(study.stages[i].options).starts);
+    if (!has_starts)
       out << stage.generations.size() << " generations, ";
     else
       out << stage.starts.size() << (stage.starts.size() == 1 ? " start, " : " starts, ");

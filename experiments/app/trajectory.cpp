@@ -106,7 +106,8 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
     throw ConfigError({"", 0, "--zeta"}, "mechanism " + info.name + " has no auxiliary chain");
   const double zeta = arguments.zeta.empty() ? 0 : parse_number(arguments.zeta, "--zeta", "rad");
   const auto motion = find_motion(target, arguments.motion);
-  if (!arguments.motors.empty()) load_motors_toml(arguments.motors);  // its errors precede those of the output
+  std::vector<Motor> motors;
+  if (!arguments.motors.empty()) motors = load_motors_toml(arguments.motors);
   check_outputs({arguments.csv}, inputs, if_forced(arguments.force));
   Trajectory found =
       follow(mechanism, target.parameters, mode, target.limits, *motion, arguments.samples, wrench, zeta);
@@ -126,7 +127,7 @@ std::string trajectory(const Target& target, const TrajectoryArguments& argument
   out.head.push_back({"feasible", found.summary.infeasible == 0 ? "yes" : "not at " + infeasible + " samples"});
   tell_summary(mechanism, found, out);
   if (arguments.any()) tell_reactions(found, out);
-  if (!arguments.motors.empty() && found.summary.has_forces) tell_motors(target, mode, found, arguments.motors, out);
+  if (!motors.empty() && found.summary.has_forces) tell_motors(target, mode, found, motors, out);
   out.json["samples"] = Json::array();
   for (const auto& point : found.points)
     if (out.for_programs) out.json["samples"].push_back(sample_json(mechanism, point));

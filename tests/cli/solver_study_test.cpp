@@ -93,6 +93,8 @@ TEST_F(SolverProgram, CtrlCStopsInsideASolver) {
     const StudyContents left = read("stopped.h5");
     EXPECT_EQ(left.state, StudyState::interrupted);
     EXPECT_GT(left.evaluations(), 0);
+    ASSERT_EQ(run({"show", "stopped.h5"}), 0);
+    EXPECT_THAT(output_, ::testing::Not(HasSubstr(" generations, "))) << "a solver has starts, ended or not";
     ASSERT_EQ(run({"resume", "stopped.h5", "--quiet"}), 0) << output_;
     EXPECT_EQ(first_difference(read("straight.h5"), read("stopped.h5")), "");
   }
