@@ -4,8 +4,8 @@
 set(PKM_FILES_OF_RELEASE contracts/same_bits_contract contracts/slope_contract contracts/workspace_fields_contract
   crr_cru/derivatives described/bounded_columns described/closed_forms described/sample_slopes four_ppa_two_par/slopes
   hybrid/breaks storage/h5py
-  cli/described_study cli/golden cli/hybrid cli/messages cli/next_step cli/noise cli/outputs cli/sensitivity
-  cli/tool_error cli/verdict)
+  cli/changed_study cli/crr_cru cli/described_study cli/expression cli/extension cli/golden cli/hybrid cli/messages
+  cli/next_step cli/noise cli/outputs cli/sensitivity cli/stop cli/tool_error cli/verdict)
 set(PKM_TESTS_OF_RELEASE
   CrrCruColumns CountsFromRows ColumnsAgree NoPoseIsNearer TakenApart VirtualWorkIsNewtonEuler SlopesOfTheStandIn
   IsEstimatedHonestly ALargerClearance DerivativesOfStatistics DerivativesOfMeans VoxelsConvergeToColumns
@@ -34,12 +34,17 @@ set(PKM_TESTS_OF_RELEASE
   TheirDrivesAreThoseOfVirtualWork ALargePopulationByATeam IsThatOfEndsAndEdges ReportsTheDistanceToAFront
   SolvesActiveConstraintsFromEverySeed FunctionsAreThoseOfTheMaths CentrifugalForces SlidersAloneAreABound
   FramesAndInspectionAgree ThoseOfThePapersMechanismsAre JacobianEqualsDifferencesOfTheJoints CoriolisMatricesGive
-  KeepsClearWhereNothingIsNearer KineticEnergyGrows AnyDesignOfAStudyCanBeNamed Certify.BoundsVolumes LookAsFarAsGiven HaveOthersBesideThem
+  KeepsClearWhereNothingIsNearer KineticEnergyGrows AnyDesignOfAStudyCanBeNamed Certify.BoundsVolumes
+  LookAsFarAsGiven HaveOthersBesideThem
   IsCalledLikeTheStudy AFullDiskIsAnError RangesThatABoxDoesNotName SeedsAreRepeated EveryMotionIsFollowed
   VtkAndTheTableOfAny AnInstructionSetIsChosen CliHelp CliExamples TheLargestIsThatOfSingleStates Completion
-  AnEvaluationWithoutEnd SlowSteps.CheckEnds RandomSlopes RecordedStudy.Changed UndefinedValues
+  SlowSteps RandomSlopes RecordedStudy.Changed UndefinedValues
   SideBySideIsTheSame IpoptSolvesInSeveral Ranks.RunIpopt Obstacle.OfTheExample PoseAndForwardOfGolden
   AnotherSeedSearchesElsewhere/ipopt SameSeedSameBits/ipopt
+  CliErrors UndefinedConditioning CliJointForces WhatIsNoneIsRefused ThatIsNoneIsRefused NoOutputOverwritesIt
+  OverwritesOnlyWhenTold ExistingFilesAreNotOverwritten AFileToBeginWith IsRefusedInASentence CheckNamesBothSides
+  MoreCellsThanAFile ALeftPathBegins AHigherLimitGoesOn ThreadsDoNotMatter/ipopt NanIsFailedAndNeverBest/ipopt
+  KeepsBounds/ipopt CatalogueInTheExperiments
   ThreadsAreAsManyAsOpenMPIsTold)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.

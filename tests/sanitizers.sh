@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12 packages), builds by Clang with address and undefined-behaviour sanitizers and with
-# warnings as errors, and runs the tests that tests/sanitizers.cmake does not leave to the release build. Headers without
-# a source are compiled on their own, too, and a thread sanitizer watches the thread team. The last lines are CTest's.
+# warnings as errors, and runs the tests that tests/sanitizers.cmake does not leave to the release build. A thread
+# sanitizer watches the thread team. The last lines are CTest's.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 source tests/steps.sh

@@ -57,7 +57,7 @@ async function secondsToOpen(file, look = async () => {}) {
 }
 const seconds = [],
   least = []; // of several, because the machine may be busy with something else
-for (let i = 0; i < 3; ++i) {
+for (let i = 0; i < 2; ++i) {
   least.push(await secondsToOpen(bare));
   seconds.push(
     await secondsToOpen(html, async (page) => {

@@ -35,7 +35,7 @@ export class Page {
   static async open(html, { width = 1280, scheme = "light" } = {}) {
     const browser = await chromium.launch({
       executablePath: CHROMIUM,
-      args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
+      args: ["--no-sandbox", "--enable-unsafe-swiftshader"], // WebGL without a graphics card
     });
     const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: scheme });
     const self = Object.assign(new Page(), { browser, page, complaints: [] });
@@ -183,8 +183,9 @@ export class Page {
     return "";
   }
 
-  /** A picture of each section, without the bar that stays on top. */
+  /** A picture of each section, without the bar that stays on top; for eyes, where BROWSER_PICTURES is set. */
   async screenshots(folder, name, sections) {
+    if (!process.env.BROWSER_PICTURES) return;
     const style = await this.page.addStyleTag({ content: "#bar { position: static !important; }" });
     for (const section of sections ?? (await this.sections()))
       await this.page.locator("#" + section).screenshot({ path: path.join(folder, `${name}-${section}.png`) });

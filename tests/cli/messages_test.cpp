@@ -1,4 +1,5 @@
 // What the program complains about, whatever it is given: in a sentence of at most 2 kB, in nobody's words but its own.
+#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -30,6 +31,13 @@ std::string fault_of(const std::vector<std::string>& arguments, const std::strin
   return "";
 }
 
+/// Whether this one of many like messages is looked at: one in three, in the campaign all (PKM_EVERY_MESSAGE).
+bool is_chosen() {
+  static const bool are_all = std::getenv("PKM_EVERY_MESSAGE") != nullptr;
+  static unsigned count = 0;
+  return are_all || count++ % 3 == 0;
+}
+
 #ifndef PKM_SANITIZED  // which take ten times as long
 std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
   const std::regex regex(pattern);
@@ -48,6 +56,7 @@ TEST(CliMessages, AreShortWhateverTheArguments) {
   const auto expect_short = [&folder](const std::vector<std::string>& arguments) {
     std::string shown;
     for (const std::string& argument : arguments) shown += argument.substr(0, 20) + ' ';
+    if (!is_chosen()) return;
     EXPECT_EQ(fault_of(arguments, folder.path()), "") << shown;
   };
   const std::vector<std::string> commands = matches(pkmopt({"--help"}).out, "\n  ([a-z]+) ");
@@ -129,6 +138,7 @@ TEST(CliMessages, AreShortWhateverTheStudy) {
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   const StudyFolder folder;
   const auto expect_short = [&](std::size_t at, const std::string& line) {
+    if (!is_chosen()) return;
     std::string study;
     for (std::size_t i = 0; i < lines.size(); ++i) study += (i == at ? line : lines[i]) + "\n";
     folder.write("much.toml", study);
