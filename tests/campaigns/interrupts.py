@@ -4,9 +4,9 @@
 interrupts.py PROGRAM [--interrupts N] [--bound SECONDS] [--seed S]
 
 Over all commands that compute, among them studies whose evaluations or final steps have no end. Each has to end within
-the bound, `certify --proof` after it has written what it proved so far. A file that it writes is the one before, the complete one, or a study that can be resumed; a study that was
-interrupted and resumed has the bits of the run that nobody disturbed. Prints a table; exit code 1 if anything was late
-or lost.
+the bound, `certify --proof` after it has written what it proved so far. A file that it writes is the one before, the
+complete one, or a study that can be resumed; a study that was interrupted and resumed has the bits of the run that
+nobody disturbed. Prints a table; exit code 1 if anything was late or lost.
 """
 
 import argparse
@@ -151,8 +151,8 @@ class Campaign:
         self.check(command, before, output)
 
     def seconds_of_result(self, command):
-        """What writing the result so far may take besides: a proof has tens of megabytes, at 50 MB/s."""
-        return 2e-8 * len(self.content(command.file) or b"")
+        """What writing a proof of what is known so far may take besides: tens of megabytes, at 50 MB/s."""
+        return 2e-8 * len(self.content(command.file) or b"") if command.name == "certify" else 0
 
     def content(self, name):
         if not name or not os.path.exists(self.folder.file(name)):

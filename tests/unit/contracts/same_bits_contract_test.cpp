@@ -75,8 +75,8 @@ class SameBitsContract : public testing::TestWithParam<std::string> {
     const auto known = poses.find(info().name);
     const Pose<double> centre = known == poses.end() ? test::usual_pose(mechanism()) : known->second;
     Stream random(8, 0, 0, Stream::Use::start);
-    SurveyPlan plan = test::columns(info());
-    if (test::is_of_file(info())) plan = test::columns(info(), {.tolerance = 1e-3});  // to a few digits, too
+    // Of files to a few digits, too.
+    SurveyPlan plan = test::is_of_file(info()) ? test::columns(info(), {.tolerance = 1e-3}) : test::columns(info());
     for (int i = 0; i < 2; ++i) {
       const std::vector<double> design = test::random_design(info(), random);
       plan.limits = test::random_limits(info(), random);

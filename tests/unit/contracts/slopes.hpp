@@ -84,11 +84,11 @@ class SlopeComparison {
     }
   }
 
-  /// At least so many designs were compared, and of those at most this share was excluded, or one more.
+  /// At least so many designs were compared, and of those at most this share, rounded up, was excluded.
   void expect(int compared, double excluded) const {
     for (const auto& [name, count] : counts_) {
       EXPECT_GE(count.compared, compared) << name;
-      EXPECT_LE(count.excluded, 1 + excluded * count.compared) << name;
+      EXPECT_LE(count.excluded, std::ceil(excluded * count.compared)) << name;
     }
     EXPECT_FALSE(counts_.empty());
   }

@@ -15,7 +15,7 @@ constexpr double kNarrow = 1e-12;  // of the range: parts that are not looked at
 constexpr double kBlurred = 1e-6;  // of the range: parts whose structures rounding may mix
 constexpr double kBlurredInLines = 1e-4;
 constexpr std::size_t kMostParts = 3000;
-constexpr int kTold = 5;            // halvings in a row that leave nearly all of a change in one half: it is a jump
+constexpr int kHalvingsOfJump = 5;  // in a row that leave nearly all of a change in one half
 constexpr double kEndsMeet = 1e-7;  // of the greatest slice: where derivatives will be asked for
 
 /// The value of the polynomial through the nodes of kronrod_rule() at t in [0, 1], by the barycentric formula.
@@ -322,7 +322,7 @@ void SectionsIntegral::refine(std::size_t level, double whole, IntegralRoom& roo
     const double change = std::fabs(part.above.measure - part.below.measure);
     const bool may_be_jump = level + 1 < levels() && change > kJump * own.greatest;
     const int one_sided = may_be_jump && is_one_sided(part.below, middle, part.above) ? part.one_sided + 1 : 0;
-    if (one_sided == kTold) own.unresolved += change * whole / kPlacesInLines;
+    if (one_sided == kHalvingsOfJump) own.unresolved += change * whole / kPlacesInLines;
     SlicePart low{.piece = first, .below = part.below, .above = middle, .lower = part.lower, .one_sided = one_sided};
     low.beyond_lower = part.beyond_lower;
     low.beyond_upper = middle.measure;

@@ -82,6 +82,7 @@ void SectionsIntegral::visit_lost(std::size_t level, const SlicePart& part, bool
   for (std::size_t i = 0; i < out.levels.size(); ++i) {
     const IntegralRoom::Level& own = room.levels[i];
     out.levels[i].greatest = own.greatest;
+    if (i <= level) continue;                   // not integrated over again
     out.levels[i].seen_count = own.seen_count;  // where small parts are
     out.levels[i].seen.assign(own.seen.begin(), own.seen.begin() + static_cast<std::ptrdiff_t>(own.seen_count));
   }
